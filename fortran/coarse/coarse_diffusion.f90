@@ -10,8 +10,7 @@
 !!   B q = H p - given scalars on the boundary.
 module coarse_diffusion
    use base_kinds, only: ik, rk
-   use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
-                                 response_t, share_t
+   use coarse_elimination, only: fix_unknown, local_system_t, new_local_system, response_t
    use coarse_layout, only: end_of_block, fracture_cell_of_block
    use coarse_regions, only: regions_t
    use mesh_geometry, only: corner_geometry, face_length
@@ -19,15 +18,12 @@ module coarse_diffusion
    implicit none(type, external)
    private
 
-   public :: cell_outflow, corner_gradient, find_flux_stencil, region_fluxes
+   public :: cell_outflow, corner_gradient, region_fluxes, set_flux_equations
 
 contains
 
-   !> Eliminate the fluxes of one region.
-   !!
-   !! `info` is 0, or the local system could not be solved (degenerate cells).
-   pure subroutine find_flux_stencil(mesh, resistivity, is_given, given, regions, region, local, &
-                                     response, share, info)
+   !> The equations of the fluxes of one region.
+   pure subroutine set_flux_equations(mesh, resistivity, is_given, given, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)
@@ -35,10 +31,7 @@ contains
       real(rk), intent(in) :: given(:)  !< (sides) its value [Pa], or the flux out of the body [m/s]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local  !< memory to work in
-      type(response_t), intent(out) :: response  !< fluxes [m/s]
-      type(share_t), intent(out) :: share  !< flows into cells, and into fractures negated [m2/s]
-      integer(ik), intent(out) :: info
+      type(local_system_t), intent(inout) :: local
       integer(ik) :: m, n
 
       m = regions%blocks%length(region)
@@ -48,8 +41,7 @@ contains
       call add_fracture_faces(mesh, regions, region, local)
       local%equations(n + 1:n + m, :n) = local%coupling(:m, :n)
       call apply_sides(mesh, is_given, given, regions, region, local)
-      call eliminate(local, response, share, info)
-   end subroutine find_flux_stencil
+   end subroutine set_flux_equations
 
    !> What the cells' corners around the vertex give.
    pure subroutine add_corners(mesh, resistivity, regions, region, local)

@@ -85,7 +85,7 @@ contains
       integer(ik) :: cells(2), end, row
 
       row = eq%layout%at_flow(k)
-      cells = eq%connections(:, k)
+      cells = eq%paths%connections(:, k)
       in_situ = 0.5_rk*(in_situ_at(eq, cells(1)) + in_situ_at(eq, cells(2)))
       do end = 1, 2
          fluid = eq%fluid_at(x, cells(end))
@@ -109,15 +109,15 @@ contains
       integer(ik) :: cell, joint, row
 
       row = eq%layout%at_branch(b)
-      cell = eq%joints%cell(b)
-      joint = eq%layout%at_joint(eq%joints%joint(b))
+      cell = eq%paths%joints%cell(b)
+      joint = eq%layout%at_joint(eq%paths%joints%joint(b))
       fluid = eq%fluid_at(x, cell)
       beyond = 0.0_rk
       slope = 0.0_rk
-      if (.not. eq%joints%is_shut(b)) then
+      if (.not. eq%paths%joints%is_shut(b)) then
          in_situ = in_situ_at(eq, cell)
-         if (allocated(eq%joints%pressure_in_situ)) then
-            in_situ = 0.5_rk*(in_situ + eq%joints%pressure_in_situ(eq%joints%joint(b)))
+         if (allocated(eq%paths%joints%pressure_in_situ)) then
+            in_situ = 0.5_rk*(in_situ + eq%paths%joints%pressure_in_situ(eq%paths%joints%joint(b)))
          end if
          call find_beyond(law, in_situ, x(joint), beyond(1), slope(1))
          call find_beyond(law, in_situ, fluid%pressure, beyond(2), slope(2))

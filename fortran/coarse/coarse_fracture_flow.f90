@@ -53,7 +53,7 @@ contains
                                eq%opening(x, i)/eq%cells%share(i), aperture, slope)
       slope = slope/eq%cells%share(i)
       conductance = eq%dt*eq%cells%share(i)*eq%condensed%length(i)*aperture &
-                    /(6.0_rk*eq%settings%viscosity)
+                    /(6.0_rk*eq%paths%settings%viscosity)
       skin = 0.0_rk
       if (allocated(eq%cells%skin)) then
          skin = eq%cells%skin(i)/(eq%dt*eq%cells%share(i)*eq%condensed%length(i))
@@ -63,7 +63,7 @@ contains
          at = eq%condensed%layout%at_face_pressure(i, side)
          volume = eq%force(at)
          resistance = 1.0_rk/conductance &
-                      + max(eq%cells%leak_resistance(i)/(eq%settings%mobility*eq%dt), &
+                      + max(eq%cells%leak_resistance(i)/(eq%paths%settings%mobility*eq%dt), &
                             -most_of_rock/abs(eq%volume_slope(side, i))) + skin
          eq%residual(row) = volume*resistance - (x(row) - fluid%pressure)
          call eq%slopes%add_force(row, at, resistance)
@@ -90,7 +90,7 @@ contains
       from_rock = eq%condensed%layout%at_face_pressure(i, both)
       fluid = eq%fluid_at(x, i)
       associate (length => eq%condensed%length(i), before => eq%before, &
-                 compressibility => eq%settings%compressibility)
+                 compressibility => eq%paths%settings%compressibility)
          filled = eq%cells%residual_aperture(i) + eq%opening(x, i) - fluid%void
          compression = compressibility*(fluid%pressure - before%pressure(i))
          eq%residual(row) = (length*(filled - (before%aperture(i) - before%void(i)) &
@@ -148,7 +148,7 @@ contains
       integer(ik) :: at(2), cells(2), end, jumps(2), m, other, row
 
       row = eq%layout%at_flow(k)
-      cells = eq%connections(:, k)
+      cells = eq%paths%connections(:, k)
       at = eq%layout%at_pressure(cells)
       call find_way(cells, eq, length, weight)
       opening = 0.0_rk
@@ -160,7 +160,7 @@ contains
       do end = 1, 2
          call conducting_aperture(eq%cells%residual_aperture(cells(end)), &
                                   eq%cells%roughness(cells(end)), opening, aperture, slope)
-         resistance = 12.0_rk*eq%settings%viscosity*length(end)/aperture**3*eq%unit/eq%dt
+         resistance = 12.0_rk*eq%paths%settings%viscosity*length(end)/aperture**3*eq%unit/eq%dt
          eq%residual(row) = eq%residual(row) + resistance*x(row)
          call eq%slopes%add(row, row, resistance)
          do other = 1, 2
@@ -237,18 +237,18 @@ contains
       integer(ik) :: at, cell, row
 
       row = eq%layout%at_joint(j)
-      cell = eq%joints%cell(eq%joints%branches%at(j, 1_ik))
+      cell = eq%paths%joints%cell(eq%paths%joints%branches%at(j, 1_ik))
       at = eq%layout%at_pressure(cell)
       slope = 0.0_rk
-      if (all(eq%joints%is_shut(eq%joints%branches%of(j)))) then
+      if (all(eq%paths%joints%is_shut(eq%paths%joints%branches%of(j)))) then
          fluid = eq%fluid_at(x, cell)
          eq%residual(row) = x(row) - fluid%pressure
          slope = [1.0_rk, -fluid%pressure_slope]
-      else if (eq%joints%is_outlet(j)) then
-         eq%residual(row) = x(row) - eq%joints%side_pressure(j)
+      else if (eq%paths%joints%is_outlet(j)) then
+         eq%residual(row) = x(row) - eq%paths%joints%side_pressure(j)
          slope(1) = 1.0_rk
       else
-         eq%residual(row) = -eq%dt*eq%joints%injection(j)/eq%unit
+         eq%residual(row) = -eq%dt*eq%paths%joints%injection(j)/eq%unit
       end if
       ! The places of the derivatives are the same in every state (coarse_slopes).
       call eq%slopes%add(row, row, slope(1))
@@ -268,11 +268,11 @@ contains
       logical :: ends_in_joint
 
       row = eq%layout%at_branch(b)
-      cell = eq%joints%cell(b)
+      cell = eq%paths%joints%cell(b)
       at = eq%layout%at_pressure(cell)
-      joint = eq%layout%at_joint(eq%joints%joint(b))
+      joint = eq%layout%at_joint(eq%paths%joints%joint(b))
       call find_branch_way(b, eq, length, cells, weight)
-      if (eq%joints%is_shut(b)) then
+      if (eq%paths%joints%is_shut(b)) then
          resistance = 1.0_rk
          by_pressure = 0.0_rk
          by_jump = 0.0_rk
@@ -283,10 +283,10 @@ contains
          opening = weight(1)*eq%opening(x, cells(1)) + weight(2)*eq%opening(x, cells(2))
          call conducting_aperture(eq%cells%residual_aperture(cell), eq%cells%roughness(cell), &
                                   opening, aperture, slope)
-         resistance = 12.0_rk*eq%settings%viscosity*length/aperture**3*eq%unit/eq%dt
+         resistance = 12.0_rk*eq%paths%settings%viscosity*length/aperture**3*eq%unit/eq%dt
          by_pressure = [1.0_rk, -fluid%pressure_slope]
          by_jump = -1.5_rk*resistance*x(row)/aperture*slope*weight/eq%stiffness
-         ends_in_joint = .not. eq%joints%is_outlet(eq%joints%joint(b))
+         ends_in_joint = .not. eq%paths%joints%is_outlet(eq%paths%joints%joint(b))
          eq%residual(row) = x(joint) - fluid%pressure + resistance*x(row)
          eq%residual(at) = eq%residual(at) + x(row)
          if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
@@ -315,8 +315,8 @@ contains
       real(rk), intent(out) :: weight(2)  !< [-]
       real(rk) :: reach(2)
 
-      cells = eq%joints%cell(b)
-      if (eq%joints%beyond(b) > 0) cells(2) = eq%joints%beyond(b)
+      cells = eq%paths%joints%cell(b)
+      if (eq%paths%joints%beyond(b) > 0) cells(2) = eq%paths%joints%beyond(b)
       reach = eq%cells%share(cells)*eq%condensed%length(cells)
       length = 0.5_rk*reach(1)
       weight = reach(2:1:-1)/(sum(reach)*eq%cells%share(cells))

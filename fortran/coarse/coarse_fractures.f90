@@ -63,14 +63,11 @@ module coarse_fractures
    type, abstract, extends(contact_system_t) :: fracture_system_t
       type(condensed_t), pointer :: condensed => null()
       type(fracture_cells_t), pointer :: cells => null()
-      integer(ik), pointer :: connections(:, :) => null()  !< (2, m) cells that exchange fluid
-      type(joints_t), pointer :: joints => null()
-      type(wells_t), pointer :: wells => null()  !< whose flow is an unknown
+      type(flow_paths_t), pointer :: paths => null()  !< of this step
       !> Factors of the linear step where the condensed matrix is not formed
       type(sparse_step_t), pointer :: factors => null()
       real(rk), pointer :: g(:) => null()  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), pointer :: before => null()  !< at the last accepted time
-      type(newton_settings_t) :: settings
       type(fracture_layout_t) :: layout  !< of x
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk) :: stiffness = 0.0_rk  !< jumps are multiplied by it [Pa/m]
@@ -81,9 +78,6 @@ module coarse_fractures
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g [N/m], volumes [m2]
       logical :: has_failed = .false.  !< the condensed body could not answer
       type(slopes_t) :: slopes  !< derivatives of the residuals where last evaluated
-      integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
-      real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
-      logical, allocatable :: is_flow(:)  !< (unknowns of x)
       real(rk), allocatable :: start(:)  !< unknowns where the step starts [Pa]
       type(kinds_t) :: kinds  !< which of them may leave the full matrix
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
@@ -141,12 +135,9 @@ contains
       reference = sum(problem%condensed%length)/real(n, rk)
       eq%condensed => problem%condensed
       eq%cells => problem%cells
-      eq%connections => paths%connections
-      eq%joints => paths%joints
-      eq%wells => paths%wells
+      eq%paths => paths
       eq%g => g
       eq%before => before
-      eq%settings = paths%settings
       eq%layout = fracture_layout(n, size(paths%connections, 2, kind=ik), &
                                   paths%joints%branch_count(), paths%wells%n, paths%joints%n)
       eq%dt = dt
@@ -172,19 +163,20 @@ contains
       class(fracture_system_t), intent(inout) :: eq
       integer(ik) :: at, i, k
 
-      allocate (eq%x_of_q(eq%condensed%layout%count()))
-      allocate (eq%q_per_x(eq%condensed%layout%count()), source=1.0_rk)
-      do i = 1, eq%condensed%n
-         do k = 1, 2
-            at = eq%condensed%layout%at_jump(i, k)
-            eq%x_of_q(at:at + 1) = eq%layout%at_jump(i, k) + [0_ik, 1_ik]
-            eq%q_per_x(at:at + 1) = 1.0_rk/eq%stiffness
-            eq%x_of_q(eq%condensed%layout%at_face_pressure(i, k)) = &
-               eq%layout%at_face_pressure(i, k)
+      associate (of_q => eq%condensed%layout, of_x => eq%layout, slopes => eq%slopes)
+         allocate (slopes%x_of_q(of_q%count()))
+         allocate (slopes%q_per_x(of_q%count()), source=1.0_rk)
+         do i = 1, eq%condensed%n
+            do k = 1, 2
+               at = of_q%at_jump(i, k)
+               slopes%x_of_q(at:at + 1) = of_x%at_jump(i, k) + [0_ik, 1_ik]
+               slopes%q_per_x(at:at + 1) = 1.0_rk/eq%stiffness
+               slopes%x_of_q(of_q%at_face_pressure(i, k)) = of_x%at_face_pressure(i, k)
+            end do
          end do
-      end do
-      allocate (eq%is_flow(eq%layout%count()), source=.false.)
-      eq%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_well(eq%layout%n_wells)) = .true.
+      end associate
+      allocate (eq%kinds%is_flow(eq%layout%count()), source=.false.)
+      eq%kinds%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_well(eq%layout%n_wells)) = .true.
       call find_kinds(eq)
    end subroutine link_unknowns
 
@@ -200,7 +192,7 @@ contains
          kinds%fluid = layout%at_pressure([(i, i=1, n)])
          flow_to = 0
          do k = 1, layout%n_flows
-            flow_to(maxval(eq%connections(:, k))) = k
+            flow_to(maxval(eq%paths%connections(:, k))) = k
          end do
          kinds%flow = layout%at_flow(pack(flow_to(n:1:-1), flow_to(n:1:-1) > 0))
          kinds%end_of_flow = layout%at_pressure(pack([(i, i=n, 1, -1)], flow_to(n:1:-1) > 0))
@@ -226,9 +218,9 @@ contains
             associate (at => condensed%layout%at_face_pressure(cells, side))
                if (.not. condensed%is_full) then
                   slopes(side, :) = condensed%coupling%diagonal(at)
-                  if (eq%settings%equilibrate) cycle
+                  if (eq%paths%settings%equilibrate) cycle
                   cells = pack(cells, is_beyond(eq%cells%leak_resistance, &
-                                                eq%settings%mobility*eq%dt, slopes(side, :)))
+                                                eq%paths%settings%mobility*eq%dt, slopes(side, :)))
                end if
             end associate
             allocate (slope(size(cells)))
@@ -275,7 +267,7 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       type(error_t), allocatable :: error
 
-      self%q = x(self%x_of_q)*self%q_per_x
+      self%q = x(self%slopes%x_of_q)*self%slopes%q_per_x
       call self%condensed%find_forces(self%q, self%force, error)
       self%has_failed = self%has_failed .or. allocated(error)
       self%force = self%force - self%g
@@ -289,12 +281,11 @@ contains
       type(step_quality_t), intent(out) :: quality
 
       if (self%condensed%is_full) then
-         call find_full_step(self%condensed%stiffness, self%slopes, self%kinds, self%x_of_q, &
-                             self%q_per_x, self%is_flow, self%residual, self%stress_scale, &
-                             with_condition, step, quality)
+         call find_full_step(self%condensed%stiffness, self%slopes, self%kinds, self%residual, &
+                             self%stress_scale, with_condition, step, quality)
       else
-         call self%factors%find_step(self%condensed, self%slopes, self%x_of_q, self%q_per_x, &
-                                     self%is_flow, self%residual, self%stress_scale, step, quality)
+         call self%factors%find_step(self%condensed, self%slopes, self%kinds%is_flow, &
+                                     self%residual, self%stress_scale, step, quality)
       end if
    end subroutine find_step
 
@@ -317,8 +308,8 @@ contains
          do m = 1, size(slopes%force, 1)
             if (slopes%force(m, row) == 0) cycle
             if (condensed%is_full) then
-               slope(self%x_of_q) = slope(self%x_of_q) + slopes%weight(m, row)*self%q_per_x &
-                                    *condensed%stiffness(:, slopes%force(m, row))
+               slope(slopes%x_of_q) = slope(slopes%x_of_q) + slopes%weight(m, row) &
+                                      *slopes%q_per_x*condensed%stiffness(:, slopes%force(m, row))
             else
                total = total + abs(slopes%weight(m, row)) &
                        *condensed%coupling%sizes(condensed%rock, self%q, slopes%force(m, row))
@@ -335,7 +326,7 @@ contains
       real(rk) :: balance, fluid
       integer(ik) :: at(2), i
 
-      if (self%settings%equilibrate) then
+      if (self%paths%settings%equilibrate) then
          is_balanced = .true.
          return
       end if
@@ -347,15 +338,15 @@ contains
          fluid = fluid + self%condensed%length(i)*self%before%aperture(i) &
                  + self%dt*abs(self%cells%injection(i)) + sum(abs(self%force(at)))
       end do
-      do i = 1, self%joints%n
+      do i = 1, self%paths%joints%n
          ! At an outlet, and where all branches are shut, the equation is not a balance.
-         if (self%joints%is_outlet(i)) cycle
-         if (all(self%joints%is_shut(self%joints%branches%of(i)))) cycle
+         if (self%paths%joints%is_outlet(i)) cycle
+         if (all(self%paths%joints%is_shut(self%paths%joints%branches%of(i)))) cycle
          balance = balance + self%residual(self%layout%at_joint(i))*self%unit
-         fluid = fluid + self%dt*abs(self%joints%injection(i))
+         fluid = fluid + self%dt*abs(self%paths%joints%injection(i))
       end do
-      do i = 1, self%wells%n
-         fluid = fluid + abs(self%wells%rate(i))*self%dt
+      do i = 1, self%paths%wells%n
+         fluid = fluid + abs(self%paths%wells%rate(i))*self%dt
       end do
       is_balanced = abs(balance) <= least*fluid
    end function is_balanced
@@ -444,7 +435,7 @@ contains
       associate (lowest => self%lowest(cell))
          fluid%pressure = x(self%layout%at_pressure(cell))
          if (.not. fluid%pressure < lowest) return
-         if (.not. self%settings%equilibrate) then
+         if (.not. self%paths%settings%equilibrate) then
             fluid%void_slope = -1.0_rk/self%stiffness
             fluid%void = (fluid%pressure - lowest)*fluid%void_slope
          end if

@@ -33,7 +33,7 @@ module coarse_matrix
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
-   use coarse_diffusion, only: find_flux_stencil
+   use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
    use coarse_in_situ, only: in_situ_state_t
@@ -178,6 +178,7 @@ contains
       type(stencil_t), intent(out) :: stencil(:)
       type(in_situ_state_t), intent(in), optional :: in_situ
       type(local_system_t) :: local
+      real(rk), allocatable :: doubled(:)
       real(rk) :: given(size(sides))  ! [Pa] or [m/s]
       integer(ik) :: i
 
@@ -185,12 +186,13 @@ contains
       do i = 1, size(stencil, kind=ik)
          associate (r => first + i - 1, elastic => stencil(i)%elastic, flow => stencil(i)%flow, &
                     info => stencil(i)%info)
-            call find_stress_stencil(mesh, rock, sides, regions, r, local, regions%traction(r), &
-                                     elastic, info, in_situ)
-            if (info == 0) then
-               call find_flux_stencil(mesh, rock%resistivity, sides%pressure_given, given, &
-                                      regions, r, local, regions%flux(r), flow, info)
-            end if
+            call set_stress_equations(mesh, rock, sides, regions, r, local, doubled, in_situ)
+            call eliminate(local, regions%traction(r), elastic, info)
+            if (info /= 0) cycle
+            call divide_rotations(doubled, regions%traction(r))
+            call set_flux_equations(mesh, rock%resistivity, sides%pressure_given, given, regions, &
+                                    r, local)
+            call eliminate(local, regions%flux(r), flow, info)
          end associate
       end do
    end subroutine find_stencils
@@ -292,24 +294,19 @@ contains
       end do
    end subroutine add_known
 
-   !> Eliminate the tractions and the rotations of one region.
-   !!
-   !! `info` is 0, or the local system could not be solved (degenerate cells).
-   pure subroutine find_stress_stencil(mesh, rock, sides, regions, region, local, response, share, &
-                                       info, in_situ)
+   !> The equations of the tractions and the rotations of one region.
+   pure subroutine set_stress_equations(mesh, rock, sides, regions, region, local, doubled, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local  !< memory to work in
-      type(response_t), intent(out) :: response  !< tractions x, y [Pa], then rotations [-]
-      type(share_t), intent(out) :: share  !< forces [N/m] and contents [m2]
-      integer(ik), intent(out) :: info
+      type(local_system_t), intent(inout) :: local
+      real(rk), allocatable, intent(out) :: doubled(:)  !< factor of each rotation
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      real(rk) :: doubled(regions%nodes%length(region))
-      integer(ik) :: k, m, n, n_tractions
+      integer(ik) :: m, n, n_tractions
 
+      allocate (doubled(regions%nodes%length(region)))
       n_tractions = 2*regions%faces%length(region)
       n = n_tractions + regions%nodes%length(region)
       m = 3*regions%blocks%length(region)
@@ -319,14 +316,21 @@ contains
       local%equations(n + 1:n + m, :n) = -local%coupling(:m, :n)
       call apply_sides(mesh, sides, regions, region, local, in_situ)
       if (regions%has_interface(region)) call leave_out_repeated(n_tractions, local)
-      call eliminate(local, response, share, info)
-      if (info /= 0) return
+   end subroutine set_stress_equations
+
+   !> Take the factors of the rotations off the response of one region.
+   pure subroutine divide_rotations(doubled, response)
+      real(rk), intent(in) :: doubled(:)
+      type(response_t), intent(inout) :: response  !< tractions x, y [Pa], then rotations [-]
+      integer(ik) :: k, n_tractions
+
+      n_tractions = size(response%matrix, 2, kind=ik) - size(doubled, kind=ik)
       do k = 1, size(doubled, kind=ik)
          associate (rotation => response%matrix(:, n_tractions + k))
             rotation = rotation/doubled(k)
          end associate
       end do
-   end subroutine find_stress_stencil
+   end subroutine divide_rotations
 
    !> What the cells' corners around the vertex give.
    pure subroutine add_corners(mesh, rock, regions, region, local, doubled)

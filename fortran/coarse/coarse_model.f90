@@ -334,6 +334,70 @@ contains
       end do
    end subroutine add_at
 
+   !> What supports the faces of the fractures: springs at tips, dampers.
+   subroutine support_faces(self, mesh, settings, dt)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(newton_settings_t), intent(in) :: settings  !< of the step
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), allocatable :: spring(:)
+
+      spring = tip_springs(self%ends, self%rock, mesh, self%condensed)
+      if (is_damped(settings)) then
+         spring = spring + dampers(self%condensed, self%settings%damping/dt)
+      end if
+      call self%condensed%support(spring)
+      call place_tips(self%ends, self%condensed%length, self%cells)
+      if (allocated(self%rock_resistance)) then
+         self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
+      end if
+   end subroutine support_faces
+
+   !> Loads, sources and the fluid that is there.
+   subroutine find_load(self, mesh, wells, dt, content, load, fluid)
+      class(coarse_model_t), intent(in) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(wells_t), intent(in) :: wells  !< of the step
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: content(:)  !< (cells) of fluid before the step [m2]
+      real(rk), allocatable, intent(out) :: load(:, :)  !< (3, n_blocks) [N/m], [m2]
+      real(rk), allocatable, intent(out) :: fluid(:)  !< (cells) injected, if any [m2/s]
+
+      load = self%matrix%elastic_known
+      load(3, :) = load(3, :) + dt*self%matrix%flow_known
+      load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - content
+      if (allocated(self%source)) then
+         fluid = self%source(3, :)
+         if (wells%n_all > wells%n) then
+            call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
+         end if
+         load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%source(:2, :)
+         load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - dt*fluid
+      end if
+      if (allocated(self%weight)) then
+         load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%weight
+      end if
+   end subroutine find_load
+
+   !> Add what dampers and a stress in situ load the faces with.
+   subroutine add_face_loads(self, mesh, settings, dt, jump, load)
+      class(coarse_model_t), intent(in) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(newton_settings_t), intent(in) :: settings  !< of the step
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: jump(:, :, :)  !< (2, 2, fracture cells) before the step [m]
+      real(rk), intent(inout) :: load(:)  !< on the condensed system [N/m], [m2]
+
+      if (mesh%fracture%n_cells > 0 .and. is_damped(settings)) then
+         load = load + dampers(self%condensed, self%settings%damping/dt) &
+             *jumps_of(self%condensed, jump)
+      end if
+      if (allocated(self%in_situ)) then
+         call self%in_situ%add_contact_tractions(mesh%fracture, self%condensed%length, &
+                                                 self%condensed%normal, self%condensed%layout, load)
+      end if
+   end subroutine add_face_loads
+
    !> The step with sources and matrix as they are.
    subroutine solve_step(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
@@ -344,7 +408,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: fluid(:), rhs(:, :), g(:), q(:), spring(:)
+      real(rk), allocatable :: fluid(:), rhs(:, :), g(:), q(:)
       type(state_t) :: before
       integer(ik) :: n
 
@@ -355,46 +419,16 @@ contains
          call timers%stop(phase_factorize)
          if (allocated(error)) return
       end if
-      if (n > 0) then
-         spring = tip_springs(self%ends, self%rock, mesh, self%condensed)
-         if (is_damped(paths%settings)) then
-            spring = spring + dampers(self%condensed, self%settings%damping/dt)
-         end if
-         call self%condensed%support(spring)
-         call place_tips(self%ends, self%condensed%length, self%cells)
-         if (allocated(self%rock_resistance)) then
-            self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
-         end if
-      end if
+      if (n > 0) call support_faces(self, mesh, paths%settings, dt)
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
-      rhs = self%matrix%elastic_known
-      rhs(3, :) = rhs(3, :) + dt*self%matrix%flow_known
-      rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - state%content
-      if (allocated(self%source)) then
-         fluid = self%source(3, :)
-         if (paths%wells%n_all > paths%wells%n) then
-            call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
-         end if
-         rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%source(:2, :)
-         rhs(3, :mesh%n_cells) = rhs(3, :mesh%n_cells) - dt*fluid
-      end if
-      if (allocated(self%weight)) then
-         rhs(:2, :mesh%n_cells) = rhs(:2, :mesh%n_cells) + self%weight
-      end if
+      call find_load(self, mesh, paths%wells, dt, state%content, rhs, fluid)
       call timers%stop(phase_assemble)
       call timers%start(phase_solve)
       call self%condensed%condense(rhs, g, error)
       call timers%stop(phase_solve)
       if (allocated(error)) return
-      if (n > 0 .and. is_damped(paths%settings)) then
-         g = g + dampers(self%condensed, self%settings%damping/dt) &
-             *jumps_of(self%condensed, state%jump)
-      end if
-      if (allocated(self%in_situ)) then
-         call self%in_situ%add_contact_tractions(mesh%fracture, self%condensed%length, &
-                                                 self%condensed%normal, self%condensed%layout, g)
-      end if
+      call add_face_loads(self, mesh, paths%settings, dt, state%jump, g)
 
       before = state
       report%converged = .true.

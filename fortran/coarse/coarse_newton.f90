@@ -6,7 +6,6 @@
 module coarse_newton
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
-   use coarse_condensed, only: condensed_t
    use coarse_fluid_law, only: add_fluid_law
    use coarse_fracture_flow, only: fill_balance, fill_branch, fill_equilibrium, fill_exchange, &
                                    fill_flow, fill_joint
@@ -14,9 +13,9 @@ module coarse_newton
                                prepare
    use coarse_joints, only: flows_in_loops, unknown_flow
    use coarse_pivoting, only: pivot_fractures
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_state, only: state_t, step_report_t
    use coarse_well_flow, only: fill_well, find_well
-   use contact_law, only: contact_equations, contact_residual
+   use contact_law, only: contact_equations, contact_equations_t, contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged, &
                              outcome_not_a_number, outcome_singular
    implicit none(type, external)
@@ -50,9 +49,7 @@ contains
       type(iteration_settings_t) :: how
       real(rk), allocatable :: start(:), x(:)
       integer(ik) :: spent
-      logical :: equilibrate
 
-      equilibrate = paths%settings%equilibrate
       call prepare(problem, paths, dt, g, state, eq)
       eq%factors => problem%factors
       how = iteration_settings_t(tolerance=paths%settings%tolerance, &
@@ -62,7 +59,8 @@ contains
       x = start
       eq%start = start
       spent = 0
-      if (state%guess%is_known(size(start, kind=ik)) .and. .not. equilibrate) then
+      if (state%guess%is_known(size(start, kind=ik)) .and. &
+          .not. paths%settings%equilibrate) then
          x = state%guess%from(start, dt)
          how%perseveres = .false.
          call iterate(eq, x, how, found)
@@ -76,7 +74,7 @@ contains
       end if
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
       found%iterations = found%iterations + spent
-      if (found%outcome == outcome_converged .and. .not. equilibrate) then
+      if (found%outcome == outcome_converged .and. .not. paths%settings%equilibrate) then
          call state%guess%remember(dt, start, x)
       end if
       q = eq%q
@@ -96,7 +94,7 @@ contains
          report%reason = "the iteration on contact and flow of the fractures did not converge"
          report%cell = worst_cell(eq, x)
       end select
-      if (report%converged) call accept(problem%condensed, problem%cells, dt, eq, x, state, report)
+      if (report%converged) call accept(eq, x, state, report)
    end subroutine solve_fractures
 
    !> The cell whose equations are missed most at x; 0: none is known.
@@ -143,53 +141,86 @@ contains
          x(eq%layout%at_well(i)) = state%well_flow(i)*eq%dt/eq%unit
       end do
       do i = 1, eq%layout%n_joints
-         x(eq%layout%at_joint(i)) = eq%joints%mean_pressure(i, state%pressure)
+         x(eq%layout%at_joint(i)) = eq%paths%joints%mean_pressure(i, state%pressure)
       end do
    end subroutine find_start
 
    !> Check the solution against the law itself and make it the state.
-   subroutine accept(condensed, cells, dt, eq, x, state, report)
-      type(condensed_t), intent(in) :: condensed
-      type(fracture_cells_t), intent(in) :: cells
-      real(rk), intent(in) :: dt  !< [s]
+   subroutine accept(eq, x, state, report)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(inout) :: report
-      type(cell_fluid_t) :: fluid(condensed%n)
-      real(rk) :: aperture(condensed%n), head, residual
+      type(cell_fluid_t) :: fluid(eq%layout%n_cells)
+      real(rk) :: aperture(eq%layout%n_cells), head
+      integer(ik) :: i
+
+      call check_fluid(eq, x, aperture, fluid, report)
+      if (report%converged) call check_contact(eq, state, report)
+      if (.not. report%converged) return
+      call keep_contact(eq, state)
+      associate (at => eq%condensed%layout, length => eq%condensed%length)
+         do i = 1, eq%layout%n_cells
+            state%leakoff(i) = -(eq%force(at%at_face_pressure(i, 1)) &
+                                 + eq%force(at%at_face_pressure(i, 2)))/(eq%dt*length(i))
+         end do
+      end associate
+      state%aperture = aperture
+      state%pressure = fluid%pressure
+      state%void = fluid%void
+      report%loop_flow_error = loop_flow_error(eq, x, aperture, report)
+      associate (layout => eq%layout, to_flow => eq%unit/eq%dt)
+         state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
+         state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
+         do i = 1, layout%n_wells
+            call find_well(i, x, eq, state%well_flow(i), head, state%well_rate(i))
+            state%well_head(i) = head
+         end do
+         state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
+      end associate
+   end subroutine accept
+
+   !> Faces are apart everywhere, and no more fluid is drawn than there is.
+   subroutine check_fluid(eq, x, aperture, fluid, report)
+      type(equations_t), intent(in) :: eq
+      real(rk), intent(in) :: x(:)  !< the solution [Pa]
+      real(rk), intent(out) :: aperture(:)  !< (cells) [m]
+      type(cell_fluid_t), intent(out) :: fluid(:)  !< (cells)
+      type(step_report_t), intent(inout) :: report
+      integer(ik) :: i
+
+      associate (cells => eq%cells, at => eq%condensed%layout)
+         do i = 1, eq%layout%n_cells
+            aperture(i) = cells%residual_aperture(i) &
+                          + 0.5_rk*(eq%q(at%at_jump(i, 1)) + eq%q(at%at_jump(i, 2)))
+            fluid(i) = eq%fluid_at(x, i)
+         end do
+         if (.not. all(aperture > 0.0_rk)) then
+            report%reason = "a fracture cell has an aperture that is not positive"
+            report%cell = minloc(aperture, dim=1, kind=ik)
+         else if (any(fluid%void > aperture - cells%roughness)) then
+            report%reason = "more fluid is extracted from a fracture cell than it contains"
+            report%cell = maxloc(fluid%void - aperture + cells%roughness, dim=1, kind=ik)
+            report%is_drained = .true.
+         else if (is_overdrawn(eq, x)) then
+            report%reason = "more fluid is extracted from an intersection than flows into it"
+         end if
+      end associate
+      report%converged = .not. allocated(report%reason)
+   end subroutine check_fluid
+
+   !> The law of contact is fulfilled.
+   subroutine check_contact(eq, state, report)
+      type(equations_t), intent(in) :: eq
+      type(state_t), intent(in) :: state  !< before the step
+      type(step_report_t), intent(inout) :: report
+      real(rk) :: residual
       integer(ik) :: at, end, i, worst
 
       worst = 0
-      do i = 1, condensed%n
-         aperture(i) = cells%residual_aperture(i) &
-                       + 0.5_rk*(eq%q(condensed%layout%at_jump(i, 1)) &
-                                 + eq%q(condensed%layout%at_jump(i, 2)))
-      end do
-      if (.not. all(aperture > 0.0_rk)) then
-         report%converged = .false.
-         report%reason = "a fracture cell has an aperture that is not positive"
-         report%cell = minloc(aperture, dim=1, kind=ik)
-         return
-      end if
-      do i = 1, condensed%n
-         fluid(i) = eq%fluid_at(x, i)
-      end do
-      if (any(fluid%void > aperture - cells%roughness)) then
-         report%converged = .false.
-         report%reason = "more fluid is extracted from a fracture cell than it contains"
-         report%cell = maxloc(fluid%void - aperture + cells%roughness, dim=1, kind=ik)
-         report%is_drained = .true.
-         return
-      end if
-      if (is_overdrawn(eq, x)) then
-         report%converged = .false.
-         report%reason = "more fluid is extracted from an intersection than flows into it"
-         return
-      end if
-      do i = 1, condensed%n
+      do i = 1, eq%layout%n_cells
          do end = 1, 2
-            at = condensed%layout%at_jump(i, end)
+            at = eq%condensed%layout%at_jump(i, end)
             residual = contact_residual(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
                                         eq%q(at:at + 1), state%jump(2, end, i))
             if (residual > report%contact_residual*report%stress_scale) worst = i
@@ -200,47 +231,38 @@ contains
          report%converged = .false.
          report%reason = "the contact law is violated in a fracture cell"
          report%cell = worst
-         return
       end if
+   end subroutine check_contact
+
+   !> Jumps, tractions, contact and what the faces have been through.
+   subroutine keep_contact(eq, state)
+      type(equations_t), intent(in) :: eq
+      type(state_t), intent(inout) :: state
+      integer(ik) :: at, end, i
+
       state%slip_before = state%jump(2, :, :)
-      do i = 1, condensed%n
+      do i = 1, eq%layout%n_cells
          do end = 1, 2
-            at = condensed%layout%at_jump(i, end)
+            at = eq%condensed%layout%at_jump(i, end)
             ! What elimination leaves of jumps that are none is no opening, and no slip.
             state%jump(:, end, i) = merge(0.0_rk, eq%q(at:at + 1), abs(eq%q(at:at + 1)) &
                                           < epsilon(1.0_rk)*eq%stress_scale/eq%stiffness)
          end do
-         state%leakoff(i) = -(eq%force(condensed%layout%at_face_pressure(i, 1)) &
-                              + eq%force(condensed%layout%at_face_pressure(i, 2))) &
-                            /(dt*condensed%length(i))
       end do
       if (allocated(state%slip_path)) then
          state%slip_path = state%slip_path + abs(state%jump(2, :, :) - state%slip_before)
          state%opened_before = state%opened
-         do i = 1, condensed%n
+         do i = 1, eq%layout%n_cells
             do end = 1, 2
                state%opened(end, i) = max(state%opened(end, i), &
-                                          cells%law(i)%apart(eq%traction(:, end, i), &
-                                                             state%jump(:, end, i)))
+                                          eq%cells%law(i)%apart(eq%traction(:, end, i), &
+                                                                state%jump(:, end, i)))
             end do
          end do
       end if
       state%traction = eq%traction
-      state%aperture = aperture
-      state%pressure = fluid%pressure
-      state%void = fluid%void
       state%contact = reshape(eq%state, shape(state%contact))
-      report%loop_flow_error = loop_flow_error(eq, x, aperture, report)
-      associate (layout => eq%layout, to_flow => eq%unit/dt)
-         state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
-         state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
-         do i = 1, layout%n_wells
-            call find_well(i, x, eq, state%well_flow(i), head, state%well_rate(i))
-            state%well_head(i) = head
-         end do
-         state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
-      end associate
-   end subroutine accept
+   end subroutine keep_contact
 
    !> How little is known of flows round loops, over the largest flow, or one that exchanges the
    !! fluid of a cell in the step [-].
@@ -253,14 +275,14 @@ contains
       real(rk) :: largest, unsolved
 
       error = 0.0_rk
-      if (eq%settings%equilibrate .or. eq%layout%n_joints == 0) return
+      if (eq%paths%settings%equilibrate .or. eq%layout%n_joints == 0) return
       if (.not. report%condition > 0.0_rk) return
-      associate (flow => pack(x, eq%is_flow), at_first => eq%layout%at_flow(1_ik))
+      associate (flow => pack(x, eq%kinds%is_flow), at_first => eq%layout%at_flow(1_ik))
          largest = max(maxval(abs(flow)), maxval(aperture*eq%condensed%length)/eq%unit)
          unsolved = report%error_bound/report%condition*report%stress_scale
-         error = unknown_flow(eq%slopes, at_first, flows_in_loops(eq%layout%n_cells, &
-                                                                  eq%connections, eq%joints), &
-                              unsolved)/largest
+         error = unknown_flow(eq%slopes, at_first, &
+                              flows_in_loops(eq%layout%n_cells, eq%paths%connections, &
+                                             eq%paths%joints), unsolved)/largest
       end associate
    end function loop_flow_error
 
@@ -273,13 +295,15 @@ contains
       integer(ik) :: j
 
       is_overdrawn = .false.
-      lowest = eq%settings%vapour_pressure
-      if (allocated(eq%joints%pressure_in_situ)) lowest = lowest - eq%joints%pressure_in_situ
-      do j = 1, eq%layout%n_joints
-         if (eq%joints%is_outlet(j)) cycle
-         is_overdrawn = is_overdrawn .or. x(eq%layout%at_joint(j)) &
-                        < lowest(j) - contact_residual_max*eq%stress_scale
-      end do
+      lowest = eq%paths%settings%vapour_pressure
+      associate (joints => eq%paths%joints)
+         if (allocated(joints%pressure_in_situ)) lowest = lowest - joints%pressure_in_situ
+         do j = 1, eq%layout%n_joints
+            if (joints%is_outlet(j)) cycle
+            is_overdrawn = is_overdrawn .or. x(eq%layout%at_joint(j)) &
+                           < lowest(j) - contact_residual_max*eq%stress_scale
+         end do
+      end associate
    end function is_overdrawn
 
    !> Residuals [Pa] and their derivatives at x.
@@ -296,7 +320,7 @@ contains
          do end = 1, 2
             call fill_contact(i, end, x, self)
          end do
-         if (self%settings%equilibrate) then
+         if (self%paths%settings%equilibrate) then
             call fill_equilibrium(i, x, self)
          else
             call fill_exchange(i, x, self)
@@ -316,8 +340,8 @@ contains
       do k = 1, self%layout%n_wells
          call fill_well(k, x, self)
       end do
-      if (allocated(self%settings%fluid_law) .and. .not. self%settings%equilibrate) then
-         call add_fluid_law(x, self%settings%fluid_law, self)
+      if (allocated(self%paths%settings%fluid_law) .and. .not. self%paths%settings%equilibrate) then
+         call add_fluid_law(x, self%paths%settings%fluid_law, self)
       end if
       self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
       if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
@@ -341,7 +365,8 @@ contains
       integer(ik), intent(in) :: end  !< 1 start, 2 end
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(equations_t), intent(inout) :: eq
-      real(rk) :: by_traction(2, 2), by_jump(2, 2), half_length
+      real(rk) :: half_length
+      type(contact_equations_t) :: found
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, k, m, point, row
 
@@ -352,21 +377,22 @@ contains
       point = 2*(i - 1) + end
       eq%traction(:, end, i) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
       call contact_equations(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
-                             eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), &
-                             eq%state(point), eq%residual(row:row + 1), by_traction, by_jump)
+                             eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), found)
+      eq%state(point) = found%state
       if (eq%is_without_contact) then
-         eq%residual(row:row + 1) = eq%traction(:, end, i)
-         by_traction = reshape([1.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [2, 2])
-         by_jump = 0.0_rk
+         found%residual = eq%traction(:, end, i)
+         found%by_traction = reshape([1.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [2, 2])
+         found%by_jump = 0.0_rk
       end if
+      eq%residual(row:row + 1) = found%residual
       do k = 1, 2
          associate (slopes => eq%slopes, equation => row + k - 1)
             do m = 1, 2
-               call slopes%add_force(equation, at + m - 1, -by_traction(k, m)/half_length)
-               call slopes%add(equation, row + m - 1, by_jump(k, m)/eq%stiffness)
+               call slopes%add_force(equation, at + m - 1, -found%by_traction(k, m)/half_length)
+               call slopes%add(equation, row + m - 1, found%by_jump(k, m)/eq%stiffness)
             end do
             call slopes%add(equation, eq%layout%at_pressure(i), &
-                            by_traction(k, 1)*fluid%pressure_slope)
+                            found%by_traction(k, 1)*fluid%pressure_slope)
          end associate
       end do
    end subroutine fill_contact

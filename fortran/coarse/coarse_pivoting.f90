@@ -18,7 +18,7 @@ module coarse_pivoting
    use contact_law, only: contact_law_t
    use contact_newton, only: iterate_from, iteration_report_t, iteration_settings_t, &
                              outcome_converged
-   use contact_pivoting, only: pivot_to_solution
+   use contact_pivoting, only: pivot_to_solution, slips_t
    implicit none(type, external)
    private
 
@@ -45,7 +45,7 @@ contains
       integer(ik) :: fluid(eq%layout%n_cells), i
       type(condensed_jumps_t) :: body
 
-      has_start = eq%settings%equilibrate
+      has_start = eq%paths%settings%equilibrate
       if (.not. has_start) return
       fluid = eq%layout%at_pressure([(i, i=1, eq%layout%n_cells)])
       eq%held_pressure = x(fluid)
@@ -74,8 +74,8 @@ contains
       real(rk) :: reached, step, trial(size(x))
       integer(ik) :: k
 
-      how = iteration_settings_t(tolerance=eq%settings%tolerance, allows_rounding=.true., &
-                                 iterations_max=eq%settings%iterations_max)
+      how = iteration_settings_t(tolerance=eq%paths%settings%tolerance, allows_rounding=.true., &
+                                 iterations_max=eq%paths%settings%iterations_max)
       call iterate_from(eq, x, how, report)
       has_start = report%outcome == outcome_converged
       reached = 0.0_rk
@@ -118,7 +118,7 @@ contains
       eq%is_without_contact = .true.
       call eq%evaluate(x)
       eq%is_without_contact = .false.
-      call full_slopes(eq%condensed%stiffness, eq%slopes, eq%x_of_q, eq%q_per_x, jacobian)
+      call full_slopes(eq%condensed%stiffness, eq%slopes, jacobian)
       body%jumps = [(((eq%layout%at_jump(i, end) + k, k=0, 1), end=1, 2), i=1, eq%layout%n_cells)]
       is_other = .true.
       is_other(body%jumps) = .false.
@@ -164,9 +164,9 @@ contains
          load(i) = share((i + 1)/2)*load(i)
       end do
       call pivot_to_solution(stiffness, load, law, eq%stiffness*law%compliance/share, &
-                             spread(.false., 1, n), &
-                             eq%stiffness*reshape(eq%before%jump(2, :, :), [n]), &
-                             spread(0.0_rk, 1, n), found, is_solved)
+                             slips_t(spread(.false., 1, n), &
+                                     eq%stiffness*reshape(eq%before%jump(2, :, :), [n]), &
+                                     spread(0.0_rk, 1, n)), found, is_solved)
       if (.not. is_solved) return
       x(body%others) = x(body%others) + matmul(body%response(:, :2*n), found - x(body%jumps)) &
                        + body%response(:, 2*n + 1)

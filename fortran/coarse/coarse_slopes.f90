@@ -2,8 +2,8 @@
 !! unknowns of its neighbours, and at most two of the forces or volumes with which the condensed
 !! body responds, which depend on all jumps and face pressures:
 !!   d residual_k = sum_j local_kj dx_j + sum_m weight_km d force_m
-!! They are stored as short lists, for a full matrix (coarse_full_step) or rows of a sparse one
-!! (coarse_sparse_step).
+!! with force_m a function of q = q_per_x x(x_of_q). They are stored as short lists, for a full
+!! matrix (coarse_full_step) or rows of a sparse one (coarse_sparse_step).
 module coarse_slopes
    use base_kinds, only: ik, rk
    implicit none(type, external)
@@ -21,11 +21,16 @@ module coarse_slopes
       integer(ik), allocatable :: force(:, :)  !< (2, n) numbers in q; 0: none
       !> (2, n) [1/m] of a force, [Pa/m2] of a volume
       real(rk), allocatable :: weight(:, :)
+      integer(ik), allocatable :: x_of_q(:)  !< (6 n) the number of each unknown of q in x
+      real(rk), allocatable :: q_per_x(:)  !< (6 n) their units [m/Pa], [-]
+      integer(ik), allocatable :: first(:)  !< (n + 1) where those of each equation begin in
+      integer(ik), allocatable :: local(:)  !< the numbers of the local entries; see by_row
    contains
       procedure :: clear
       procedure :: add
       procedure :: add_force
       procedure :: by_row
+      procedure :: has_forces
    end type slopes_t
 
 contains
@@ -65,29 +70,36 @@ contains
       self%value(self%n_local) = value
    end subroutine add
 
-   !> The numbers of the local entries, equation by equation.
-   pure subroutine by_row(self, first, local)
-      class(slopes_t), intent(in) :: self
-      integer(ik), allocatable, intent(out) :: first(:)  !< (n + 1) where those of each begin
-      integer(ik), allocatable, intent(out) :: local(:)
+   !> Number the local entries equation by equation.
+   pure subroutine by_row(self)
+      class(slopes_t), intent(inout) :: self
       integer(ik) :: k, row
       integer(ik), allocatable :: next(:)
 
-      allocate (first(self%n + 1), source=0_ik)
+      if (allocated(self%first)) deallocate (self%first, self%local)
+      allocate (self%first(self%n + 1), source=0_ik)
       do k = 1, self%n_local
-         first(self%row(k) + 1) = first(self%row(k) + 1) + 1
+         self%first(self%row(k) + 1) = self%first(self%row(k) + 1) + 1
       end do
-      first(1) = 1
+      self%first(1) = 1
       do row = 1, self%n
-         first(row + 1) = first(row) + first(row + 1)
+         self%first(row + 1) = self%first(row) + self%first(row + 1)
       end do
-      next = first(:self%n)
-      allocate (local(self%n_local))
+      next = self%first(:self%n)
+      allocate (self%local(self%n_local))
       do k = 1, self%n_local
-         local(next(self%row(k))) = k
+         self%local(next(self%row(k))) = k
          next(self%row(k)) = next(self%row(k)) + 1
       end do
    end subroutine by_row
+
+   !> An equation holds a force or volume now.
+   pure logical function has_forces(self, row)
+      class(slopes_t), intent(in) :: self
+      integer(ik), intent(in) :: row  !< the equation
+
+      has_forces = any(abs(self%weight(:, row)) > 0.0_rk)
+   end function has_forces
 
    !> An equation holds a force or volume. Its place is kept with a weight of zero too: the pattern
    !! is to be the same in every state.

@@ -53,11 +53,9 @@ contains
    end subroutine apply_columns
 
    !> The equations of the cells as triplets, for scaled equations and unknowns.
-   subroutine assemble_rock(condensed, n_rows, x_of_q, q_per_x, col_scale, row, col, values)
+   subroutine assemble_rock(condensed, slopes, col_scale, row, col, values)
       type(condensed_t), intent(in) :: condensed
-      integer(ik), intent(in) :: n_rows  !< equations of the fractures
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
+      type(slopes_t), intent(in) :: slopes  !< of the equations of the fractures
       real(rk), allocatable, intent(out) :: col_scale(:)
       integer(ik), allocatable, intent(out) :: row(:), col(:)
       real(rk), allocatable, intent(out) :: values(:)
@@ -71,23 +69,26 @@ contains
           + count(condensed%coupling%col <= n_bulk)
       allocate (row(n), col(n), values(n))
       ! Pressures and flows of the fluid in the units of the rock's pressures at the fractures.
-      allocate (col_scale(n_bulk + n_rows), source=minval(condensed%factors%scale(n_bulk + 3 :: 3)))
-      col_scale(:n_bulk) = condensed%factors%scale(:n_bulk)
-      do q = 1, size(x_of_q)
-         col_scale(n_bulk + x_of_q(q)) = condensed%factors%scale(n_bulk + q)/q_per_x(q)
-      end do
+      associate (scale => condensed%factors%scale)
+         allocate (col_scale(n_bulk + slopes%n), source=minval(scale(n_bulk + 3 :: 3)))
+         col_scale(:n_bulk) = scale(:n_bulk)
+         col_scale(n_bulk + slopes%x_of_q) = scale(n_bulk + 1:n_bulk + size(slopes%x_of_q)) &
+                                             /slopes%q_per_x
+      end associate
       n = 0
       do k = 1, size(rock)
          call add(rock_row(k), rock_col(k), rock(k))
          if (rock_row(k) /= rock_col(k)) call add(rock_col(k), rock_row(k), rock(k))
       end do
       ! C'Q, for unknowns as they are: values so far are those of scaled ones.
-      do q = 1, size(x_of_q)
+      do q = 1, size(slopes%x_of_q)
          do k = condensed%coupling%first(q), condensed%coupling%first(q + 1) - 1
             at = condensed%coupling%col(k)
             if (at > n_bulk) cycle
-            call add(at, n_bulk + x_of_q(q), condensed%coupling%value(k)*q_per_x(q) &
-                     *col_scale(at)*col_scale(n_bulk + x_of_q(q)))
+            associate (unknown => n_bulk + slopes%x_of_q(q))
+               call add(at, unknown, condensed%coupling%value(k)*slopes%q_per_x(q)*col_scale(at) &
+                        *col_scale(unknown))
+            end associate
          end do
       end do
 
@@ -106,12 +107,9 @@ contains
    end subroutine assemble_rock
 
    !> Those of the fractures.
-   subroutine assemble_rows(condensed, slopes, x_of_q, q_per_x, col_scale, row_scale, row_factor, &
-                            row, col, values)
+   subroutine assemble_rows(condensed, slopes, col_scale, row_scale, row_factor, row, col, values)
       type(condensed_t), intent(in) :: condensed
       type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
       real(rk), intent(in) :: col_scale(:)
       real(rk), allocatable, intent(out) :: row_scale(:), row_factor(:)
       integer(ik), allocatable, intent(out) :: row(:), col(:)
@@ -119,14 +117,10 @@ contains
       integer(ik) :: k, m, n, n_bulk
 
       n_bulk = condensed%coupling%n_bulk
-      n = slopes%n_local
-      do k = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, k) > 0) n = n + entries_of(slopes%force(m, k)) + 1
-         end do
-      end do
-      allocate (row(n), col(n), values(n))
-      allocate (row_scale(slopes%n), row_factor(slopes%n), source=0.0_rk)
+      associate (force => pack(slopes%force, slopes%force > 0), first => condensed%coupling%first)
+         n = slopes%n_local + sum(first(force + 1) - first(force) + 1)
+      end associate
+      allocate (row(n), col(n), values(n), row_scale(slopes%n), row_factor(slopes%n))
       n = 0
       do k = 1, slopes%n_local
          call add(slopes%row(k), n_bulk + slopes%col(k), slopes%value(k))
@@ -136,30 +130,10 @@ contains
             if (slopes%force(m, k) > 0) call add_force(k, slopes%force(m, k), slopes%weight(m, k))
          end do
       end do
-      do k = 1, n
-         associate (i => row(k) - n_bulk)
-            row_factor(i) = max(row_factor(i), abs(values(k)))
-            if (col(k) <= n_bulk) cycle
-            row_scale(i) = max(row_scale(i), abs(values(k))/col_scale(col(k)))
-         end associate
-      end do
-      where (row_scale > 0.0_rk)
-         row_factor = 1.0_rk/row_factor
-      else where
-         row_scale = 1.0_rk
-         row_factor = 1.0_rk
-      end where
-      do k = 1, n
-         values(k) = values(k)*row_factor(row(k) - n_bulk)
-      end do
+      call scale_rows(row - n_bulk, col - n_bulk, col_scale(n_bulk + 1:), values, row_scale, &
+                      row_factor)
 
    contains
-
-      pure integer(ik) function entries_of(force)
-         integer(ik), intent(in) :: force
-
-         entries_of = condensed%coupling%first(force + 1) - condensed%coupling%first(force)
-      end function entries_of
 
       subroutine add(i, j, value)
          integer(ik), intent(in) :: i, j
@@ -177,7 +151,8 @@ contains
          real(rk), intent(in) :: weight
          integer(ik) :: entry, j
 
-         associate (coupling => condensed%coupling)
+         associate (coupling => condensed%coupling, x_of_q => slopes%x_of_q, &
+                    q_per_x => slopes%q_per_x)
             do entry = coupling%first(force), coupling%first(force + 1) - 1
                j = coupling%col(entry)
                if (j <= n_bulk) then
@@ -187,10 +162,36 @@ contains
                   call add(i, n_bulk + x_of_q(j), weight*coupling%value(entry)*q_per_x(j))
                end if
             end do
+            call add(i, n_bulk + x_of_q(force), weight*condensed%spring(force)*q_per_x(force))
          end associate
-         call add(i, n_bulk + x_of_q(force), weight*condensed%spring(force)*q_per_x(force))
       end subroutine add_force
 
    end subroutine assemble_rows
+
+   !> Scale equations to a largest coefficient of one.
+   pure subroutine scale_rows(row, col, col_scale, values, row_scale, row_factor)
+      integer(ik), intent(in) :: row(:), col(:)  !< among those of the fractures; cells: below one
+      real(rk), intent(in) :: col_scale(:)  !< of the fractures' unknowns
+      real(rk), intent(inout) :: values(:)
+      real(rk), intent(out) :: row_scale(:)  !< largest coefficient by such an unknown, unscaled
+      real(rk), intent(out) :: row_factor(:)  !< what the equations are multiplied by
+      integer(ik) :: k
+
+      row_scale = 0.0_rk
+      row_factor = 0.0_rk
+      do k = 1, size(row)
+         associate (scale => row_scale(row(k)), largest => row_factor(row(k)))
+            largest = max(largest, abs(values(k)))
+            if (col(k) > 0) scale = max(scale, abs(values(k))/col_scale(col(k)))
+         end associate
+      end do
+      where (row_scale > 0.0_rk)
+         row_factor = 1.0_rk/row_factor
+      else where
+         row_scale = 1.0_rk
+         row_factor = 1.0_rk
+      end where
+      values = values*row_factor(row)
+   end subroutine scale_rows
 
 end module coarse_sparse_matrix

@@ -66,13 +66,10 @@ module coarse_sparse_step
 contains
 
    !> Solve for the step.
-   subroutine find_step(self, condensed, slopes, x_of_q, q_per_x, is_flow, residual, &
-                        stress_scale, step, quality)
+   subroutine find_step(self, condensed, slopes, is_flow, residual, stress_scale, step, quality)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: x_of_q(:)  !< the number of each unknown of q in x
-      real(rk), intent(in) :: q_per_x(:)  !< their units [m/Pa], [-]
       logical, intent(in) :: is_flow(:)  !< (n) unknowns whose errors the condition leaves out
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
       real(rk), intent(in) :: stress_scale  !< [Pa]
@@ -84,18 +81,17 @@ contains
       type(error_t), allocatable :: error
 
       is_new = needs_factors(self, condensed, slopes)
-      if (is_new) call renew(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
+      if (is_new) call renew(self, condensed, slopes, is_flow, error)
       quality%is_singular = allocated(error)
       if (quality%is_singular) return
       enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
       step = 0.0_rk
       left = -residual
-      call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+      call reduce(self, condensed, slopes, enough, step, left, is_done, error)
       if (.not. is_done .and. .not. is_new .and. .not. allocated(error)) then
-         call renew(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
+         call renew(self, condensed, slopes, is_flow, error)
          if (.not. allocated(error)) then
-            call reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, &
-                        error)
+            call reduce(self, condensed, slopes, enough, step, left, is_done, error)
          end if
       end if
       quality%is_singular = allocated(error)
@@ -121,12 +117,10 @@ contains
 
    !> Conjugate residuals: add to the step what makes less of what is left, first of the directions
    !! that are known.
-   subroutine reduce(self, condensed, slopes, x_of_q, q_per_x, enough, step, left, is_done, error)
+   subroutine reduce(self, condensed, slopes, enough, step, left, is_done, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
       real(rk), intent(in) :: enough  !< largest residual [Pa]
       real(rk), intent(inout) :: step(:)  !< [Pa]
       real(rk), intent(inout) :: left(:)  !< minus the residuals after the step [Pa]
@@ -140,24 +134,18 @@ contains
       known = self%n_kept
       self%n_kept = 0
       do k = 1, known
-         associate (place => self%n_kept + 1)
-            self%direction(:, place) = self%direction(:, k)
-            self%force(:, place) = self%force(:, k)
-            call use_direction(place, independent, is_used)
-            if (is_used) self%n_kept = place
-         end associate
+         self%direction(:, self%n_kept + 1) = self%direction(:, k)
+         self%force(:, self%n_kept + 1) = self%force(:, k)
+         call use_direction(self%n_kept + 1, independent, is_used)
       end do
       is_done = maxval(abs(left)) <= enough
       do k = 1, most_directions
          if (is_done .or. self%n_kept == most_kept) return
-         associate (place => self%n_kept + 1)
-            call precondition(self, condensed, x_of_q, q_per_x, left, self%direction(:, place), &
-                              self%force(:, place), error)
-            if (allocated(error)) return
-            call use_direction(place, 0.0_rk, is_used)
-            if (.not. is_used) return
-            self%n_kept = place
-         end associate
+         call precondition(self, condensed, slopes, left, self%direction(:, self%n_kept + 1), &
+                           self%force(:, self%n_kept + 1), error)
+         if (allocated(error)) return
+         call use_direction(self%n_kept + 1, 0.0_rk, is_used)
+         if (.not. is_used) return
          is_done = maxval(abs(left)) <= enough
       end do
 
@@ -166,26 +154,20 @@ contains
       !> Make the answer to a direction orthogonal to those before, and go along it. What is left is
       !! formed anew from the answer, not from the factors.
       subroutine use_direction(place, least_share, is_used)
-         integer(ik), intent(in) :: place
+         integer(ik), value :: place
          real(rk), intent(in) :: least_share
          logical, intent(out) :: is_used
-         integer(ik) :: j, pass
 
          associate (p => self%direction(:, place), f => self%force(:, place))
-            call apply_rows(slopes, p, f + condensed%spring*p(x_of_q)*q_per_x, answer(:, place))
+            call apply_rows(slopes, p, f + condensed%spring*p(slopes%x_of_q)*slopes%q_per_x, &
+                            answer(:, place))
             answer(:, place) = answer(:, place)/self%row_scale
             before = norm2(answer(:, place))
-            do pass = 1, 2
-               do j = 1, place - 1
-                  share = dot_product(answer(:, j), answer(:, place))
-                  answer(:, place) = answer(:, place) - share*answer(:, j)
-                  p = p - share*self%direction(:, j)
-                  f = f - share*self%force(:, j)
-               end do
-            end do
+            call make_orthogonal(self, place, answer)
             share = norm2(answer(:, place))
             is_used = share > least_share*before .and. share > 0.0_rk
             if (.not. is_used) return
+            self%n_kept = place
             answer(:, place) = answer(:, place)/share
             p = p/share
             f = f/share
@@ -197,13 +179,32 @@ contains
 
    end subroutine reduce
 
+   !> Make the answer to a direction orthogonal to those before, twice because of rounding.
+   subroutine make_orthogonal(self, place, answer)
+      class(sparse_step_t), intent(inout) :: self
+      integer(ik), intent(in) :: place  !< of the direction
+      real(rk), intent(inout) :: answer(:, :)  !< to all of them
+      real(rk) :: share
+      integer(ik) :: j, pass
+
+      associate (p => self%direction(:, place), f => self%force(:, place))
+         do pass = 1, 2
+            do j = 1, place - 1
+               share = dot_product(answer(:, j), answer(:, place))
+               answer(:, place) = answer(:, place) - share*answer(:, j)
+               p = p - share*self%direction(:, j)
+               f = f - share*self%force(:, j)
+            end do
+         end do
+      end associate
+   end subroutine make_orthogonal
+
    !> The unknowns of the fractures that the factors give for a right-hand side of their rows, and
    !! the forces that belong to them, without springs.
-   subroutine precondition(self, condensed, x_of_q, q_per_x, rhs, x, force, error)
+   subroutine precondition(self, condensed, slopes, rhs, x, force, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(in) :: condensed
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
+      type(slopes_t), intent(in) :: slopes
       real(rk), intent(in) :: rhs(:)  !< [Pa]
       real(rk), intent(out) :: x(:)  !< [Pa]
       real(rk), intent(out) :: force(:)  !< [N/m], [m2]
@@ -218,16 +219,14 @@ contains
       self%solutions = self%solutions + 1
       all(:, 1) = all(:, 1)*self%col_scale
       x = all(n + 1:, 1)
-      call condensed%coupling%forces(all(:n, 1), x(x_of_q)*q_per_x, force)
+      call condensed%coupling%forces(all(:n, 1), x(slopes%x_of_q)*slopes%q_per_x, force)
    end subroutine precondition
 
    !> Factors of the system with the rows of now.
-   subroutine renew(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
+   subroutine renew(self, condensed, slopes, is_flow, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
       logical, intent(in) :: is_flow(:)
       type(error_t), allocatable, intent(out) :: error
       integer(ik), allocatable :: col(:), row(:)
@@ -237,10 +236,10 @@ contains
       is_known = allocated(self%row)
       if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
       if (.not. is_known .or. self%of /= condensed%factorizations) then
-         call assemble_rock(condensed, slopes%n, x_of_q, q_per_x, self%col_scale, row, col, values)
+         call assemble_rock(condensed, slopes, self%col_scale, row, col, values)
          if (is_known) is_known = size(row) == self%n_rock
-         if (is_known) is_known = all(self%row(:size(row)) == row) &
-                                  .and. all(self%col(:size(col)) == col)
+         if (is_known) is_known = all(self%row(:self%n_rock) == row)
+         if (is_known) is_known = all(self%col(:self%n_rock) == col)
          if (is_known) then
             self%values(:size(values)) = values
          else
@@ -251,8 +250,8 @@ contains
          end if
       end if
       self%is_ready = .false.
-      call assemble_rows(condensed, slopes, x_of_q, q_per_x, self%col_scale, self%row_scale, &
-                         self%row_factor, row, col, values)
+      call assemble_rows(condensed, slopes, self%col_scale, self%row_scale, self%row_factor, row, &
+                         col, values)
       associate (n => self%n_rock)
          if (is_known) is_known = size(self%row) == n + size(row)
          if (is_known) is_known = all(self%row(n + 1:) == row) .and. all(self%col(n + 1:) == col)
@@ -277,40 +276,35 @@ contains
       self%weight = slopes%weight
       self%n_kept = 0
       if (allocated(self%direction)) deallocate (self%direction, self%force)
-      allocate (self%direction(slopes%n, most_kept), self%force(size(x_of_q), most_kept))
+      allocate (self%direction(slopes%n, most_kept), self%force(size(slopes%x_of_q), most_kept))
       self%is_ready = .true.
       if (self%estimated_for == self%of .and. &
           self%factorizations < self%estimated_at + estimate_every) return
-      call estimate_condition(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
-      self%estimated_for = self%of
-      self%estimated_at = self%factorizations
+      call estimate_condition(self, condensed, slopes, is_flow, error)
    end subroutine renew
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
    !! transpose: the norms of both that matrix and its inverse, estimated; of the inverse without
    !! the rows of the flows (contact_dense).
-   subroutine estimate_condition(self, condensed, slopes, x_of_q, q_per_x, is_flow, error)
+   subroutine estimate_condition(self, condensed, slopes, is_flow, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
       type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: x_of_q(:)
-      real(rk), intent(in) :: q_per_x(:)
       logical, intent(in) :: is_flow(:)
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: norm(2), v(slopes%n), x(slopes%n)
       integer(ik) :: kase, part, save(3), signs(slopes%n)
 
+      self%estimated_for = self%of
+      self%estimated_at = self%factorizations
       norm = 0.0_rk
       do part = 1, 2
          kase = 0
          do
             call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
             if (kase == 0) exit
-            if (part == 1) then
-               call multiply(kase == 1)
-            else
-               call solve(kase == 1)
-            end if
+            if (part == 1) call multiply(kase == 1)
+            if (part == 2) call solve(kase == 1)
             if (allocated(error)) return
          end do
       end do
@@ -320,15 +314,15 @@ contains
 
       subroutine multiply(transposed)
          logical, intent(in) :: transposed
-         real(rk) :: force(size(x_of_q)), moved(size(x_of_q)), y(size(x))
+         real(rk) :: force(size(slopes%x_of_q)), moved(size(slopes%x_of_q)), y(size(x))
 
          if (transposed) then
             y = x/self%row_scale
             call apply_columns(slopes, y, x, moved)
             call condensed%find_forces(moved, force, error)
-            x(x_of_q) = x(x_of_q) + force*q_per_x
+            x(slopes%x_of_q) = x(slopes%x_of_q) + force*slopes%q_per_x
          else
-            call condensed%find_forces(x(x_of_q)*q_per_x, force, error)
+            call condensed%find_forces(x(slopes%x_of_q)*slopes%q_per_x, force, error)
             call apply_rows(slopes, x, force, y)
             x = y/self%row_scale
          end if

@@ -46,19 +46,19 @@ contains
       ! The places of the derivatives are the same in every state (coarse_slopes).
       call eq%slopes%add(row, row, per_flow*eq%unit/eq%dt + per_head*by_flow)
       do i = 1, eq%layout%n_cells
-         if (.not. eq%wells%share(i, w) > 0.0_rk) cycle
-         associate (share => eq%wells%share(i, w))
+         if (.not. eq%paths%wells%share(i, w) > 0.0_rk) cycle
+         associate (share => eq%paths%wells%share(i, w))
             at = eq%layout%at_pressure(i)
             eq%residual(at) = eq%residual(at) - share*x(row)
             call eq%slopes%add(at, row, -share)
             by_pressure = per_head*share
             call eq%slopes%add(row, at, by_pressure)
-            if (eq%wells%is_between(w)) call add_opening(w, i, x, per_head, eq)
+            if (eq%paths%wells%is_between(w)) call add_opening(w, i, x, per_head, eq)
          end associate
       end do
       do j = 1, eq%layout%n_joints
-         if (.not. eq%wells%joint_share(j, w) > 0.0_rk) cycle
-         associate (share => eq%wells%joint_share(j, w))
+         if (.not. eq%paths%wells%joint_share(j, w) > 0.0_rk) cycle
+         associate (share => eq%paths%wells%joint_share(j, w))
             at = eq%layout%at_joint(j)
             eq%residual(at) = eq%residual(at) - share*x(row)
             call eq%slopes%add(at, row, -share)
@@ -77,7 +77,7 @@ contains
       real(rk), parameter :: weight = 0.1_rk  ! of the pressure's share, which is 2 at most
       real(rk) :: beyond, share
 
-      associate (wells => eq%wells)
+      associate (wells => eq%paths%wells)
          condition = wells%control(w)
          if (condition /= control_limited) return
          share = (flow + wells%storage(w)*(head - eq%before%well_head(w))/eq%dt)/wells%rate(w)
@@ -100,7 +100,7 @@ contains
       real(rk), intent(out) :: per_flow  !< [Pa s/m2]
       real(rk), intent(out) :: per_head  !< [-]
 
-      associate (wells => eq%wells, scale => eq%dt/eq%unit, &
+      associate (wells => eq%paths%wells, scale => eq%dt/eq%unit, &
                  condition => condition_of(w, eq, flow, head))
          per_flow = merge(0.0_rk, scale, condition == control_pressure)
          per_head = wells%storage(w)/eq%unit
@@ -131,14 +131,13 @@ contains
 
       call find_head(w, x, eq, head, by_flow)
       flow = x(eq%layout%at_well(w))*eq%unit/eq%dt
-      associate (wells => eq%wells, stored => eq%wells%storage(w)*(head - eq%before%well_head(w)) &
-                 /eq%dt)
+      associate (wells => eq%paths%wells, rise => head - eq%before%well_head(w))
          select case (condition_of(w, eq, flow, head))
          case (control_rate)
             rate = wells%rate(w)
             if (.not. wells%storage(w) > 0.0_rk) flow = rate
          case (control_pressure)
-            rate = flow + stored
+            rate = flow + wells%storage(w)*rise/eq%dt
          case default
             rate = 0.0_rk
             if (wells%control(w) == control_shut .or. .not. wells%storage(w) > 0.0_rk) flow = 0.0_rk
@@ -157,19 +156,19 @@ contains
       integer(ik) :: i, j
 
       associate (per_x => eq%unit/eq%dt, flow => x(eq%layout%at_well(w))*eq%unit/eq%dt)
-         call eq%wells%lost(w, flow, head, by_flow)
+         call eq%paths%wells%lost(w, flow, head, by_flow)
          do i = 1, eq%layout%n_cells
-            associate (share => eq%wells%share(i, w))
+            associate (share => eq%paths%wells%share(i, w))
                if (.not. share > 0.0_rk) cycle
                head = head + share*x(eq%layout%at_pressure(i))
-               if (.not. eq%wells%is_between(w)) cycle
+               if (.not. eq%paths%wells%is_between(w)) cycle
                call half_cell(i, x, eq, resistance, slope)
                head = head + share**2*resistance*flow
                by_flow = by_flow + share**2*resistance
             end associate
          end do
          do j = 1, eq%layout%n_joints
-            head = head + eq%wells%joint_share(j, w)*x(eq%layout%at_joint(j))
+            head = head + eq%paths%wells%joint_share(j, w)*x(eq%layout%at_joint(j))
          end do
          by_flow = by_flow*per_x
       end associate
@@ -186,9 +185,9 @@ contains
 
       call conducting_aperture(eq%cells%residual_aperture(i), eq%cells%roughness(i), &
                                eq%opening(x, i), aperture, slope)
-      resistance = 6.0_rk*eq%settings%viscosity*eq%condensed%length(i)/aperture**3
-      if (allocated(eq%settings%fluid_law)) then
-         call flow_thickness(i, x, eq%settings%fluid_law, eq, thickness, unused)
+      resistance = 6.0_rk*eq%paths%settings%viscosity*eq%condensed%length(i)/aperture**3
+      if (allocated(eq%paths%settings%fluid_law)) then
+         call flow_thickness(i, x, eq%paths%settings%fluid_law, eq, thickness, unused)
          resistance = resistance*thickness
       end if
       slope = -3.0_rk*resistance/aperture*slope
@@ -207,14 +206,14 @@ contains
 
       jumps = eq%layout%at_jump(i, both)
       call half_cell(i, x, eq, resistance, slope)
-      by_jump = 0.5_rk*eq%wells%share(i, w)**2*slope*x(eq%layout%at_well(w))*eq%unit/eq%dt &
+      by_jump = 0.5_rk*eq%paths%wells%share(i, w)**2*slope*x(eq%layout%at_well(w))*eq%unit/eq%dt &
                 /eq%stiffness
       do end = 1, 2
          call eq%slopes%add(eq%layout%at_well(w), jumps(end), per_head*by_jump)
       end do
-      if (.not. allocated(eq%settings%fluid_law)) return
-      call flow_thickness(i, x, eq%settings%fluid_law, eq, thickness, by_pressure)
-      by_pressure = eq%wells%share(i, w)**2*resistance*by_pressure/thickness &
+      if (.not. allocated(eq%paths%settings%fluid_law)) return
+      call flow_thickness(i, x, eq%paths%settings%fluid_law, eq, thickness, by_pressure)
+      by_pressure = eq%paths%wells%share(i, w)**2*resistance*by_pressure/thickness &
                     *x(eq%layout%at_well(w))*eq%unit/eq%dt
       call eq%slopes%add(eq%layout%at_well(w), eq%layout%at_pressure(i), per_head*by_pressure)
    end subroutine add_opening

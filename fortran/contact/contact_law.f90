@@ -52,8 +52,8 @@ module contact_law
    implicit none(type, external)
    private
 
-   public :: contact_equations, contact_law_t, contact_residual, is_same, is_valid, state_name
-   public :: state_open, state_slip, state_stick
+   public :: contact_equations, contact_equations_t, contact_law_t, contact_residual, is_same
+   public :: is_valid, state_name, state_open, state_slip, state_stick
 
    !> Parameters of the law.
    type :: contact_law_t
@@ -103,6 +103,25 @@ module contact_law
       real(rk) :: tension_by(2) = 0.0_rk  !< by w, and by the size of the slip [Pa/m]
       real(rk) :: cohesion_by(2) = 0.0_rk  !< the same
    end type strength_t
+
+   !> The faces at a point as they are to each other, and what the law makes of it.
+   type :: faces_t
+      real(rk) :: slip = 0.0_rk  !< of the step [m]
+      real(rk) :: shear = 0.0_rk  !< trial shear q [Pa]
+      real(rk) :: apart = 0.0_rk  !< w [m]
+      real(rk) :: apart_by(3) = 0.0_rk  !< its derivatives by f_n, [u]_n, [u]_tau [m/Pa], [-]
+      real(rk) :: friction = 0.0_rk  !< [-]
+      real(rk) :: friction_by_slip = 0.0_rk  !< by the size of the slip [1/m]
+      real(rk) :: spring = 0.0_rk  !< what multiplies the normal equation [Pa/m]
+   end type faces_t
+
+   !> Normal and tangential equation of a point.
+   type :: contact_equations_t
+      integer(ik) :: state = -1  !< of contact
+      real(rk) :: residual(2) = 0.0_rk  !< [Pa]
+      real(rk) :: by_traction(2, 2) = 0.0_rk  !< d residual_i / d traction_j [-]
+      real(rk) :: by_jump(2, 2) = 0.0_rk  !< d residual_i / d jump_j [Pa/m]
+   end type contact_equations_t
 
    integer(ik), parameter :: state_stick = 0  !< the faces touch and hold
    integer(ik), parameter :: state_slip = 1  !< the faces touch and slide
@@ -320,70 +339,108 @@ contains
    !!
    !! A point that slipped one way in the last iteration and would slip the other way now is tried
    !! as sticking: without this the iteration may go to and fro between the two.
-   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, state, &
-                                     residual, by_traction, by_jump)
+   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, found)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
       real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
       real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
       integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
-      integer(ik), intent(out) :: state
-      real(rk), intent(out) :: residual(2)  !< [Pa]
-      real(rk), intent(out) :: by_traction(2, 2)  !< d residual_i / d traction_j [-]
-      real(rk), intent(out) :: by_jump(2, 2)  !< d residual_i / d jump_j [Pa/m]
-      real(rk) :: by_slip, closed, closing, friction, gap, gap_slope, pressure, shear, spring
-      real(rk) :: apart  ! w [m]
-      integer(ik) :: way_before
-      logical :: has_slipped
+      type(contact_equations_t), intent(out) :: found
+      type(faces_t) :: faces
 
-      shear = traction(2) + stiffness*(jump(2) - slip_before)
-      has_slipped = abs(jump(2)) > round_off*max(abs(slip_before), norm2(traction)/stiffness)
-      call law%dilated(jump(2), sign(1.0_rk, merge(jump(2), shear, has_slipped)), gap, gap_slope)
-      call law%friction_at(jump(2) - slip_before, friction, by_slip)
-      call law%closure(-traction(1), closed, closing)
-      spring = law%spring(stiffness)
-      apart = jump(1) - gap + closed
-      by_traction = 0.0_rk
-      by_jump = 0.0_rk
+      faces = faces_at(law, stiffness, traction, jump, slip_before)
       if (law%is_bonded()) then
-         call bonded_equations(law, stiffness, traction, jump(2) - slip_before, apart, &
-                               [-closing, 1.0_rk, -gap_slope], friction, by_slip, way, state, &
-                               residual, by_traction, by_jump)
-         return
-      end if
-      pressure = -traction(1) - spring*apart
-      way_before = way
-      way = 0
-      if (.not. pressure > 0.0_rk .and. .not. law%bilateral) then
-         state = state_open
-         residual = traction
-         by_traction(1, 1) = 1.0_rk
-         by_traction(2, 2) = 1.0_rk
-         return
-      end if
-      residual(1) = spring*apart
-      by_traction(1, 1) = -spring*closing
-      by_jump(1, :) = spring*[1.0_rk, -gap_slope]
-      if (.not. abs(shear) < friction*pressure) way = merge(1, -1, shear > 0.0_rk)
-      if (.not. pressure > 0.0_rk) then
-         if (abs(jump(2) - slip_before) > 0.0_rk) way = merge(1, -1, jump(2) > slip_before)
-      else if (way*way_before < 0 .and. friction > 0.0_rk) then
-         way = 0
-      end if
-      if (way == 0) then
-         state = state_stick
-         residual(2) = stiffness*(jump(2) - slip_before)
-         by_jump(2, 2) = stiffness
+         call bonded_equations(law, stiffness, traction, faces, way, found)
       else
-         state = state_slip
-         residual(2) = traction(2) - friction*pressure*way
-         by_traction(2, :) = [friction*way*(1.0_rk - spring*closing), 1.0_rk]
-         by_jump(2, :) = friction*way*spring*[1.0_rk, -gap_slope]
-         by_jump(2, 2) = by_jump(2, 2) &
-                         - way*way_of_slip(jump(2) - slip_before, way)*by_slip*pressure
+         call unbonded_equations(law, stiffness, traction, faces, way, found)
       end if
    end subroutine contact_equations
+
+   !> How the faces are to each other at a traction and jump.
+   pure type(faces_t) function faces_at(law, stiffness, traction, jump, slip_before) result(faces)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: stiffness  !< c [Pa/m]
+      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
+      real(rk) :: closed, closing, gap, gap_slope
+      logical :: has_slipped
+
+      faces%slip = jump(2) - slip_before
+      faces%shear = traction(2) + stiffness*faces%slip
+      has_slipped = abs(jump(2)) > round_off*max(abs(slip_before), norm2(traction)/stiffness)
+      call law%dilated(jump(2), sign(1.0_rk, merge(jump(2), faces%shear, has_slipped)), gap, &
+                       gap_slope)
+      call law%friction_at(faces%slip, faces%friction, faces%friction_by_slip)
+      call law%closure(-traction(1), closed, closing)
+      faces%spring = law%spring(stiffness)
+      faces%apart = jump(1) - gap + closed
+      faces%apart_by = [-closing, 1.0_rk, -gap_slope]
+   end function faces_at
+
+   !> The equations where no bond holds.
+   pure subroutine unbonded_equations(law, stiffness, traction, faces, way, found)
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: stiffness  !< c [Pa/m]
+      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
+      type(faces_t), intent(in) :: faces
+      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
+      type(contact_equations_t), intent(inout) :: found  !< derivatives are zero at first
+      real(rk) :: pressure
+      integer(ik) :: way_before
+
+      associate (spring => faces%spring, friction => faces%friction, slip => faces%slip)
+         pressure = -traction(1) - spring*faces%apart
+         way_before = way
+         way = 0
+         if (.not. pressure > 0.0_rk .and. .not. law%bilateral) then
+            found%state = state_open
+            found%residual = traction
+            found%by_traction(1, 1) = 1.0_rk
+            found%by_traction(2, 2) = 1.0_rk
+            return
+         end if
+         call touch(faces, found)
+         if (.not. abs(faces%shear) < friction*pressure) way = merge(1, -1, faces%shear > 0.0_rk)
+         if (.not. pressure > 0.0_rk) then
+            if (abs(slip) > 0.0_rk) way = merge(1, -1, slip > 0.0_rk)
+         else if (way*way_before < 0 .and. friction > 0.0_rk) then
+            way = 0
+         end if
+         if (way == 0) then
+            call stick(stiffness, slip, found)
+            return
+         end if
+         found%state = state_slip
+         found%residual(2) = traction(2) - friction*pressure*way
+         found%by_traction(2, :) = [friction*way*(1.0_rk + spring*faces%apart_by(1)), 1.0_rk]
+         found%by_jump(2, :) = friction*way*spring*faces%apart_by(2:)
+         found%by_jump(2, 2) = found%by_jump(2, 2) - way*way_of_slip(slip, way) &
+                               *faces%friction_by_slip*pressure
+      end associate
+   end subroutine unbonded_equations
+
+   !> The normal equation of faces that touch: they are not apart.
+   pure subroutine touch(faces, found)
+      type(faces_t), intent(in) :: faces
+      type(contact_equations_t), intent(inout) :: found
+
+      found%residual(1) = faces%spring*faces%apart
+      found%by_traction(1, 1) = faces%spring*faces%apart_by(1)
+      found%by_jump(1, :) = faces%spring*faces%apart_by(2:)
+   end subroutine touch
+
+   !> The tangential equation of faces that hold: they do not slip.
+   pure subroutine stick(stiffness, slip, found)
+      real(rk), intent(in) :: stiffness  !< c [Pa/m]
+      real(rk), intent(in) :: slip  !< of the step [m]
+      type(contact_equations_t), intent(inout) :: found
+
+      if (found%state /= state_open) found%state = state_stick
+      found%residual(2) = stiffness*slip
+      found%by_jump(2, 2) = stiffness
+   end subroutine stick
 
    !> The slip of the step, or the one to come, has a way too.
    pure real(rk) function way_of_slip(slip, way)
@@ -396,65 +453,54 @@ contains
 
    !> The same where a bond holds: with its tension the faces are pressed on each other, and where
    !! they are apart it goes on pulling.
-   pure subroutine bonded_equations(law, stiffness, traction, slip, apart, apart_by, friction, &
-                                    friction_by_slip, way, state, residual, by_traction, by_jump)
+   pure subroutine bonded_equations(law, stiffness, traction, faces, way, found)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
-      real(rk), intent(in) :: slip  !< of the step [m]
-      real(rk), intent(in) :: apart  !< w [m]
-      real(rk), intent(in) :: apart_by(3)  !< its derivatives by f_n, [u]_n, [u]_tau [m/Pa], [-]
-      real(rk), intent(in) :: friction  !< [-]
-      real(rk), intent(in) :: friction_by_slip  !< by the size of the slip [1/m]
+      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
+      type(faces_t), intent(in) :: faces
       integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
-      integer(ik), intent(out) :: state
-      real(rk), intent(out) :: residual(2)  !< [Pa]
-      real(rk), intent(inout) :: by_traction(2, 2)  !< zero at first [-]
-      real(rk), intent(inout) :: by_jump(2, 2)  !< zero at first [Pa/m]
+      type(contact_equations_t), intent(inout) :: found  !< derivatives are zero at first
       type(strength_t) :: bond
-      real(rk) :: bound, bound_by(3), pressure, shear, sign_of_slip, spring
+      real(rk) :: bound, bound_by(3), pressure, sign_of_slip
       integer(ik) :: way_before
       logical :: is_apart
 
-      bond = law%strength(apart, slip)
-      spring = law%spring(stiffness)
-      is_apart = .not. bond%tension - traction(1) - spring*apart > 0.0_rk
-      pressure = -traction(1)
-      if (.not. is_apart) pressure = pressure - spring*apart
-      bound = bond%cohesion + friction*pressure
-      shear = traction(2) + stiffness*slip
-      way_before = way
-      way = 0
-      if (.not. abs(shear) < bound) way = merge(1, -1, shear > 0.0_rk)
-      if (way*way_before < 0 .and. bound > 0.0_rk) way = 0
-      sign_of_slip = way_of_slip(slip, way)
-      if (is_apart) then
-         state = state_open
-         residual(1) = traction(1) - bond%tension
-         by_traction(1, 1) = 1.0_rk - bond%tension_by(1)*apart_by(1)
-         by_jump(1, :) = -bond%tension_by(1)*apart_by(2:)
-         by_jump(1, 2) = by_jump(1, 2) - bond%tension_by(2)*sign_of_slip
-      else
-         state = merge(state_stick, state_slip, way == 0)
-         residual(1) = spring*apart
-         by_traction(1, 1) = spring*apart_by(1)
-         by_jump(1, :) = spring*apart_by(2:)
-      end if
-      if (way == 0) then
-         residual(2) = stiffness*slip
-         by_jump(2, 2) = stiffness
-         return
-      end if
-      residual(2) = traction(2)
-      by_traction(2, 2) = 1.0_rk
-      if (.not. bound > 0.0_rk) return
-      bound_by = bond%cohesion_by(1)*apart_by
-      bound_by(1) = bound_by(1) - friction
-      if (.not. is_apart) bound_by = bound_by - friction*spring*apart_by
-      bound_by(3) = bound_by(3) + (bond%cohesion_by(2) + friction_by_slip*pressure)*sign_of_slip
-      residual(2) = traction(2) - bound*way
-      by_traction(2, 1) = -bound_by(1)*way
-      by_jump(2, :) = -bound_by(2:)*way
+      associate (spring => faces%spring, friction => faces%friction, apart_by => faces%apart_by)
+         bond = law%strength(faces%apart, faces%slip)
+         is_apart = .not. bond%tension - traction(1) - spring*faces%apart > 0.0_rk
+         pressure = -traction(1)
+         if (.not. is_apart) pressure = pressure - spring*faces%apart
+         bound = bond%cohesion + friction*pressure
+         way_before = way
+         way = 0
+         if (.not. abs(faces%shear) < bound) way = merge(1, -1, faces%shear > 0.0_rk)
+         if (way*way_before < 0 .and. bound > 0.0_rk) way = 0
+         sign_of_slip = way_of_slip(faces%slip, way)
+         found%state = merge(state_open, state_slip, is_apart)
+         if (is_apart) then
+            found%residual(1) = traction(1) - bond%tension
+            found%by_traction(1, 1) = 1.0_rk - bond%tension_by(1)*apart_by(1)
+            found%by_jump(1, :) = -bond%tension_by(1)*apart_by(2:)
+            found%by_jump(1, 2) = found%by_jump(1, 2) - bond%tension_by(2)*sign_of_slip
+         else
+            call touch(faces, found)
+         end if
+         if (way == 0) then
+            call stick(stiffness, faces%slip, found)
+            return
+         end if
+         found%residual(2) = traction(2)
+         found%by_traction(2, 2) = 1.0_rk
+         if (.not. bound > 0.0_rk) return
+         bound_by = bond%cohesion_by(1)*apart_by
+         bound_by(1) = bound_by(1) - friction
+         if (.not. is_apart) bound_by = bound_by - friction*spring*apart_by
+         bound_by(3) = bound_by(3) &
+                       + (bond%cohesion_by(2) + faces%friction_by_slip*pressure)*sign_of_slip
+         found%residual(2) = traction(2) - bound*way
+         found%by_traction(2, 1) = -bound_by(1)*way
+         found%by_jump(2, :) = -bound_by(2:)*way
+      end associate
    end subroutine bonded_equations
 
    !> How far a point is from fulfilling the law [Pa]: gap, sign of the contact pressure, friction

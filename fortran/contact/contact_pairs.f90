@@ -10,9 +10,9 @@ module contact_pairs
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use contact_dense, only: solve_by_parts, solve_full
-   use contact_law, only: contact_equations, contact_law_t, contact_residual
+   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, contact_residual
    use contact_newton, only: contact_system_t, step_quality_t
-   use contact_pivoting, only: pivot_to_solution
+   use contact_pivoting, only: pivot_to_solution, slips_t
    implicit none(type, external)
    private
 
@@ -60,6 +60,7 @@ contains
       class(contact_pairs_t), intent(inout) :: self
       real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
       real(rk) :: force(2*self%n), jump(2*self%n)
+      type(contact_equations_t) :: found
       integer(ik) :: i, row
 
       if (.not. allocated(self%by_jump)) then
@@ -72,9 +73,11 @@ contains
          row = 2*i - 1
          self%traction(:, i) = -force(row:row + 1)/self%length(i)
          call contact_equations(self%law(i), self%stiffness, self%traction(:, i), &
-                                jump(row:row + 1), self%slip_before(i), self%way(i), &
-                                self%state(i), self%residual(row:row + 1), &
-                                self%by_traction(:, :, i), self%by_jump(:, :, i))
+                                jump(row:row + 1), self%slip_before(i), self%way(i), found)
+         self%state(i) = found%state
+         self%residual(row:row + 1) = found%residual
+         self%by_traction(:, :, i) = found%by_traction
+         self%by_jump(:, :, i) = found%by_jump
          if (self%slip_given(i)) then
             self%residual(row + 1) = self%stiffness*(jump(row + 1) - self%given(i))
             self%by_traction(2, :, i) = 0.0_rk
@@ -243,8 +246,8 @@ contains
       mean = sum(self%length)/self%n
       call pivot_to_solution(on_spring/(self%stiffness*mean), self%load/mean, self%law, &
                              self%stiffness*self%law%compliance*mean/self%length, &
-                             self%slip_given, self%stiffness*self%slip_before, &
-                             self%stiffness*self%given, x, has_start)
+                             slips_t(self%slip_given, self%stiffness*self%slip_before, &
+                                     self%stiffness*self%given), x, has_start)
       self%way = 0
       if (has_start) return
       x = 0.0_rk

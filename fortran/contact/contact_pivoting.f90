@@ -27,7 +27,14 @@ module contact_pivoting
    implicit none(type, external)
    private
 
-   public :: pivot_to_solution
+   public :: pivot_to_solution, slips_t
+
+   !> What is known of the slip of some points, as stresses.
+   type :: slips_t
+      logical, allocatable :: is_given(:)
+      real(rk), allocatable :: before(:)  !< of the step [Pa]
+      real(rk), allocatable :: given(:)  !< where it is [Pa]
+   end type slips_t
 
    !> The dictionary: basic variables as linear functions of the others, all of them >= 0 but for
    !! the free ones. The last two columns are those of the cover z0 and of the constant.
@@ -52,14 +59,12 @@ contains
 
    !> Jumps that fulfil the law, up to round-off that may have grown with the number of pivots.
    !! Lengths are scaled out, jumps are multiplied by the law's stiffness: all is stress.
-   subroutine pivot_to_solution(stiffness, load, law, compliance, slip_given, slip_before, given, &
-                                x, is_solved)
+   subroutine pivot_to_solution(stiffness, load, law, compliance, slips, x, is_solved)
       real(rk), intent(in) :: stiffness(:, :)  !< (2 n, 2 n) an equation per column [-]
       real(rk), intent(in) :: load(:)  !< (2 n) n, tau pair by pair [Pa]
       type(contact_law_t), intent(in) :: law(:)  !< (n)
       real(rk), intent(in) :: compliance(:)  !< (n) of the closed faces, at first [-]
-      logical, intent(in) :: slip_given(:)  !< (n)
-      real(rk), intent(in) :: slip_before(:), given(:)  !< (n) [Pa]
+      type(slips_t), intent(in) :: slips  !< (n)
       real(rk), intent(inout) :: x(:)  !< (2 n) jumps [Pa]; replaced if solved
       logical, intent(out) :: is_solved
       integer(ik), parameter :: covers = 4  ! tried where a path may end without a solution
@@ -70,11 +75,11 @@ contains
 
       is_solved = .false.
       call invert(stiffness, flexibility, is_solved)
-      scale = max(maxval(abs(load)), maxval(abs(slip_before)), maxval(abs(given)))
+      scale = max(maxval(abs(load)), maxval(abs(slips%before)), maxval(abs(slips%given)))
       if (.not. is_solved .or. .not. scale > 0.0_rk) return
-      call place_unknowns(law, slip_given, slip_before, places, start)
-      call fill(flexibility, load/scale, law, slip_given, slip_before/scale, given/scale, x, &
-                places, start)
+      call place_unknowns(law, slips, places, start)
+      call fill(flexibility, load/scale, law, &
+                slips_t(slips%is_given, slips%before/scale, slips%given/scale), x, places, start)
       do i = 1, size(law)
          associate (entry => start%entry(places(i)%normal, places(i)%normal))
             entry = entry + compliance(i)
@@ -119,10 +124,9 @@ contains
    end subroutine invert
 
    !> Number the unknowns.
-   pure subroutine place_unknowns(law, slip_given, slip_before, places, dictionary)
+   pure subroutine place_unknowns(law, slips, places, dictionary)
       type(contact_law_t), intent(in) :: law(:)
-      logical, intent(in) :: slip_given(:)
-      real(rk), intent(in) :: slip_before(:)  !< (n) [Pa]; whether it is zero counts
+      type(slips_t), intent(in) :: slips  !< before the step only whether they are zero counts
       type(places_t), intent(out) :: places(:)
       type(dictionary_t), intent(out) :: dictionary
       integer(ik) :: i, m
@@ -133,7 +137,7 @@ contains
          associate (at => places(i))
             call take(m, at%normal)
             dictionary%is_free(at%normal) = law(i)%bilateral
-            if (slip_given(i)) then
+            if (slips%is_given(i)) then
                call take(m, at%given)
                dictionary%is_free(at%given) = .true.
             else if (law(i)%friction > 0.0_rk) then
@@ -142,8 +146,8 @@ contains
                call take(m, at%bound)
                if (law(i)%bilateral) call take(m, at%pressed)
             end if
-            if (.not. slip_given(i) .and. law(i)%dilation > 0.0_rk .and. &
-                (at%bound == 0 .or. abs(slip_before(i)) > 0.0_rk)) call take(m, at%reversed)
+            if (.not. slips%is_given(i) .and. law(i)%dilation > 0.0_rk .and. &
+                (at%bound == 0 .or. abs(slips%before(i)) > 0.0_rk)) call take(m, at%reversed)
          end associate
       end do
       dictionary%is_free = dictionary%is_free(:m)
@@ -164,13 +168,11 @@ contains
    end subroutine place_unknowns
 
    !> The equations.
-   pure subroutine fill(flexibility, load, law, slip_given, slip_before, given, x, places, &
-                        dictionary)
+   pure subroutine fill(flexibility, load, law, slips, x, places, dictionary)
       real(rk), intent(in) :: flexibility(:, :)  !< (2 n, 2 n) jump, force [-]
       real(rk), intent(in) :: load(:)  !< (2 n) over the largest of all loads and jumps [-]
       type(contact_law_t), intent(in) :: law(:)
-      logical, intent(in) :: slip_given(:)
-      real(rk), intent(in) :: slip_before(:), given(:)  !< (n) over that scale [-]
+      type(slips_t), intent(in) :: slips  !< (n) over that scale [-]
       real(rk), intent(in) :: x(:)  !< (2 n) the last jumps [Pa]; their signs count
       type(places_t), intent(in) :: places(:)
       type(dictionary_t), intent(inout) :: dictionary
@@ -184,27 +186,29 @@ contains
          do i = 1, size(law)
             associate (at => places(i))
                slope = law(i)%dilation
-               call add_motion(entry, at%normal, 2*i - 1, 1.0_rk)
-               if (slip_given(i)) then
-                  call add_motion(entry, at%given, 2*i, 1.0_rk)
-                  entry(at%given, constant) = entry(at%given, constant) - given(i)
-                  entry(at%normal, constant) = entry(at%normal, constant) - slope*abs(given(i))
+               call add_motion(flexibility, motion, places, at%normal, 2*i - 1, 1.0_rk, entry)
+               if (slips%is_given(i)) then
+                  call add_motion(flexibility, motion, places, at%given, 2*i, 1.0_rk, entry)
+                  associate (slip => entry(at%given, constant), opens => entry(at%normal, constant))
+                     slip = slip - slips%given(i)
+                     opens = opens - slope*abs(slips%given(i))
+                  end associate
                   cycle
                end if
                if (at%reversed > 0) then
-                  side = sign(1.0_rk, merge(slip_before(i), x(2*i), abs(slip_before(i)) > 0.0_rk))
-                  call add_motion(entry, at%normal, 2*i, -slope*side)
+                  side = sign(1.0_rk, merge(slips%before(i), x(2*i), abs(slips%before(i)) > 0.0_rk))
+                  call add_motion(flexibility, motion, places, at%normal, 2*i, -slope*side, entry)
                   entry(at%normal, at%reversed) = -2.0_rk*slope
-                  call add_motion(entry, at%reversed, 2*i, side)
+                  call add_motion(flexibility, motion, places, at%reversed, 2*i, side, entry)
                   entry(at%reversed, at%reversed) = 1.0_rk
                else if (at%bound > 0) then
                   entry(at%normal, at%bound) = -slope
                end if
                if (at%bound == 0) cycle
-               call add_motion(entry, at%forward, 2*i, 1.0_rk)
-               call add_motion(entry, at%backward, 2*i, -1.0_rk)
-               entry(at%forward, constant) = entry(at%forward, constant) - slip_before(i)
-               entry(at%backward, constant) = entry(at%backward, constant) + slip_before(i)
+               call add_motion(flexibility, motion, places, at%forward, 2*i, 1.0_rk, entry)
+               call add_motion(flexibility, motion, places, at%backward, 2*i, -1.0_rk, entry)
+               entry(at%forward, constant) = entry(at%forward, constant) - slips%before(i)
+               entry(at%backward, constant) = entry(at%backward, constant) + slips%before(i)
                entry([at%forward, at%backward], at%bound) = 1.0_rk
                entry(at%bound, [at%forward, at%backward]) = -1.0_rk
                if (at%pressed > 0) then
@@ -217,32 +221,33 @@ contains
             end associate
          end do
       end associate
-
-   contains
-
-      !> Add a component of the jumps, as a function of the forces, to an equation.
-      pure subroutine add_motion(entry, row, component, factor)
-         real(rk), intent(inout) :: entry(:, :)  !< of the dictionary [-]
-         integer(ik), intent(in) :: row, component
-         real(rk), intent(in) :: factor  !< [-]
-         integer(ik) :: j
-
-         entry(row, constant) = entry(row, constant) + factor*motion(component)
-         do j = 1, size(places)
-            associate (at => places(j), by_normal => flexibility(component, 2*j - 1), &
-                       by_shear => flexibility(component, 2*j))
-               entry(row, at%normal) = entry(row, at%normal) + factor*by_normal
-               if (at%given > 0) then
-                  entry(row, at%given) = entry(row, at%given) + factor*by_shear
-               else if (at%bound > 0) then
-                  entry(row, at%forward) = entry(row, at%forward) + factor*by_shear
-                  entry(row, at%backward) = entry(row, at%backward) - factor*by_shear
-               end if
-            end associate
-         end do
-      end subroutine add_motion
-
    end subroutine fill
+
+   !> Add a component of the jumps, as a function of the forces, to an equation.
+   pure subroutine add_motion(flexibility, motion, places, row, component, factor, entry)
+      real(rk), intent(in) :: flexibility(:, :)  !< (2 n, 2 n) jump, force [-]
+      real(rk), intent(in) :: motion(:)  !< (2 n) jumps by the load [-]
+      type(places_t), intent(in) :: places(:)
+      integer(ik), intent(in) :: row, component
+      real(rk), intent(in) :: factor  !< [-]
+      real(rk), intent(inout) :: entry(:, :)  !< of the dictionary [-]
+      integer(ik) :: constant, j
+
+      constant = size(entry, 2, kind=ik)
+      entry(row, constant) = entry(row, constant) + factor*motion(component)
+      do j = 1, size(places)
+         associate (at => places(j), by_normal => flexibility(component, 2*j - 1), &
+                    by_shear => flexibility(component, 2*j))
+            entry(row, at%normal) = entry(row, at%normal) + factor*by_normal
+            if (at%given > 0) then
+               entry(row, at%given) = entry(row, at%given) + factor*by_shear
+            else if (at%bound > 0) then
+               entry(row, at%forward) = entry(row, at%forward) + factor*by_shear
+               entry(row, at%backward) = entry(row, at%backward) - factor*by_shear
+            end if
+         end associate
+      end do
+   end subroutine add_motion
 
    !> The shares of the cover, between 1 and 2. No two are equal (Weyl's irregular numbers), so that
    !! ties on the path are accidents of round-off.

@@ -112,13 +112,12 @@ contains
       type(constraints_t), intent(out) :: constraints
       real(rk), allocatable :: dilation(:)
       integer(ik), allocatable :: follows(:)
-      integer(ik) :: component, node, pair, column, plus, minus
-      real(rk) :: direction(2)
+      integer(ik) :: component, node, pair, plus, minus
 
       call find_pairs(fine, constraints)
       call combine_conditions(fine, boundary, conditions, constraints, dilation)
 
-      allocate (constraints%n_columns(fine%n_nodes), source=0_ik)
+      allocate (constraints%n_columns(fine%n_nodes), follows(fine%n_nodes), source=0_ik)
       allocate (constraints%dof(columns_max, fine%n_nodes), source=0_ik)
       allocate (constraints%basis(2, columns_max, fine%n_nodes), source=0.0_rk)
       do node = 1, fine%n_nodes
@@ -131,49 +130,29 @@ contains
       constraints%prescribed = any(boundary%prescribed, dim=1)
 
       ! The minus node of a tied pair takes the unknowns of its plus node.
-      allocate (follows(fine%n_nodes), source=0_ik)
       do pair = 1, constraints%n_pairs
          plus = constraints%pair_nodes(1, pair)
          minus = constraints%pair_nodes(2, pair)
          select case (constraints%pair_condition(pair))
          case (face_jump)
             constraints%prescribed([plus, minus]) = .true.
-            follows(minus) = plus
          case (face_slip)
             constraints%n_columns([plus, minus]) = 3
-            direction = constraints%tangent(:, pair) + dilation(pair)*normal_of(pair)
-            constraints%basis(:, 3, plus) = -0.5_rk*direction
-            constraints%basis(:, 3, minus) = 0.5_rk*direction
-            follows(minus) = plus
+            constraints%basis(:, 3, plus) = -0.5_rk*(constraints%tangent(:, pair) &
+                                                     + dilation(pair)*normal_of(pair))
+            constraints%basis(:, 3, minus) = -constraints%basis(:, 3, plus)
          case (face_contact)
             constraints%n_columns([plus, minus]) = 4
             constraints%basis(:, 3, plus) = -0.5_rk*normal_of(pair)
             constraints%basis(:, 4, plus) = -0.5_rk*constraints%tangent(:, pair)
             constraints%basis(:, 3:4, minus) = -constraints%basis(:, 3:4, plus)
-            follows(minus) = plus
          case default
             cycle  ! both nodes keep their own unknowns
          end select
+         follows(minus) = plus
       end do
 
-      do node = 1, fine%n_nodes
-         if (follows(node) > 0) cycle
-         do column = 1, constraints%n_columns(node)
-            constraints%n_dofs = constraints%n_dofs + 1
-            constraints%dof(column, node) = constraints%n_dofs
-         end do
-      end do
-      do node = 1, fine%n_nodes
-         if (follows(node) > 0) constraints%dof(:, node) = constraints%dof(:, follows(node))
-      end do
-      allocate (constraints%contact_pairs(0), constraints%contact_dofs(0))
-      allocate (constraints%closing(2, 0))
-      do pair = 1, constraints%n_pairs
-         if (constraints%pair_condition(pair) /= face_contact) cycle
-         plus = constraints%pair_nodes(1, pair)
-         constraints%contact_pairs = [constraints%contact_pairs, pair]
-         constraints%contact_dofs = [constraints%contact_dofs, constraints%dof(3:4, plus)]
-      end do
+      call number_unknowns(follows, constraints)
 
    contains
 
@@ -186,6 +165,32 @@ contains
       end function normal_of
 
    end subroutine build_constraints
+
+   !> Number the unknowns of the nodes, then those of contact.
+   pure subroutine number_unknowns(follows, constraints)
+      integer(ik), intent(in) :: follows(:)  !< (n_nodes) the node whose unknowns it has; 0: its own
+      type(constraints_t), intent(inout) :: constraints
+      integer(ik) :: column, node, pair
+
+      do node = 1, size(follows, kind=ik)
+         if (follows(node) > 0) cycle
+         do column = 1, constraints%n_columns(node)
+            constraints%n_dofs = constraints%n_dofs + 1
+            constraints%dof(column, node) = constraints%n_dofs
+         end do
+      end do
+      do node = 1, size(follows, kind=ik)
+         if (follows(node) > 0) constraints%dof(:, node) = constraints%dof(:, follows(node))
+      end do
+      allocate (constraints%contact_pairs(0), constraints%contact_dofs(0))
+      allocate (constraints%closing(2, 0))
+      do pair = 1, constraints%n_pairs
+         if (constraints%pair_condition(pair) /= face_contact) cycle
+         constraints%contact_pairs = [constraints%contact_pairs, pair]
+         constraints%contact_dofs = [constraints%contact_dofs, &
+                                     constraints%dof(3:4, constraints%pair_nodes(1, pair))]
+      end do
+   end subroutine number_unknowns
 
    !> Node pairs across the fractures, without tips (one node) and joints (more than two).
    pure subroutine find_pairs(fine, constraints)

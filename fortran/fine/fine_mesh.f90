@@ -53,9 +53,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: tip_element  !< default: tip_quarter
       logical, allocatable :: has_quarter_points(:), is_tip(:)
-      integer(ik), allocatable :: outer(:)
       integer(ik) :: face, tip, tip_end, cell, k
-      real(rk) :: ends(2, 2), within
+      real(rk) :: within
 
       if (.not. sum(abs(mesh%xy)) <= huge(1.0_rk)) then
          call raise_error(error, "build_fine_mesh", "a node's coordinate is not a finite number")
@@ -71,6 +70,47 @@ contains
          return
       end if
       has_quarter_points = is_tip .and. fine%tip_element /= tip_plain
+
+      call place_nodes(mesh, has_quarter_points, fine, error)
+      if (allocated(error)) return
+      allocate (fine%cell_nodes(6, fine%n_cells))
+      allocate (fine%tip_corner(fine%n_cells), source=0_ik)
+      fine%cell_nodes(1:3, :) = mesh%cell_nodes(:, :fine%n_cells)
+      fine%cell_nodes(4:6, :) = mesh%n_nodes + mesh%cell_faces(:, :fine%n_cells)
+      do cell = 1, fine%n_cells
+         do k = 1, 3
+            if (has_quarter_points(mesh%cell_nodes(k, cell))) fine%tip_corner(cell) = k
+         end do
+      end do
+      call check_cells(fine, error)
+      if (allocated(error)) return
+
+      call number_boundary_faces(mesh, fine)
+      call number_fracture_faces(mesh, fine, error)
+      if (allocated(error)) return
+      allocate (fine%face_at_tip(fine%fracture%n_cells), source=0_ik)
+      do face = 1, fine%fracture%n_cells
+         do tip_end = 1, 2
+            if (is_tip(fine%face_nodes(tip_end, 1, face))) fine%face_at_tip(face) = tip_end
+         end do
+      end do
+      fine%face_tip = merge(0_ik, fine%face_at_tip, fine%tip_element == tip_plain)
+      do face = 1, fine%fracture%n_cells
+         fine%face_s(1:2, face) = mesh%fracture%cell_s(:, face)
+         within = node_within(fine%face_tip(face))
+         fine%face_s(3, face) = (1.0_rk - within)*fine%face_s(1, face) &
+                                + within*fine%face_s(2, face)
+      end do
+   end subroutine build_fine_mesh
+
+   !> Nodes at the corners and on the faces.
+   pure subroutine place_nodes(mesh, has_quarter_points, fine, error)
+      type(mesh_t), intent(in) :: mesh
+      logical, intent(in) :: has_quarter_points(:)  !< (nodes of the mesh) on the faces around them
+      type(fine_mesh_t), intent(inout) :: fine
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: ends(2, 2), within
+      integer(ik) :: face, tip_end
 
       fine%n_vertices = mesh%n_nodes
       fine%n_nodes = mesh%n_nodes + mesh%n_faces
@@ -92,18 +132,14 @@ contains
          within = node_within(tip_end)
          fine%xy(:, mesh%n_nodes + face) = (1.0_rk - within)*ends(:, 1) + within*ends(:, 2)
       end do
+   end subroutine place_nodes
 
-      allocate (fine%cell_nodes(6, fine%n_cells))
-      allocate (fine%tip_corner(fine%n_cells), source=0_ik)
-      fine%cell_nodes(1:3, :) = mesh%cell_nodes(:, :fine%n_cells)
-      fine%cell_nodes(4:6, :) = mesh%n_nodes + mesh%cell_faces(:, :fine%n_cells)
-      do cell = 1, fine%n_cells
-         do k = 1, 3
-            if (has_quarter_points(mesh%cell_nodes(k, cell))) fine%tip_corner(cell) = k
-         end do
-      end do
-      call check_cells(fine, error)
-      if (allocated(error)) return
+   !> Faces and nodes on the outer boundary.
+   pure subroutine number_boundary_faces(mesh, fine)
+      type(mesh_t), intent(in) :: mesh
+      type(fine_mesh_t), intent(inout) :: fine
+      integer(ik), allocatable :: outer(:)
+      integer(ik) :: cell, face, k
 
       allocate (fine%on_boundary(fine%n_nodes), source=.false.)
       outer = pack([(face, face=1, mesh%n_faces)], mesh%face_side > 0)
@@ -120,23 +156,7 @@ contains
          fine%on_boundary(mesh%face_nodes(:, face)) = .true.
          fine%on_boundary(mesh%n_nodes + face) = .true.
       end do
-
-      call number_fracture_faces(mesh, fine, error)
-      if (allocated(error)) return
-      allocate (fine%face_at_tip(fine%fracture%n_cells), source=0_ik)
-      do face = 1, fine%fracture%n_cells
-         do tip_end = 1, 2
-            if (is_tip(fine%face_nodes(tip_end, 1, face))) fine%face_at_tip(face) = tip_end
-         end do
-      end do
-      fine%face_tip = merge(0_ik, fine%face_at_tip, fine%tip_element == tip_plain)
-      do face = 1, fine%fracture%n_cells
-         fine%face_s(1:2, face) = mesh%fracture%cell_s(:, face)
-         within = node_within(fine%face_tip(face))
-         fine%face_s(3, face) = (1.0_rk - within)*fine%face_s(1, face) &
-                                + within*fine%face_s(2, face)
-      end do
-   end subroutine build_fine_mesh
+   end subroutine number_boundary_faces
 
    !> Everything that integrals need at one point of an element (see evaluate_element).
    pure subroutine evaluate(self, cell, lambda, values, gradients, area_coordinates, determinant)

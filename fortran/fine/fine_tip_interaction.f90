@@ -118,11 +118,7 @@ contains
       associate (frame => self%frame)
          nodes = model%mesh%cell_nodes(:, cell)
          xy_nodes = model%mesh%xy(:, nodes)
-         do r = 1, size(q, 1, kind=ik)
-            do c = 1, 6
-               q_nodes(c, r) = q(r, nodes(c))
-            end do
-         end do
+         q_nodes = transpose(q(:, nodes))
          call element_rule(model%mesh, frame, cell, n_points, points, weights)
          reference = reference_angle(model%mesh, frame, cell, q(1, :))
          kolosov = frame%rock%kolosov()
@@ -158,26 +154,41 @@ contains
                end do
             end do
          end do
-         do r = 1, size(q, 1, kind=ik)
+         call turn_back(self, place(nodes), of_nodes, of_corners, of_body)
+      end associate
+   end subroutine add_cell
+
+   !> Add an element's share, from the tip's axes to x and y.
+   pure subroutine turn_back(self, place, of_nodes, of_corners, of_body)
+      type(interactions_t), intent(inout) :: self
+      integer(ik), intent(in) :: place(6)  !< of its nodes among those of the domain
+      real(rk), intent(in) :: of_nodes(:, :, :, :)  !< (2, nodes, modes, domains)
+      real(rk), intent(in) :: of_corners(:, :, :, :, :)  !< (2, 2, corners, modes, domains)
+      real(rk), intent(in) :: of_body(:, :, :)  !< (2, modes, domains)
+      real(rk) :: by_initial(2, 2)
+      integer(ik) :: c, mode, r
+
+      associate (frame => self%frame)
+         do r = 1, size(of_body, 3, kind=ik)
             do mode = 1, 2
                self%by_body_force(:, mode, r) = self%by_body_force(:, mode, r) &
                                                 + matmul(of_body(:, mode, r), frame%axes)
                do c = 1, 6
-                  associate (sum => self%by_displacement(:, mode, r, place(nodes(c))))
+                  associate (sum => self%by_displacement(:, mode, r, place(c)))
                      sum = sum + matmul(of_nodes(:, c, mode, r), frame%axes)
                   end associate
                end do
                do c = 1, 3
                   by_initial = matmul(transpose(frame%axes), &
                                       matmul(of_corners(:, :, c, mode, r), frame%axes))
-                  associate (sum => self%by_stress(:, mode, r, place(nodes(c))))
+                  associate (sum => self%by_stress(:, mode, r, place(c)))
                      sum = sum + [by_initial(1, 1), by_initial(2, 2), 2.0_rk*by_initial(1, 2)]
                   end associate
                end do
             end do
          end do
       end associate
-   end subroutine add_cell
+   end subroutine turn_back
 
    !> One fracture cell's share: its traction on the difference of hat u,1 between the faces.
    pure subroutine set_face(self, model, i, q)

@@ -19,9 +19,17 @@ module twolevel_certainty
    implicit none(type, external)
    private
 
-   public :: certainty_t
+   public :: certainty_t, tip_excess_t
 
    real(rk), parameter :: share = 0.1_rk  !< of a tip's coarse cell that its place may be off [-]
+
+   !> What a step tells of a tip.
+   type :: tip_excess_t
+      logical :: grows = .false.  !< in the step
+      real(rk) :: error = 0.0_rk  !< of K_eq, over K_IC [-]
+      real(rk) :: slope = -1.0_rk  !< of K_eq over K_IC along the path, < 0 [1/m]
+      real(rk) :: cell = 0.0_rk  !< length of the coarse cell there [m]
+   end type tip_excess_t
 
    !> What is known of both, and what the last tries and the last step tell.
    type :: certainty_t
@@ -63,26 +71,22 @@ contains
    end subroutine see_try
 
    !> A step has been accepted.
-   pure subroutine accept(self, step, pressure, grows, excess_error, excess_slope, cell, &
-                          length, rise, leaked)
+   pure subroutine accept(self, step, pressure, tips, length, rise, leaked)
       class(certainty_t), intent(inout) :: self
       real(rk), intent(in) :: step  !< [s]
       real(rk), intent(in) :: pressure  !< at the wells [Pa]
-      logical, intent(in) :: grows(:)  !< (tips) in the step
-      real(rk), intent(in) :: excess_error(:)  !< (tips) of K_eq, over K_IC [-]
-      real(rk), intent(in) :: excess_slope(:)  !< (tips) of K_eq over K_IC along the path, < 0 [1/m]
-      real(rk), intent(in) :: cell(:)  !< (tips) length of the coarse cell there [m]
+      type(tip_excess_t), intent(in) :: tips(:)
       real(rk), intent(in) :: length  !< of all fractures [m]
       real(rk), intent(in) :: rise  !< of the pressure, from the lowest to the highest so far [Pa]
       real(rk), intent(in) :: leaked  !< share of the injected fluid that has leaked off [-]
 
-      if (.not. allocated(self%tip)) allocate (self%tip(size(grows)), source=0.0_rk)
-      where (grows) self%tip = excess_error/abs(excess_slope) + share*cell*(1.0_rk + leaked)
+      if (.not. allocated(self%tip)) allocate (self%tip(size(tips)), source=0.0_rk)
+      where (tips%grows) self%tip = tips%error/abs(tips%slope) + share*tips%cell*(1.0_rk + leaked)
       self%length = sum(self%tip)
       call self%course%follow(step, pressure)
-      if (any(grows)) self%course%error = 0.0_rk
+      if (any(tips%grows)) self%course%error = 0.0_rk
       self%pressure = abs(self%slope)*self%length + abs(self%course%error)
-      if (length > 0.0_rk) self%pressure = self%pressure + share*sum(cell)/length*rise
+      if (length > 0.0_rk) self%pressure = self%pressure + share*sum(tips%cell)/length*rise
    end subroutine accept
 
 end module twolevel_certainty

@@ -11,6 +11,7 @@ module twolevel_notes
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
    use scene_types, only: scene_t
+   use twolevel_certainty, only: tip_excess_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
@@ -123,6 +124,7 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: dt  !< [s]
       type(levels_state_t), intent(inout) :: now
+      type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked
 
       leaked = 0.0_rk
@@ -130,13 +132,13 @@ contains
          if (fluid%injected > 0.0_rk) leaked = max(0.0_rk, min(1.0_rk, fluid%leaked/fluid%injected))
       end associate
       associate (tip => front%tip, toughness => scene%material%toughness)
-         call now%certainty%accept(dt, problem%well_pressure(scene, now%coarse), &
-                                   tip%advance > 0.0_rk, tolerance + hypot( &
-                                   tip%intensity%k1_error, tip%intensity%k2_error) &
-                                   /(toughness*tip%drive%resistance), &
-                                   now%segment%falling_slope(), &
-                                   tip_cell_lengths(tip, problem), total_length(front%network), &
-                                   now%trend%pressure_rise(), leaked)
+         tips%grows = tip%advance > 0.0_rk
+         tips%error = tolerance + hypot(tip%intensity%k1_error, tip%intensity%k2_error) &
+                      /(toughness*tip%drive%resistance)
+         tips%slope = now%segment%falling_slope()
+         tips%cell = tip_cell_lengths(tip, problem)
+         call now%certainty%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
+                                   total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate
    end subroutine note_certainty
 

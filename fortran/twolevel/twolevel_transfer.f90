@@ -68,8 +68,7 @@ contains
       real(rk), intent(out) :: prefilled  !< [m2]
       integer(ik), parameter :: both(2) = [1_ik, 2_ik]  ! ends of a fracture cell
       type(overlaps_t) :: overlaps
-      integer(ik) :: c, i, k, n, old
-      real(rk) :: area
+      integer(ik) :: i, n, old
 
       overlaps = fracture_overlaps(mesh_before%fracture, mesh%fracture)
       n = mesh%fracture%n_cells
@@ -79,24 +78,7 @@ contains
          after%well_head = before%well_head
          after%well_rate = before%well_rate
       end if
-      allocate (after%unknowns(3, block_count(mesh)), after%content(mesh%n_cells), source=0.0_rk)
-      do c = 1, mesh%n_cells
-         old = map%cell_old(c)
-         if (old > 0) then
-            after%content(c) = before%content(old)
-            after%unknowns(:, c) = before%unknowns(:, old)
-            cycle
-         end if
-         area = cell_area(mesh, c)
-         do k = map%overlap_first(c), map%overlap_first(c + 1) - 1
-            old = map%overlap_cell(k)
-            after%content(c) = after%content(c) + before%content(old)*map%overlap_area(k) &
-                               /cell_area(mesh_before, old)
-            after%unknowns(:, c) = after%unknowns(:, c) + before%unknowns(:, old) &
-                                   *map%overlap_area(k)/area
-         end do
-      end do
-
+      call transfer_rock(map, mesh_before, mesh, before, after)
       if (allocated(before%rock_well_control)) after%rock_well_control = before%rock_well_control
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
       allocate (after%slip_before(2, n), source=0.0_rk)
@@ -119,20 +101,7 @@ contains
             cycle
          end if
          old = overlaps%main(i)
-         after%jump(:, :, i) = before%jump(:, :, old)
-         after%slip_before(:, i) = before%slip_before(:, old)
-         if (allocated(before%slip_path)) then
-            after%slip_path(:, i) = before%slip_path(:, old)
-            after%opened(:, i) = before%opened(:, old)
-            after%opened_before(:, i) = before%opened_before(:, old)
-         end if
-         after%traction(:, :, i) = before%traction(:, :, old)
-         after%contact(:, i) = before%contact(:, old)
-         after%pressure(i) = before%pressure(old)
-         after%aperture(i) = before%aperture(old)
-         after%void(i) = before%void(old)
-         after%leakoff(i) = before%leakoff(old)
-         after%injection(i) = before%injection(old)
+         call keep_cell(old, before, i, after)
          after%unknowns(:, end_block(mesh, i, both)) = &
             before%unknowns(:, end_block(mesh_before, old, both))
          if (.not. overlaps%is_whole(i, mesh_before%fracture, mesh%fracture)) then
@@ -140,6 +109,56 @@ contains
          end if
       end do
    end subroutine transfer_state
+
+   !> Cells of the rock, by overlapping areas: fluid content as a sum, unknowns as means.
+   subroutine transfer_rock(map, mesh_before, mesh, before, after)
+      type(mesh_map_t), intent(in) :: map
+      type(mesh_t), intent(in) :: mesh_before, mesh
+      type(state_t), intent(in) :: before
+      type(state_t), intent(inout) :: after
+      real(rk) :: area
+      integer(ik) :: c, k, old
+
+      allocate (after%unknowns(3, block_count(mesh)), after%content(mesh%n_cells), source=0.0_rk)
+      do c = 1, mesh%n_cells
+         old = map%cell_old(c)
+         if (old > 0) then
+            after%content(c) = before%content(old)
+            after%unknowns(:, c) = before%unknowns(:, old)
+            cycle
+         end if
+         area = cell_area(mesh, c)
+         do k = map%overlap_first(c), map%overlap_first(c + 1) - 1
+            old = map%overlap_cell(k)
+            after%content(c) = after%content(c) + before%content(old)*map%overlap_area(k) &
+                               /cell_area(mesh_before, old)
+            after%unknowns(:, c) = after%unknowns(:, c) + before%unknowns(:, old) &
+                                   *map%overlap_area(k)/area
+         end do
+      end do
+   end subroutine transfer_rock
+
+   !> A fracture cell keeps its state.
+   pure subroutine keep_cell(old, before, i, after)
+      integer(ik), intent(in) :: old, i  !< its number before and after
+      type(state_t), intent(in) :: before
+      type(state_t), intent(inout) :: after
+
+      after%jump(:, :, i) = before%jump(:, :, old)
+      after%slip_before(:, i) = before%slip_before(:, old)
+      if (allocated(before%slip_path)) then
+         after%slip_path(:, i) = before%slip_path(:, old)
+         after%opened(:, i) = before%opened(:, old)
+         after%opened_before(:, i) = before%opened_before(:, old)
+      end if
+      after%traction(:, :, i) = before%traction(:, :, old)
+      after%contact(:, i) = before%contact(:, old)
+      after%pressure(i) = before%pressure(old)
+      after%aperture(i) = before%aperture(old)
+      after%void(i) = before%void(old)
+      after%leakoff(i) = before%leakoff(old)
+      after%injection(i) = before%injection(old)
+   end subroutine keep_cell
 
    !> A cell that consists of parts of others. Their fluid goes along with them: the volume, and as
    !! the pressure is the mean by volume, the mass.

@@ -237,7 +237,7 @@ contains
       do k = state_stick, state_open
          has_occurred(k) = has_occurred(k) .or. any(contact == k)
       end do
-      call full_slopes(model%condensed%stiffness, eq%slopes, eq%x_of_q, eq%q_per_x, jacobian)
+      call full_slopes(model%condensed%stiffness, eq%slopes, jacobian)
       allocate (row_scale, source=maxval(abs(jacobian), dim=1))
       worst = 0.0_rk
       n_compared = 0

@@ -10,9 +10,6 @@ program test_coarse_full_step
    implicit none(type, external)
 
    integer(ik), parameter :: n = 5  !< two faces, two cells of fluid, a flow between them
-   integer(ik), parameter :: x_of_q(2) = [1_ik, 2_ik]
-   real(rk), parameter :: q_per_x(2) = 1.0_rk
-   logical, parameter :: is_flow(n) = [.false., .false., .false., .false., .true.]
    type(checks_t) :: checks
 
    call compare("small", 0.1_rk)
@@ -41,6 +38,8 @@ contains
          stiffness(1, 2) = volume*by_other
          stiffness(2, 1) = volume*by_other
       end if
+      slopes%x_of_q = [1_ik, 2_ik]
+      slopes%q_per_x = [1.0_rk, 1.0_rk]
       call slopes%clear(n)
       do i = 1, 2
          call slopes%add_force(i, i, resistance)
@@ -57,11 +56,12 @@ contains
       kinds%fluid = [3_ik, 4_ik]
       kinds%flow = [5_ik]
       kinds%end_of_flow = [4_ik]
+      kinds%is_flow = [.false., .false., .false., .false., .true.]
+      kinds%many = 0
       residual = [1.0_rk, -2.0_rk, 1.0_rk, 1.0_rk, 0.5_rk]
-      call find_full_step(stiffness, slopes, kinds, x_of_q, q_per_x, is_flow, residual, 1.0_rk, &
-                          .true., step, quality, links_faces=.true.)
+      call find_full_step(stiffness, slopes, kinds, residual, 1.0_rk, .true., step, quality)
       call checks%is_true(.not. quality%is_singular, name//": there is a step")
-      call full_slopes(stiffness, slopes, x_of_q, q_per_x, jacobian)
+      call full_slopes(stiffness, slopes, jacobian)
       ! Rounding: some terms of 1e-16 of the largest.
       call checks%is_close(maxval(abs(matmul(step, jacobian) + residual) &
                                   /maxval(abs(jacobian), dim=1))/maxval(abs(step)), 0.0_rk, &

@@ -176,7 +176,7 @@ contains
       below = eq
       above = eq
       call eq%evaluate(x)
-      call full_slopes(model%condensed%stiffness, eq%slopes, eq%x_of_q, eq%q_per_x, jacobian)
+      call full_slopes(model%condensed%stiffness, eq%slopes, jacobian)
       worst = 0.0_rk
       do k = 1, size(x, kind=ik)
          step = 1.0e-4_rk*max(abs(x(k)), 1.0e6_rk)

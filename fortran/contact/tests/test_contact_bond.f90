@@ -2,8 +2,8 @@
 !! go of at once.
 program test_contact_bond
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual, state_name, &
-                          state_open, state_slip, state_stick
+   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, &
+                          contact_residual, state_name, state_open, state_slip, state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
    use testing_checks, only: checks_t
@@ -64,22 +64,23 @@ contains
       real(rk), intent(in) :: traction(2), jump(2), slip_before
       integer(ik), intent(in) :: expected
       real(rk), parameter :: step(4) = [3.0e2_rk, 3.0e2_rk, 1.0e-10_rk, 1.0e-10_rk]
-      real(rk) :: difference(2), ends(2, 2), ignored(2, 4), slope(2, 4), x(4)
-      integer(ik) :: state, way
+      real(rk) :: difference(2), ends(2, 2), slope(2, 4), x(4)
+      integer(ik) :: way
+      type(contact_equations_t) :: found
       integer :: k, side
 
       way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, &
-                             ends(:, 1), slope(:, 1:2), slope(:, 3:4))
-      call checks%is_true(state == expected, "state: "//state_name(state)//" for " &
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
+      slope = reshape([found%by_traction, found%by_jump], [2, 4])
+      call checks%is_true(found%state == expected, "state: "//state_name(found%state)//" for " &
                           //state_name(expected))
       do k = 1, 4
          do side = 1, 2
             x = [traction, jump]
             x(k) = x(k) + step(k)*merge(-1.0_rk, 1.0_rk, side == 1)
             way = 0
-            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, state, &
-                                   ends(:, side), ignored(:, :2), ignored(:, 3:))
+            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, found)
+            ends(:, side) = found%residual
          end do
          difference = (ends(:, 2) - ends(:, 1))/(2.0_rk*step(k))
          call checks%is_close(maxval(abs(difference - slope(:, k)))*step(k), 0.0_rk, 1.0e-6_rk, &
@@ -109,15 +110,14 @@ contains
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: traction(2), jump(2), slip_before
       integer(ik), intent(in) :: expected
-      real(rk) :: ignored(2, 4), residual(2)
-      integer(ik) :: state, way
+      integer(ik) :: way
+      type(contact_equations_t) :: found
 
       way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
-                             ignored(:, :2), ignored(:, 3:))
-      call checks%is_true(state == expected, "admissible: "//state_name(state)//" for " &
-                          //state_name(expected))
-      call checks%is_close(maxval(abs(residual)), 0.0_rk, 1.0e-8_rk, "equations")
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
+      call checks%is_true(found%state == expected, "admissible: "//state_name(found%state) &
+                          //" for "//state_name(expected))
+      call checks%is_close(maxval(abs(found%residual)), 0.0_rk, 1.0e-8_rk, "equations")
       call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), 0.0_rk, &
                            1.0e-8_rk, "law")
    end subroutine expect

@@ -2,8 +2,9 @@
 program test_contact_law
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_law_t, contact_residual, is_same, is_valid, &
-                          state_name, state_open, state_slip, state_stick
+   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, &
+                          contact_residual, is_same, is_valid, state_name, state_open, state_slip, &
+                          state_stick
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -92,23 +93,24 @@ contains
       integer(ik), intent(in) :: expected
 
       real(rk), parameter :: step(4) = [1.0e3_rk, 1.0e3_rk, 1.0e-9_rk, 1.0e-9_rk]
-      real(rk) :: slope(2, 4), difference(2), x(4), ends(2, 2), ignored(2, 4)
-      integer(ik) :: state, way
+      real(rk) :: slope(2, 4), difference(2), x(4), ends(2, 2)
+      integer(ik) :: way
+      type(contact_equations_t) :: found
       integer :: k, side
 
       way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, &
-                             ends(:, 1), slope(:, 1:2), slope(:, 3:4))
-      call checks%is_true(state == expected, "state: "//state_name(state)//" for " &
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
+      slope = reshape([found%by_traction, found%by_jump], [2, 4])
+      call checks%is_true(found%state == expected, "state: "//state_name(found%state)//" for " &
                           //state_name(expected))
       do k = 1, 4
          do side = 1, 2
             x = [traction, jump]
             x(k) = x(k) + step(k)*merge(-1.0_rk, 1.0_rk, side == 1)
             way = 0
-            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, state, &
-                                   ends(:, side), ignored(:, :2), ignored(:, 3:))
-            call checks%is_true(state == expected, "difference within one state")
+            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, found)
+            ends(:, side) = found%residual
+            call checks%is_true(found%state == expected, "difference within one state")
          end do
          difference = (ends(:, 2) - ends(:, 1))/(2.0_rk*step(k))
          call checks%is_close(maxval(abs(difference - slope(:, k)))*step(k), 0.0_rk, 1.0e-6_rk, &
@@ -173,23 +175,23 @@ contains
       real(rk), parameter :: rounding = 2.6e-22_rk  ! [m]
       real(rk), parameter :: slip = (law%friction*force(1) - force(2)) &
                              /(spring(2) + law%friction*spring(1)*law%dilation)
-      real(rk) :: jump(2), residual(2), by_traction(2, 2), by_jump(2, 2), slope(2, 2), step(2)
-      integer(ik) :: state, way
+      real(rk) :: jump(2), slope(2, 2), step(2)
+      integer(ik) :: way
+      type(contact_equations_t) :: found
       integer :: k
 
       jump = [0.0_rk, rounding]
       way = 0
       do k = 1, 8
-         call contact_equations(law, stiffness, force - spring*jump, jump, rounding, way, state, &
-                                residual, by_traction, by_jump)
-         slope = by_jump
-         slope(:, 1) = slope(:, 1) - by_traction(:, 1)*spring(1)
-         slope(:, 2) = slope(:, 2) - by_traction(:, 2)*spring(2)
-         step = [slope(2, 2)*residual(1) - slope(1, 2)*residual(2), &
-                 slope(1, 1)*residual(2) - slope(2, 1)*residual(1)]
+         call contact_equations(law, stiffness, force - spring*jump, jump, rounding, way, found)
+         slope = found%by_jump
+         slope(:, 1) = slope(:, 1) - found%by_traction(:, 1)*spring(1)
+         slope(:, 2) = slope(:, 2) - found%by_traction(:, 2)*spring(2)
+         step = [slope(2, 2)*found%residual(1) - slope(1, 2)*found%residual(2), &
+                 slope(1, 1)*found%residual(2) - slope(2, 1)*found%residual(1)]
          jump = jump - step/(slope(1, 1)*slope(2, 2) - slope(1, 2)*slope(2, 1))
       end do
-      call checks%is_true(state == state_slip, "slips")
+      call checks%is_true(found%state == state_slip, "slips")
       call checks%is_close(jump(2), -slip, 1.0e-9_rk*slip, "as far as the springs let it")
       call checks%is_close(jump(1), law%dilation*slip, 1.0e-9_rk*slip, "and opens")
    end subroutine test_slip_of_rounding
@@ -199,15 +201,14 @@ contains
       real(rk), intent(in) :: traction(2), jump(2), slip_before
       integer(ik), intent(in) :: expected
 
-      real(rk) :: residual(2), ignored(2, 4)
-      integer(ik) :: state, way
+      integer(ik) :: way
+      type(contact_equations_t) :: found
 
       way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
-                             ignored(:, :2), ignored(:, 3:))
-      call checks%is_true(state == expected, "admissible: "//state_name(state)//" for " &
-                          //state_name(expected))
-      call checks%is_close(maxval(abs(residual)), 0.0_rk, 1.0e-8_rk, "equations of " &
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
+      call checks%is_true(found%state == expected, "admissible: "//state_name(found%state) &
+                          //" for "//state_name(expected))
+      call checks%is_close(maxval(abs(found%residual)), 0.0_rk, 1.0e-8_rk, "equations of " &
                            //state_name(expected))
       call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), &
                            0.0_rk, 1.0e-8_rk, "law in state "//state_name(expected))
@@ -243,13 +244,12 @@ contains
       real(rk), intent(in) :: size  !< by how much the law is broken [Pa]
       character(len=*), intent(in) :: name
 
-      real(rk) :: residual(2), ignored(2, 4)
-      integer(ik) :: state, way
+      integer(ik) :: way
+      type(contact_equations_t) :: found
 
       way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, state, residual, &
-                             ignored(:, :2), ignored(:, 3:))
-      call checks%is_true(maxval(abs(residual)) > 1.0_rk, name//" is not a solution")
+      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
+      call checks%is_true(maxval(abs(found%residual)) > 1.0_rk, name//" is not a solution")
       call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), size, &
                            1.0e-8_rk*size, name)
    end subroutine refuse
@@ -267,25 +267,26 @@ contains
       integer(ik), intent(in) :: way_before, way_expected, expected
       character(len=*), intent(in) :: name
 
-      real(rk) :: residual(2), ignored(2, 4)
-      integer(ik) :: state, way
+      integer(ik) :: way
+      type(contact_equations_t) :: found
 
       way = way_before
       call contact_equations(law, stiffness, [-4.0e6_rk, 3.0e6_rk], [0.0_rk, 0.0_rk], 0.0_rk, &
-                             way, state, residual, ignored(:, :2), ignored(:, 3:))
-      call checks%is_true(state == expected .and. way == way_expected, name)
+                             way, found)
+      call checks%is_true(found%state == expected .and. way == way_expected, name)
       way = way_before
       call contact_equations(law, stiffness, [1.0e6_rk, 3.0e6_rk], [0.0_rk, 0.0_rk], 0.0_rk, &
-                             way, state, residual, ignored(:, :2), ignored(:, 3:))
-      call checks%is_true(state == state_open .and. way == 0, "open faces forget their way")
+                             way, found)
+      call checks%is_true(found%state == state_open .and. way == 0, "open faces forget their way")
    end subroutine walk
 
    !> The faces receive f on side + and -f on side -, which moves by the slip relative to side +.
    !! The work done on the faces, -f_tau*slip, is lost, not gained: f_tau has the sign of the
    !! slip.
    subroutine test_friction_opposes_slip()
-      real(rk) :: residual(2), ignored(2, 4), slip, traction(2), work
-      integer(ik) :: state, way
+      real(rk) :: slip, traction(2), work
+      integer(ik) :: way
+      type(contact_equations_t) :: found
       integer :: direction
 
       do direction = -1, 1, 2
@@ -293,14 +294,12 @@ contains
          way = 0
          traction = [-4.0e6_rk, 0.0_rk]
          ! The slip equation is linear in f_tau with slope 1: one step solves it.
-         call contact_equations(rough, stiffness, traction, [0.0_rk, slip], 0.0_rk, way, state, &
-                                residual, ignored(:, :2), ignored(:, 3:))
-         call checks%is_true(state /= state_open, "pressed together")
+         call contact_equations(rough, stiffness, traction, [0.0_rk, slip], 0.0_rk, way, found)
+         call checks%is_true(found%state /= state_open, "pressed together")
          traction(2) = direction*5.0e6_rk
          way = 0
-         call contact_equations(rough, stiffness, traction, [0.0_rk, slip], 0.0_rk, way, state, &
-                                residual, ignored(:, :2), ignored(:, 3:))
-         traction(2) = traction(2) - residual(2)
+         call contact_equations(rough, stiffness, traction, [0.0_rk, slip], 0.0_rk, way, found)
+         traction(2) = traction(2) - found%residual(2)
          work = -traction(2)*slip
          call checks%is_close(work, -0.5_rk*4.0e6_rk*1.0e-6_rk, 1.0e-12_rk, "friction dissipates")
       end do

@@ -3,7 +3,7 @@
 program test_twolevel_certainty
    use base_kinds, only: rk
    use testing_checks, only: checks_t
-   use twolevel_certainty, only: certainty_t
+   use twolevel_certainty, only: certainty_t, tip_excess_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -37,24 +37,26 @@ contains
       type(certainty_t), intent(inout) :: certainty
       logical, intent(in) :: grows(2)
 
-      call certainty%accept(1.0_rk, 3.0e6_rk, grows, [0.01_rk, 0.01_rk], [-5.0_rk, -5.0_rk], &
-                            [0.01_rk, 0.01_rk], 0.2_rk, 3.0e6_rk, 0.5_rk)
+      call certainty%accept(1.0_rk, 3.0e6_rk, &
+                            [tip_excess_t(grows(1), 0.01_rk, -5.0_rk, 0.01_rk), &
+                             tip_excess_t(grows(2), 0.01_rk, -5.0_rk, 0.01_rk)], &
+                            0.2_rk, 3.0e6_rk, 0.5_rk)
    end subroutine accept
 
    !> p' = 2 t by backward Euler with the step h is h t too large at t; of the first step, which has
    !! none to compare with, h**2 is not known.
    subroutine test_steps()
       type(certainty_t) :: certainty
-      real(rk), parameter :: h = 0.1_rk, none(0) = [real(rk) ::]
-      logical, parameter :: no_tips(0) = [logical ::]
+      real(rk), parameter :: h = 0.1_rk
+      type(tip_excess_t) :: no_tips(0)
       real(rk) :: p
       integer :: n
 
       p = 0.0_rk
-      call certainty%accept(0.0_rk, p, no_tips, none, none, none, 0.0_rk, 0.0_rk, 0.0_rk)
+      call certainty%accept(0.0_rk, p, no_tips, 0.0_rk, 0.0_rk, 0.0_rk)
       do n = 1, 20
          p = p + h*2.0_rk*(n*h)
-         call certainty%accept(h, p, no_tips, none, none, none, 0.0_rk, 0.0_rk, 0.0_rk)
+         call certainty%accept(h, p, no_tips, 0.0_rk, 0.0_rk, 0.0_rk)
       end do
       call checks%is_close(certainty%pressure, p - 4.0_rk - h**2, 1.0e-12_rk, "error of the steps")
       call checks%is_close(certainty%length, 0.0_rk, 0.0_rk, "nothing has grown")
