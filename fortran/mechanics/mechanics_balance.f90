@@ -1,7 +1,6 @@
 !> The load that a network bears: the factor at which the largest K_eq of its tips is K_IC.
 !!
-!! The difference between K_eq and K_IC that is accepted at growing tips, and the load that
-!! distributes it over them.
+!! By how much K_eq of tips that grow may miss K_IC, and the load that shares it out.
 module mechanics_balance
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -17,17 +16,31 @@ module mechanics_balance
    !> Width of a bracket, over its place, that holds a jump of the intensity and not its root.
    real(rk), parameter :: at_jump = 1.0e-13_rk
 
+   !> The search for a load: the factors between which it lies, and the last evaluation.
+   type :: search_t
+      real(rk) :: started = 0.0_rk, limit = 0.0_rk  !< of balance_load [-]
+      logical :: has_low = .false., has_high = .false.
+      type(reading_t) :: low  !< the tips are held
+      type(reading_t) :: high  !< a tip exceeds its toughness
+      type(reading_t) :: last
+      real(rk) :: largest = 0.0_rk  !< K_eq then [Pa m^1/2]
+   contains
+      procedure :: narrow
+      procedure :: is_at_jump
+      procedure :: step
+   end type search_t
+
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on 1 - K_eq/K_IC of tips that have advanced [-]
 
 contains
 
    !> Take the load from the present factor, at which the tips have been evaluated, to that at which
    !! the next tip is at its toughness: up, no farther than a limit, or down, no farther than where
-   !! the programme begins. `holds` is false where at the limit no tip is there yet. Where not even
-   !! at the beginning the tips are held, growth is `loose`, and the load is where it started from.
+   !! the programme begins. `holds` is false where at the limit no tip is there yet. If tips exceed
+   !! their toughness even at the beginning, growth is `loose`, and the load is where it started.
    !!
    !! Intensities are linear in the factor between changes of contact, and proportional to it where
-   !! all loads are: then the first or second try is the last.
+   !! all loads are: then the first or second evaluation is the last.
    subroutine balance_load(self, started, limit, timers, holds, is_loose, slope, error)
       class(loaded_body_t), intent(inout) :: self
       real(rk), intent(in) :: started  !< the factor of the last accepted state [-]
@@ -37,103 +50,161 @@ contains
       logical, intent(out) :: is_loose  !< loads that do not change with the factor drive the tips
       real(rk), intent(out) :: slope(:)  !< (tips) dK_eq/df at that factor [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: tries = 60, guesses = 3
-      type(reading_t) :: last, next, low, high
-      real(rk) :: factor, k_last(size(self%tip))
-      logical :: has_low, has_high
+      integer, parameter :: evaluations_max = 60
+      type(search_t) :: search
+      real(rk) :: k_last(size(self%tip))
       integer :: k
 
       holds = .false.
       is_loose = .false.
-      has_low = .false.
-      has_high = .false.
       slope = self%tip%drive%intensity/nonzero(self%factor)
       if (all(self%tip%arrested)) return
-      do k = 1, tries
-         next = self%reading()
+      search%started = started
+      search%limit = limit
+      do k = 1, evaluations_max
          holds = abs(self%largest_excess()) <= same_value
          if (holds) return
-         if (self%largest_excess() < 0.0_rk) then
-            if (is_at(limit)) return
-            low = next
-            has_low = .true.
-         else
-            if (is_at(self%bounds(1))) then
-               call self%respond(started, timers, error)
-               if (allocated(error)) return
-               is_loose = self%largest_excess() >= 0.0_rk
-               if (is_loose) then
-                  holds = .true.
-                  slope = self%tip%drive%intensity/nonzero(self%factor)
-                  return
-               end if
-               next = self%reading()  ! K rises towards both ends: this is the place to rise from
-               low = next
-               has_low = .true.
-               last = next
-               call self%respond(limit, timers, error)
-               if (allocated(error)) return
-               cycle
-            end if
-            high = next
-            has_high = .true.
+         if (self%largest_excess() < 0.0_rk .and. is_at(self, limit, limit)) return
+         if (self%largest_excess() >= 0.0_rk .and. is_at(self, self%bounds(1), limit)) then
+            call start_again(self, search, timers, is_loose, error)
+            holds = is_loose
+            if (is_loose) slope = self%tip%drive%intensity/nonzero(self%factor)
+            if (allocated(error) .or. is_loose) return
+            cycle
          end if
-         if (has_low .and. has_high) then
-            if (abs(high%factor - low%factor) <= &
-                at_jump*max(abs(low%factor), abs(high%factor))) then
-               ! Where contact changes the intensity may jump past the toughness: just below that.
-               if (self%largest_excess() > 0.0_rk) call self%respond(low%factor, timers, error)
-               holds = .true.
-               return
-            end if
-            factor = 0.5_rk*(low%factor + high%factor)
-            if (mod(k, 4) /= 0) factor = foreseen_onset(last, next, low%factor, high%factor, &
-                                                        self%scene%material%toughness)
-         else if (k == 1) then
-            factor = self%factor/(1.0_rk + max(-0.5_rk, self%largest_excess()))
-         else if (k <= guesses) then
-            factor = next%factor + (next%factor - last%factor)*extrapolation(last, next)
-         else if (has_low) then
-            factor = self%factor + 2.0_rk*(self%factor - started)
-            if (.not. (factor - self%factor)*(limit - self%bounds(1)) > 0.0_rk &
-                .or. k > 2*guesses) factor = limit
-         else  ! in steps: K may rise again where the load has fallen far
-            factor = self%bounds(1) + 0.7_rk*(self%factor - self%bounds(1))
-            if (k > 10*guesses) factor = self%bounds(1)
+         call search%narrow(self)
+         if (search%is_at_jump()) then
+            ! Where contact changes the intensity may jump past the toughness: just below that.
+            if (self%largest_excess() > 0.0_rk) call self%respond(search%low%factor, timers, error)
+            holds = .true.
+            return
          end if
-         factor = within(factor, self%bounds(1), limit)
-         last = next
          k_last = self%tip%drive%intensity
-         call self%respond(factor, timers, error)
+         call search%step(self, k, timers, error)
          if (allocated(error)) return
-         slope = (self%tip%drive%intensity - k_last)/nonzero(self%factor - last%factor)
+         slope = (self%tip%drive%intensity - k_last)/nonzero(self%factor - search%last%factor)
       end do
-      call raise_error(error, "", "no load was found at which the growing tips are in equilibrium")
-
-   contains
-
-      pure logical function is_at(place)
-         real(rk), intent(in) :: place  !< a factor [-]
-
-         is_at = abs(self%factor - place) <= same_value*abs(limit - self%bounds(1))
-      end function is_at
-
-      !> How many times the last change of the factor again, for the excess to vanish.
-      pure real(rk) function extrapolation(a, b)
-         type(reading_t), intent(in) :: a, b
-         real(rk) :: excess_a, excess_b
-         real(rk), parameter :: most = 10.0_rk
-
-         excess_a = maxval(k_last, mask=.not. self%tip%arrested) - self%scene%material%toughness
-         excess_b = self%largest_excess()*self%scene%material%toughness
-         extrapolation = 0.0_rk
-         if (abs(b%factor - a%factor) > 0.0_rk) extrapolation = most
-         if (abs(excess_a - excess_b) > 0.0_rk) then
-            extrapolation = max(-most, min(most, excess_b/(excess_a - excess_b)))
-         end if
-      end function extrapolation
-
+      call raise_error(error, "", "no equilibrium load of the tips was found")
    end subroutine balance_load
+
+   !> The load is at a factor, compared with the way from where the programme begins to a limit.
+   pure logical function is_at(self, factor, limit)
+      class(loaded_body_t), intent(in) :: self
+      real(rk), intent(in) :: factor, limit  !< [-]
+
+      is_at = abs(self%factor - factor) <= same_value*abs(limit - self%bounds(1))
+   end function is_at
+
+   !> Tips exceed their toughness where the programme begins: either also where the load started,
+   !! and no factor holds them, or K rises towards both ends, and the load rises from there.
+   subroutine start_again(self, search, timers, is_loose, error)
+      class(loaded_body_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      type(timers_t), intent(inout) :: timers
+      logical, intent(out) :: is_loose
+      type(error_t), allocatable, intent(out) :: error
+
+      is_loose = .false.
+      call self%respond(search%started, timers, error)
+      if (allocated(error)) return
+      is_loose = self%largest_excess() >= 0.0_rk
+      if (is_loose) return
+      search%low = self%reading()
+      search%has_low = .true.
+      search%last = search%low
+      call self%respond(search%limit, timers, error)
+   end subroutine start_again
+
+   !> The present load becomes an end of the bracket.
+   subroutine narrow(self, body)
+      class(search_t), intent(inout) :: self
+      class(loaded_body_t), intent(in) :: body
+
+      if (body%largest_excess() < 0.0_rk) then
+         self%low = body%reading()
+         self%has_low = .true.
+      else
+         self%high = body%reading()
+         self%has_high = .true.
+      end if
+   end subroutine narrow
+
+   !> The bracket is as narrow as rounding lets it be: it holds a jump of the intensity.
+   pure logical function is_at_jump(self)
+      class(search_t), intent(in) :: self
+
+      is_at_jump = self%has_low .and. self%has_high
+      if (is_at_jump) then
+         associate (low => self%low%factor, high => self%high%factor)
+            is_at_jump = abs(high - low) <= at_jump*max(abs(low), abs(high))
+         end associate
+      end if
+   end function is_at_jump
+
+   !> Evaluate the tips at the next factor.
+   subroutine step(self, body, k, timers, error)
+      class(search_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+      integer, intent(in) :: k  !< evaluations so far
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(reading_t) :: next
+      real(rk) :: factor
+
+      next = body%reading()
+      factor = within(next_factor(self, body, next, k), body%bounds(1), self%limit)
+      self%last = next
+      self%largest = maxval(body%tip%drive%intensity, mask=.not. body%tip%arrested)
+      call body%respond(factor, timers, error)
+   end subroutine step
+
+   !> The factor that is evaluated next, before it is limited [-].
+   real(rk) function next_factor(search, body, next, k) result(factor)
+      type(search_t), intent(in) :: search
+      class(loaded_body_t), intent(in) :: body
+      type(reading_t), intent(in) :: next  !< the present load
+      integer, intent(in) :: k  !< evaluations so far
+      integer, parameter :: guesses = 3
+
+      associate (first => body%bounds(1), limit => search%limit, low => search%low%factor, &
+                 high => search%high%factor)
+         if (search%has_low .and. search%has_high) then
+            factor = 0.5_rk*(low + high)
+            if (mod(k, 4) /= 0) factor = foreseen_onset(search%last, next, low, high, &
+                                                        body%scene%material%toughness)
+         else if (k == 1) then
+            factor = body%factor/(1.0_rk + max(-0.5_rk, body%largest_excess()))
+         else if (k <= guesses) then
+            factor = next%factor &
+                     + (next%factor - search%last%factor)*extrapolation(search, body, next)
+         else if (search%has_low) then
+            factor = body%factor + 2.0_rk*(body%factor - search%started)
+            if (.not. (factor - body%factor)*(limit - first) > 0.0_rk .or. k > 2*guesses) then
+               factor = limit
+            end if
+         else  ! in steps: K may rise again where the load has fallen far
+            factor = first + 0.7_rk*(body%factor - first)
+            if (k > 10*guesses) factor = first
+         end if
+      end associate
+   end function next_factor
+
+   !> How many times the last change of the factor again, for the excess to vanish.
+   pure real(rk) function extrapolation(search, body, next)
+      type(search_t), intent(in) :: search
+      class(loaded_body_t), intent(in) :: body
+      type(reading_t), intent(in) :: next
+      real(rk), parameter :: most = 10.0_rk
+      real(rk) :: before, excess
+
+      before = search%largest - body%scene%material%toughness
+      excess = body%largest_excess()*body%scene%material%toughness
+      extrapolation = 0.0_rk
+      if (abs(next%factor - search%last%factor) > 0.0_rk) extrapolation = most
+      if (abs(before - excess) > 0.0_rk) then
+         extrapolation = max(-most, min(most, excess/(before - excess)))
+      end if
+   end function extrapolation
 
    !> A divisor.
    elemental real(rk) function nonzero(value)

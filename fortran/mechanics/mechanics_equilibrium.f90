@@ -53,6 +53,24 @@ module mechanics_equilibrium
       procedure :: end_paths
    end type increment_t
 
+   !> The advances of a group of tips that are being looked for.
+   type :: group_search_t
+      integer(ik), allocatable :: tip(:)
+      integer(ik), allocatable :: kind(:)  !< of each, from 1: those of one go equally far
+      type(tip_t), allocatable :: begun(:)  !< all tips, at the ends of new segments
+      logical :: is_placed = .false.  !< there they have been evaluated
+      real(rk), allocatable :: room(:)  !< of each, to the end of its segment [m]
+      real(rk), allocatable :: advance(:)  !< of each [m]
+      real(rk) :: share = 1.0_rk  !< of the advances, as far as the limit of the load drives them [-]
+      real(rk), allocatable :: lack(:)  !< of each, K_IC - K_eq [Pa m^1/2]
+      real(rk), allocatable :: slope(:)  !< (all tips) dK_eq/df [Pa m^1/2]
+      real(rk), allocatable :: placed(:)  !< advance of the last evaluation [m]
+      real(rk), allocatable :: intensity(:)  !< K_eq then [Pa m^1/2]
+      type(length_control_t) :: control
+   contains
+      procedure :: misses
+   end type group_search_t
+
 contains
 
    !> Grow by one increment, from a state whose tips have been evaluated. Where the tips need more
@@ -179,91 +197,143 @@ contains
       logical, intent(out) :: is_done
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries = 15
-      type(tip_t) :: begun(size(body%tip))
-      integer(ik) :: kind(size(group))
-      real(rk), dimension(size(group)) :: advance, before, intensity, lack, room
-      real(rk) :: slope(size(body%tip)), share, share_held, share_missed
-      logical :: has_moved, is_placed
+      type(group_search_t) :: search
+      logical :: has_moved, is_over
       integer :: try
-      type(length_control_t) :: control
 
       is_done = .false.
-      begun = body%tip
-      kind = numbered(self%tries%alike(group))
-      room = self%tries%rooms(group)
-      is_placed = all(.not. self%tries%segment_before(group)%is_open)  ! at the ends of new pieces
-      advance = fitted(merge(self%pace(group), 1.0_rk, self%pace(group) > 0.0_rk), room, &
-                       self%tries%segment(group)%accepted, least*body%rules%increment)
-      share = 1.0_rk
-      share_held = 0.0_rk
-      share_missed = 1.0_rk
+      call begin_search(self, body, group, search)
       if (size(group) == 1) self%prefers_one = .false.
       if (size(group) > 1 .and. .not. knows(self, group)) then
-         call probe_group(self, body, group, begun, limit, is_placed, timers, lack, slope, error)
+         call probe_group(self, body, search, limit, timers, error)
          if (allocated(error)) return
-         is_placed = .false.
-         if (.not. self%prefers_one .and. &
-             maxval(means(kind, lack)) > tolerance*body%rules%toughness) then
-            advance = room
-            call correct(self, body, group, kind, lack, slope, room, control, advance, has_moved)
+         if (.not. self%prefers_one .and. search%misses(body)) then
+            search%advance = search%room
+            call correct(self, body, search, has_moved)
          end if
       end if
       do try = 1, tries
-         if (.not. (is_placed .and. all(advance >= room))) then
-            call self%tries%place(body, group, share*advance, begun)
-            call body%evaluate(timers, error)
-            if (allocated(error)) return
-         end if
-         is_placed = .false.
-         if (try > 1 .and. size(group) > 1) then
-            ! At the load of the last try.
-            call learn_from_trial(self%matrix, share*advance - before, &
-                                  body%tip(group)%drive%intensity - intensity)
-         end if
-         call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
-                           error)
+         call respond(self, body, search, limit, try > 1, timers, error)
          if (allocated(error)) return
-         call share_misfit(body, pack(group, advance > 0.0_rk), limit, slope, timers, error)
-         if (allocated(error)) return
-         intensity = body%tip(group)%drive%intensity
-         lack = needed_intensity(body) - intensity
-         before = share*advance
          if (.not. self%holds) then
-            if (body%largest_excess() >= -tolerance) exit
-            ! The limit of the load does not drive them so far.
-            share_missed = share
-            share = 0.5_rk*(share_held + share_missed)
-            if (share*maxval(advance) < least*body%rules%increment) exit
+            call reduce_share(body, search, is_over)
+            if (is_over) exit
             cycle
-         else if (share < 1.0_rk) then
+         else if (search%share < 1.0_rk) then
             exit
          end if
          if (.not. is_last) then
-            if (minval(lack) > tolerance*body%rules%toughness) then
-               ! Another tip is ahead of all of the group.
-               group = joined_groups(group, self%tries%with_their_like(leading_tips(body, &
-                                                                                    together)))
+            call judge_group(self, body, search, group)
+            if (size(group) /= size(search%tip)) return
+         end if
+         associate (lack => means(search%kind, search%lack))
+            if (maxval(merge(lack, 0.0_rk, search%advance > 0.0_rk)) &
+                <= tolerance*body%rules%toughness) exit
+            if (self%prefers_one .and. .not. is_last) then
+               group = pack(group, lack <= tolerance*body%rules%toughness)
                return
-            else if (maxval(abs(lack - means(kind, lack))) > tolerance*body%rules%toughness) then
-               call self%tries%part(group, abs(lack - means(kind, lack)) &
-                                    > tolerance*body%rules%toughness)
-               kind = numbered(self%tries%alike(group))
-               control = length_control_t()
             end if
-         end if
-         if (maxval(merge(means(kind, lack), 0.0_rk, advance > 0.0_rk)) &
-             <= tolerance*body%rules%toughness) exit
-         if (self%prefers_one .and. .not. is_last) then
-            group = pack(group, means(kind, lack) <= tolerance*body%rules%toughness)
-            return
-         end if
-         call correct(self, body, group, kind, lack, slope, room, control, advance, has_moved)
+         end associate
+         call correct(self, body, search, has_moved)
          if (.not. has_moved) exit
       end do
-      self%misfit = maxval(merge(lack, 0.0_rk, advance > 0.0_rk))/body%rules%toughness
+      self%misfit = maxval(merge(search%lack, 0.0_rk, search%advance > 0.0_rk)) &
+                    /body%rules%toughness
       is_done = .true.
-      call self%tries%keep_paths(body, group, share*advance)
+      call self%tries%keep_paths(body, group, search%share*search%advance)
    end subroutine find_advances
+
+   !> Begin with advances in proportion to the last ones; one tip goes to the end of its segment.
+   subroutine begin_search(self, body, group, search)
+      class(increment_t), intent(in) :: self
+      class(loaded_body_t), intent(in) :: body
+      integer(ik), intent(in) :: group(:)  !< tips
+      type(group_search_t), intent(out) :: search
+
+      search%tip = group
+      search%kind = numbered(self%tries%alike(group))
+      search%begun = body%tip
+      search%room = self%tries%rooms(group)
+      search%is_placed = all(.not. self%tries%segment_before(group)%is_open)
+      search%advance = fitted(merge(self%pace(group), 1.0_rk, self%pace(group) > 0.0_rk), &
+                              search%room, self%tries%segment(group)%accepted, &
+                              least*body%rules%increment)
+      allocate (search%slope(size(body%tip)))
+   end subroutine begin_search
+
+   !> Some tips of a group need more than the tolerance to be at their toughness.
+   pure logical function misses(self, body)
+      class(group_search_t), intent(in) :: self
+      class(loaded_body_t), intent(in) :: body
+
+      misses = maxval(means(self%kind, self%lack)) > tolerance*body%rules%toughness
+   end function misses
+
+   !> Evaluate the tips at their advances, and balance the load.
+   subroutine respond(self, body, search, limit, learns, timers, error)
+      class(increment_t), intent(inout) :: self
+      class(loaded_body_t), intent(inout) :: body
+      type(group_search_t), intent(inout) :: search
+      real(rk), intent(in) :: limit  !< the largest load factor [-]
+      logical, intent(in) :: learns  !< the matrix is updated, at the load of the last evaluation
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (group => search%tip)
+         if (.not. (search%is_placed .and. all(search%advance >= search%room))) then
+            call self%tries%place(body, group, search%share*search%advance, search%begun)
+            call body%evaluate(timers, error)
+            if (allocated(error)) return
+         end if
+         search%is_placed = .false.
+         if (learns .and. size(group) > 1) then
+            call learn_from_trial(self%matrix, search%share*search%advance - search%placed, &
+                                  body%tip(group)%drive%intensity - search%intensity)
+         end if
+         call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, &
+                           search%slope, error)
+         if (allocated(error)) return
+         call share_misfit(body, pack(group, search%advance > 0.0_rk), limit, search%slope, &
+                           timers, error)
+         if (allocated(error)) return
+         search%intensity = body%tip(group)%drive%intensity
+         search%lack = needed_intensity(body) - search%intensity
+         search%placed = search%share*search%advance
+      end associate
+   end subroutine respond
+
+   !> The limit of the load does not drive the tips so far: their advances are bisected, unless one
+   !! is nearly at its toughness or they are too short for the mesh.
+   pure subroutine reduce_share(body, search, is_over)
+      class(loaded_body_t), intent(in) :: body
+      type(group_search_t), intent(inout) :: search
+      logical, intent(out) :: is_over
+
+      is_over = body%largest_excess() >= -tolerance
+      if (is_over) return
+      search%share = 0.5_rk*search%share
+      is_over = search%share*maxval(search%advance) < least*body%rules%increment
+   end subroutine reduce_share
+
+   !> If all tips of a group are below their toughness, another one is ahead of them and joins the
+   !! group. Tips that differ from the others of their kind are a kind of their own.
+   subroutine judge_group(self, body, search, group)
+      class(increment_t), intent(inout) :: self
+      class(loaded_body_t), intent(in) :: body
+      type(group_search_t), intent(inout) :: search
+      integer(ik), allocatable, intent(inout) :: group(:)  !< tips; others if it has changed
+      logical :: differs(size(search%lack))
+
+      if (minval(search%lack) > tolerance*body%rules%toughness) then
+         group = joined_groups(group, self%tries%with_their_like(leading_tips(body, together)))
+         return
+      end if
+      differs = abs(search%lack - means(search%kind, search%lack)) > tolerance*body%rules%toughness
+      if (.not. any(differs)) return
+      call self%tries%part(group, differs)
+      search%kind = numbered(self%tries%alike(group))
+      search%control = length_control_t()
+   end subroutine judge_group
 
    !> What has been found for a group holds for it still.
    pure logical function knows(self, group)
@@ -276,79 +346,71 @@ contains
       knows = all(group == self%known_group) .and. self%known_since < learnt_for
    end function knows
 
-   !> How the intensities of a group depend on the places of its tips: from the ends of their pieces
-   !! one after the other is set back.
-   subroutine probe_group(self, body, group, begun, limit, is_placed, timers, lack, slope, error)
+   !> How the intensities of a group depend on the places of its tips: from the ends of their
+   !! segments one after the other is set back.
+   subroutine probe_group(self, body, search, limit, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
-      integer(ik), intent(in) :: group(:)  !< tips
-      type(tip_t), intent(in) :: begun(:)  !< all tips, at the ends of new pieces
+      type(group_search_t), intent(inout) :: search
       real(rk), intent(in) :: limit  !< the largest load factor [-]
-      logical, intent(in) :: is_placed  !< there they have been evaluated
       type(timers_t), intent(inout) :: timers
-      real(rk), intent(out) :: lack(:)  !< (group) K_IC - K_eq at the ends of the pieces [Pa m^1/2]
-      real(rk), intent(out) :: slope(:)  !< (tips) dK_eq/df there [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
-      real(rk), dimension(size(group)) :: advance, intensity, room
-      integer(ik) :: kind(size(group))
+      real(rk) :: advance(size(search%tip)), intensity(size(search%tip))
       integer :: j
 
-      room = self%tries%rooms(group)
-      if (.not. is_placed) then
-         call self%tries%place(body, group, room, begun)
-         call body%evaluate(timers, error)
+      associate (group => search%tip, room => search%room, kind => search%kind)
+         if (.not. search%is_placed) then
+            call self%tries%place(body, group, room, search%begun)
+            call body%evaluate(timers, error)
+            if (allocated(error)) return
+         end if
+         search%is_placed = .false.
+         call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, &
+                           search%slope, error)
          if (allocated(error)) return
-      end if
-      call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
-                        error)
-      if (allocated(error)) return
-      intensity = body%tip(group)%drive%intensity
-      lack = needed_intensity(body) - intensity
-      self%known_group = group
-      self%known_since = 0.0_rk
-      if (allocated(self%matrix)) deallocate (self%matrix)
-      allocate (self%matrix(size(group), size(group)))
-      do j = 1, size(group)
-         advance = room
-         advance(j) = (1.0_rk - probe)*room(j)
-         call self%tries%place(body, group, advance, begun)
-         call body%evaluate(timers, error)
-         if (allocated(error)) return
-         self%matrix(:, j) = (intensity - body%tip(group)%drive%intensity)/(probe*room(j))
-      end do
-      self%preference = preference(self%matrix, slope(group))*body%rules%increment &
-                        /body%rules%toughness
-      kind = numbered(self%tries%alike(group))
-      ! No kind of tips grows along with another where the error of the intensities decides.
-      self%prefers_one = preference(matrix_of_kinds(kind, self%matrix), &
-                                    of_kinds(kind, means(kind, slope(group)))) &
-                         *body%rules%increment > -2.0_rk*together*body%rules%toughness
+         intensity = body%tip(group)%drive%intensity
+         search%lack = needed_intensity(body) - intensity
+         self%known_group = group
+         self%known_since = 0.0_rk
+         if (allocated(self%matrix)) deallocate (self%matrix)
+         allocate (self%matrix(size(group), size(group)))
+         do j = 1, size(group)
+            advance = room
+            advance(j) = (1.0_rk - probe)*room(j)
+            call self%tries%place(body, group, advance, search%begun)
+            call body%evaluate(timers, error)
+            if (allocated(error)) return
+            self%matrix(:, j) = (intensity - body%tip(group)%drive%intensity)/(probe*room(j))
+         end do
+         self%preference = preference(self%matrix, search%slope(group))*body%rules%increment &
+                           /body%rules%toughness
+         ! No kind of tips grows along with another where the error of the intensities decides.
+         self%prefers_one = preference(matrix_of_kinds(kind, self%matrix), &
+                                       of_kinds(kind, means(kind, search%slope(group)))) &
+                            *body%rules%increment > -2.0_rk*together*body%rules%toughness
+      end associate
    end subroutine probe_group
 
    !> Better advances, with which one of the tips comes to the end of its segment.
-   subroutine correct(self, body, group, kind, lack, slope, room, control, advance, has_moved)
+   subroutine correct(self, body, search, has_moved)
       class(increment_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
-      integer(ik), intent(in) :: group(:)  !< tips
-      integer(ik), intent(in) :: kind(:)  !< of each, from 1
-      real(rk), intent(in) :: lack(:)  !< of each, K_IC - K_eq [Pa m^1/2]
-      real(rk), intent(in) :: slope(:)  !< (all tips) dK_eq/df [Pa m^1/2]
-      real(rk), intent(in) :: room(:)  !< of each, to the end of the segment [m]
-      type(length_control_t), intent(inout) :: control
-      real(rk), intent(inout) :: advance(:)  !< of each [m]
+      type(group_search_t), intent(inout) :: search
       logical, intent(out) :: has_moved
-      real(rk) :: change(maxval(kind))
+      real(rk) :: advance(maxval(search%kind))
 
-      associate (needed => needed_intensity(body), accepted => self%tries%segment(group)%accepted)
-         change = of_kinds(kind, advance)
-         call control%improve(of_kinds(kind, means(kind, -lack))/needed, &
-                              matrix_of_kinds(kind, self%matrix)/needed, &
-                              of_kinds(kind, means(kind, slope(group)))/needed, &
-                              of_kinds(kind, room), &
-                              of_kinds(kind, max(0.0_rk, least*body%rules%increment - accepted)), &
-                              tolerance, change, has_moved)
+      associate (needed => needed_intensity(body), kind => search%kind, &
+                 accepted => self%tries%segment(search%tip)%accepted)
+         advance = of_kinds(kind, search%advance)
+         call search%control%improve(of_kinds(kind, means(kind, -search%lack))/needed, &
+                                     matrix_of_kinds(kind, self%matrix)/needed, &
+                                     of_kinds(kind, means(kind, search%slope(search%tip))) &
+                                     /needed, of_kinds(kind, search%room), &
+                                     of_kinds(kind, max(0.0_rk, least*body%rules%increment &
+                                                        - accepted)), &
+                                     tolerance, advance, has_moved)
+         search%advance = advance(kind)
       end associate
-      advance = change(kind)
    end subroutine correct
 
    !> No load held the tips of a group in the state before. A dead load has not tried to.
