@@ -137,7 +137,7 @@ contains
 
       worst_before = huge(1.0_rk)
       do k = 1, rounds_max
-         left = residual + product(step)
+         left = residual + matrix_product(step)
          worst = maxval(abs(left(reduced%links%unknown(:reduced%n_faces))))
          is_good = worst <= well*maxval(abs(step))
          if (is_good .or. .not. worst < 0.5_rk*worst_before) exit
@@ -146,7 +146,7 @@ contains
          change = 0.0_rk
          call reduced%links%complete(change)
          step = step + change
-         left = left + product(change)
+         left = left + matrix_product(change)
          reduced%rest = left(reduced%equations)
          reduced%links%rest(:reduced%links%n) = 0.0_rk
          call solve_reduced(reduced, change)
@@ -156,12 +156,12 @@ contains
    contains
 
       !> What all equations make of a step.
-      function product(x) result(answer)
+      function matrix_product(x) result(answer)
          real(rk), intent(in) :: x(:)  !< [Pa]
          real(rk) :: answer(size(x))  !< [Pa]
 
          call apply_rows(slopes, x, matmul(stiffness, x(slopes%x_of_q)*slopes%q_per_x), answer)
-      end function product
+      end function matrix_product
 
    end subroutine improve
 

@@ -84,7 +84,7 @@ contains
          if (allocated(error)) return
          slope = (self%tip%drive%intensity - k_last)/nonzero(self%factor - search%last%factor)
       end do
-      call raise_error(error, "", "no equilibrium load of the tips was found")
+      call raise_error(error, "", "no load was found at which the growing tips are in equilibrium")
    end subroutine balance_load
 
    !> The load is at a factor, compared with the way from where the programme begins to a limit.

@@ -46,7 +46,9 @@ contains
          if (.not. (starts(cell) .and. passes(cell))) cycle
          is_reached(number(fracture%cell_points(1, cell))) = .true.
       end do
-      reached = passes .and. is_reached(number(fracture%cell_points(1, :fracture%n_cells)))
+      do cell = 1, fracture%n_cells
+         reached(cell) = passes(cell) .and. is_reached(number(fracture%cell_points(1, cell)))
+      end do
    end function reached_cells
 
    !> How many groups of fractures there are that hang together.
@@ -54,11 +56,14 @@ contains
       type(fracture_mesh_t), intent(in) :: fracture
       logical :: all_pass(fracture%n_cells), is_met(fracture%n_points)
       integer(ik), allocatable :: number(:)
+      integer(ik) :: cell
 
       all_pass = .true.
       number = groups_of_points(fracture, all_pass)
       is_met = .false.
-      is_met(number(fracture%cell_points(1, :fracture%n_cells))) = .true.
+      do cell = 1, fracture%n_cells
+         is_met(number(fracture%cell_points(1, cell))) = .true.
+      end do
       n = count(is_met, kind=ik)
    end function cluster_count
 
