@@ -390,7 +390,7 @@ contains
 
       if (mesh%fracture%n_cells > 0 .and. is_damped(settings)) then
          load = load + dampers(self%condensed, self%settings%damping/dt) &
-             *jumps_of(self%condensed, jump)
+                *jumps_of(self%condensed, jump)
       end if
       if (allocated(self%in_situ)) then
          call self%in_situ%add_contact_tractions(mesh%fracture, self%condensed%length, &

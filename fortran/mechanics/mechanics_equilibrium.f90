@@ -61,7 +61,7 @@ module mechanics_equilibrium
       logical :: is_placed = .false.  !< there they have been evaluated
       real(rk), allocatable :: room(:)  !< of each, to the end of its segment [m]
       real(rk), allocatable :: advance(:)  !< of each [m]
-      real(rk) :: share = 1.0_rk  !< of the advances, as far as the limit of the load drives them [-]
+      real(rk) :: share = 1.0_rk  !< of the advances, to the limit of the load [-]
       real(rk), allocatable :: lack(:)  !< of each, K_IC - K_eq [Pa m^1/2]
       real(rk), allocatable :: slope(:)  !< (all tips) dK_eq/df [Pa m^1/2]
       real(rk), allocatable :: placed(:)  !< advance of the last evaluation [m]
