@@ -159,7 +159,7 @@ def test_what_a_lead_is_worth(tmp_path: Path) -> None:
     text = (CASE / "three_cracks.nml").read_text()
     out = run(tmp_path, changed(text, ("stop_gain = 0.28", "stop_gain = 0.03")), "grown")
     (event,) = (row for row in rows(out / "events.csv") if row["kind"] == "bifurcation")
-    found = re.search(r"([0-9.]+) % of K", event["detail"])
+    found = re.search(r"changes K_eq by ([0-9.]+) %", event["detail"])
     assert found is not None
     tips = rows(out / "tips.csv")[-6:]
     still = changed(text, ("enabled = .true.", "intensities = .true."), ("to = 10.0", "to = 1.0"))

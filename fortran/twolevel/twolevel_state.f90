@@ -126,8 +126,10 @@ contains
    subroutine begin_step(self)
       class(two_levels_t), intent(inout) :: self
 
-      call self%now%windows%accept()
-      call self%now%reference%accept()
+      if (self%scene%growth%intensities) then
+         call self%now%windows%accept()
+         call self%now%reference%accept()
+      end if
       call self%remember()
    end subroutine begin_step
 
@@ -138,6 +140,7 @@ contains
       self%last = self%present_state()
       self%before = self%now%coarse
       call discard(self%kept_problem)
+      if (.not. self%scene%growth%intensities) return
       call self%windows%begin_step()
       call self%reference%begin_step()
    end subroutine remember
@@ -149,8 +152,10 @@ contains
       self%front_state_t = self%last%front
       self%now = self%last%levels
       self%before = self%now%coarse
-      call self%windows%put_back()
-      call self%reference%put_back()
+      if (self%scene%growth%intensities) then
+         call self%windows%put_back()
+         call self%reference%put_back()
+      end if
       if (.not. allocated(self%kept_problem)) return
       call discard(self%problem)
       call move_alloc(self%kept_problem, self%problem)
