@@ -69,7 +69,7 @@ module growth_rivals
    !> Tips on their way, and the company that they have kept so far.
    type :: company_t
       integer(ik), allocatable :: kind(:)  !< (tips) those of one have gone equally far
-      real(rk), allocatable :: usual(:)  !< (tips) mean of K_eq/K_IC on the way
+      real(rk), allocatable :: usual(:)  !< (tips) mean of their excesses on the way [-]
       logical, allocatable :: is_alone(:)  !< (tips) has lagged behind its company
    contains
       procedure :: find_kinds
@@ -165,7 +165,7 @@ contains
    !> The kinds of the tips, from 1, in an accepted state. Tips of one kind shall go on equally far.
    subroutine find_kinds(self, drive, off, gain, is_arrested, increment, rivals, kind)
       class(company_t), intent(inout) :: self
-      real(rk), intent(in) :: drive(:)  !< K_eq/K_IC of the tips [-]
+      real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
       real(rk), intent(in) :: off(:)  !< how well that is known [-]
       real(rk), intent(in) :: gain(:)  !< how far they have come [m]
       logical, intent(in) :: is_arrested(:)
@@ -232,7 +232,7 @@ contains
    !> A step is accepted.
    subroutine accept(self, drive, advance, increment)
       class(company_t), intent(inout) :: self
-      real(rk), intent(in) :: drive(:)  !< K_eq/K_IC of the tips [-]
+      real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
       real(rk), intent(in) :: advance(:)  !< of them in the step [m]
       real(rk), intent(in) :: increment  !< [m]
 

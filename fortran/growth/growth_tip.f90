@@ -59,6 +59,9 @@ module growth_tip
       real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
       type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
+      !> K that the loads may bring about at the tip, times a small share: a toughness below it is no
+      !! scale for K_eq [Pa m^1/2]
+      real(rk) :: least_scale = 0.0_rk
       type(intensity_t) :: intensity_before  !< before the last increment of any tip
       type(growth_drive_t) :: drive_before
    contains
@@ -66,6 +69,9 @@ module growth_tip
       procedure :: resist
       procedure :: cease
       procedure :: has_just_stopped
+      procedure :: scale_of
+      procedure :: excess
+      procedure :: relative_error
       procedure :: has_state
    end type tip_t
 
@@ -107,6 +113,33 @@ contains
       self%intensity = intensity_t()
       self%drive = growth_drive_t()
    end subroutine cease
+
+   !> The intensity by which excesses over the toughness are judged [Pa m^1/2].
+   elemental real(rk) function scale_of(self, toughness)
+      class(tip_t), intent(in) :: self
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+
+      scale_of = max(toughness, self%least_scale)
+   end function scale_of
+
+   !> K_eq less K_IC, over the scale [-].
+   elemental real(rk) function excess(self, toughness)
+      class(tip_t), intent(in) :: self
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+
+      associate (scale => self%scale_of(toughness))
+         excess = self%drive%intensity/scale - toughness/scale
+      end associate
+   end function excess
+
+   !> Estimated error of K_eq, over the scale [-].
+   elemental real(rk) function relative_error(self, toughness)
+      class(tip_t), intent(in) :: self
+      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+
+      relative_error = max(self%intensity%k1_error, self%intensity%k2_error) &
+                       /(self%scale_of(toughness)*self%drive%resistance)
+   end function relative_error
 
    !> In the last increment it has come to something that it does not join.
    elemental logical function has_just_stopped(self)

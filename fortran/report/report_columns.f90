@@ -416,6 +416,9 @@ module report_columns
     word_t("well", &
              "a stage of a well begins, it is shut in, or it reaches or leaves its pressure "// &
              "limit; see `detail`"), &
+      word_t("growth_uncertain", &
+               "a tip grows or may grow, but the error of its K makes the pressure or the "// &
+               "position uncertain; see `detail`"), &
       word_t("window", &
                "stress intensity factors of a tip that would grow are too uncertain: its "// &
                "window is enlarged or refined; see `detail`")]

@@ -7,7 +7,8 @@ module report_limits
    private
 
    public :: judge, limit_angle, limit_aperture, limit_contact
-   public :: limit_fluid_in_rock, limit_forward_error, limit_jump, limit_k_error, limit_k_methods
+   public :: limit_fluid_in_rock, limit_growth_error
+   public :: limit_forward_error, limit_jump, limit_k_error, limit_k_methods
    public :: limit_k_to_grow, limit_keq, limit_layering, limit_loop_flow, limit_mass
    public :: limit_pressure_load, limit_pressure_stiffness, limit_strain, limit_t, limit_table
    public :: limit_time_error, limits, verdict_fine, verdict_stop, verdict_warning
@@ -35,7 +36,7 @@ module report_limits
                          limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
                          limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
                          limit_layering = 15, limit_loop_flow = 16, limit_table = 17, &
-                         limit_fluid_in_rock = 18
+                         limit_fluid_in_rock = 18, limit_growth_error = 19
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -80,16 +81,16 @@ module report_limits
               "over the largest K of all tips, or over K_IC if that is larger and tips may grow", &
               "use smaller cells around the tip"), &
       limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
-              10.0_rk, "Estimated error of K of a tip that may grow, over K_IC; with a fluid "// &
-              "that of both levels", &
+              never, "Estimated error of K of a tip that may grow, over K_IC; with a fluid "// &
+              "that of both levels, and over a hundredth of the K of its loads where that is "// &
+              "larger", &
               "growth in this state is uncertain: use smaller cells around the tip, or with a "// &
               "fluid a larger window"), &
-      limit_t("error of K over K_IC where a tip would grow", "%", with_growth, 5.0_rk, 5.0_rk, &
+      limit_t("error of K over K_IC where a tip would grow", "%", "without a fluid", 5.0_rk, 5.0_rk, &
               "Estimated error of K, over K_IC or K_eq if that is larger, of a tip whose K_eq "// &
-              "equals K_IC within it; with a fluid after window refinement; not with law = "// &
-              "'paris'", &
-              "growth cannot be decided: reduce size_fracture, with a fluid use a larger "// &
-              "window, without one &adaptive"), &
+              "equals K_IC within it, when tips may grow: the relative error of the load factor "// &
+              "of growth; not with law = 'paris'", &
+              "growth cannot be decided: reduce size_fracture, or use &adaptive"), &
       limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
               "Largest K_eq, over K_IC, of tips that may grow, after growth in the state", &
               "reduce the step: growth lags behind the load"), &
@@ -116,7 +117,12 @@ module report_limits
               "Relative difference of viscosity over density at a pressure in the rock from "// &
               "that at reference_pressure, which the rock uses", &
               "use a reference_pressure within the rock's pressures, with the viscosity and "// &
-              "compressibility there")]
+              "compressibility there"), &
+      limit_t("error of growth by the error of K", "%", "fluid and growth", 5.0_rk, never, &
+              "Estimated error, by that of K, of the pressure at which a tip grows over that of "// &
+              "the loads, or of its position over the length of its fracture; not with law = "// &
+              "'paris'", &
+              "use smaller size_fracture or a larger window")]
    !&>
 
 contains

@@ -14,6 +14,7 @@ module report_rows
    private
 
    public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
+   public :: event_growth_uncertain
    public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
    public :: event_step_cut, event_unstable, event_well, event_window, fracture_fields_t
    public :: history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, slip_event_t
@@ -207,6 +208,7 @@ module report_rows
    character(len=*), parameter :: event_step_cut = "step_cut"
    character(len=*), parameter :: event_unstable = "unstable_growth"
    character(len=*), parameter :: event_bifurcation = "bifurcation"
+   character(len=*), parameter :: event_growth_uncertain = "growth_uncertain"
    character(len=*), parameter :: event_remesh = "remesh"
    character(len=*), parameter :: event_window = "window"
    character(len=*), parameter :: event_well = "well"

@@ -15,7 +15,7 @@ module report_watch
    implicit none(type, external)
    private
 
-   public :: doubtful, stop_on_doubt, uncertainty, watch_t, worst_place
+   public :: doubtful, error_of_k, stop_on_doubt, uncertainty, watch_t, worst_place
 
    integer, parameter :: digits = 4  !< of numbers in sentences
 
@@ -92,8 +92,7 @@ contains
          ! Faces that do not move next to the tip give no K, but round-off by correlation.
          difference = merge(0.0_rk, hypot(k%k1 - k%k1_dc, k%k2 - k%k2_dc), &
                             tips%arrested .or. hypot(k%k1, k%k2) <= 0.0_rk)
-         errors = merge(0.0_rk, max(k%k1_error, k%k2_error)/tips%drive%resistance, &
-                        tips%arrested)
+         errors = merge(0.0_rk, tips%relative_error(toughness), tips%arrested)
          scale = maxval(hypot(k%k1, k%k2), mask=.not. tips%arrested)
       end associate
       if (may_grow) scale = max(scale, toughness)
@@ -103,7 +102,7 @@ contains
       end if
       if (.not. may_grow) return
       i = worst_place(errors)
-      call self%see(limit_k_error, errors(i)/toughness, when, tips(i)%xy)
+      call self%see(limit_k_error, errors(i), when, tips(i)%xy)
    end subroutine see_tips
 
    !> An error if a limit asks to stop the run.

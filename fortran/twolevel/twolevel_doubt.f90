@@ -1,33 +1,34 @@
-!> Tips whose intensities have too large an error estimate: the window is improved first, and if
-!! that does not reduce the error enough, the run stops.
+!> Tips that grow, or might, with considerable errors of pressure or position by the errors of their
+!! intensities (twolevel_growth_errors): the window is improved. Where no improvement is possible,
+!! growth goes on, and the errors are stated with a warning and an event.
 !!
 !! The larger part of the error estimate determines the improvement. The error of the window
 !! requires smaller elements. The error of the coarse level, which enters over the edge, requires a
 !! larger window, and finally the body as one window for all tips. A window keeps its improved size
 !! and elements, and moves with its tip.
 module twolevel_doubt
-   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
-   use report_rows, only: event_window
-   use report_watch, only: doubtful, stop_on_doubt, uncertainty
+   use report_limits, only: limit_growth_error
+   use report_rows, only: event_growth_uncertain, event_window
+   use report_watch, only: uncertainty
+   use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, improvement_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
-   public :: find_improvements, improve_windows
+   public :: find_improvements, improve_windows, note_uncertain_tips
 
 contains
 
-   !> What would improve the windows of doubtful tips, which are to be evaluated again then. An
-   !! error if one of them cannot be improved any more.
-   subroutine find_improvements(self, time, improvements, error)
+   !> Improvements of the windows of uncertain tips, which are to be evaluated again with them; none
+   !! where none is possible.
+   subroutine find_improvements(self, time, improvements)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< of the last accepted state [s]
       type(improvement_t), allocatable, intent(out) :: improvements(:)
-      type(error_t), allocatable, intent(out) :: error
       type(improvement_t) :: improvement
       character(len=:), allocatable :: what
       integer(ik) :: i
@@ -35,16 +36,10 @@ contains
       allocate (improvements(0))
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), toughness => self%rules%toughness)
-            if (.not. doubtful(tip, toughness)) cycle
+            if (.not. is_uncertain(self, i)) cycle
             improvement%tip = i
             call choose(self, i, improvement%kind, what)
-            if (.not. allocated(what)) then
-               call stop_on_doubt(self%watch, tip, toughness, &
-                                  self%scene%fractures(tip%fracture)%name, &
-                                  brief_text(self%now%coarse%time, 6)//" s")
-               call self%heed_limits(error)
-               return
-            end if
+            if (.not. allocated(what)) cycle
             improvements = [improvements, improvement]
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
@@ -52,6 +47,35 @@ contains
          end associate
       end do
    end subroutine find_improvements
+
+   !> State the uncertain tips of an accepted state: a limit of the run, and an event at the first
+   !! such state of each tip.
+   subroutine note_uncertain_tips(self, is_noted)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(inout) :: is_noted(:)  !< (tips) has had its event
+      type(growth_error_t) :: error
+      character(len=:), allocatable :: consequences
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. is_uncertain(self, i)) cycle
+         error = growth_error(self, i)
+         associate (tip => self%tip(i), time => self%now%coarse%time)
+            call self%watch%see(limit_growth_error, 100.0_rk*error%relative, &
+                                brief_text(time, 6)//" s, fracture "// &
+                                self%scene%fractures(tip%fracture)%name, tip%xy)
+            if (is_noted(i)) cycle
+            is_noted(i) = .true.
+            consequences = "K known to "//brief_text(uncertainty(tip, self%rules%toughness), 3)// &
+                           " % of K_IC or K_eq: pressure of growth known to "// &
+                           brief_text(error%pressure, 3)//" Pa"
+            if (error%position > 0.0_rk) consequences = consequences//", position to "// &
+                                                        brief_text(error%position, 3)//" m"
+            call self%chronicle%add_event(time, event_growth_uncertain, consequences, &
+                                          tip%fracture, tip%xy)
+         end associate
+      end do
+   end subroutine note_uncertain_tips
 
    !> Smaller elements or a larger window; in words, if that is possible.
    subroutine choose(self, tip, kind, what)

@@ -15,9 +15,9 @@ module twolevel_equilibrium
    use growth_advances, only: advances_t
    use growth_network, only: total_length
    use growth_targets, only: target_none
-   use report_watch, only: doubtful
    use twolevel_doubt, only: find_improvements
-   use twolevel_excess, only: arrivals, at_joints, excesses, first_onset, onset, shared_excesses, &
+   use twolevel_growth_errors, only: is_uncertain
+   use twolevel_excess, only: arrivals, at_joints, first_onset, onset, shared_excesses, &
                               tolerance
    use twolevel_moves, only: is_in_play, judge_tips, keep_together, part_company
    use twolevel_pieces, only: begin_pieces, can_join, have_come, join_targets
@@ -45,9 +45,9 @@ module twolevel_equilibrium
    !! this share of the time since the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
-   !> A tip with less than this share of its toughness in the first try of a step is not asked in
-   !! the others, but for the last one.
-   real(rk), parameter :: far = 0.7_rk
+   !> A tip whose excess in the first try of a step is below the negative of this is evaluated in the
+   !! last try only [-].
+   real(rk), parameter :: lack_of_far = 0.3_rk
 
    !> A step that is being tried.
    type :: search_t
@@ -55,7 +55,7 @@ module twolevel_equilibrium
       logical :: is_last = .false.  !< its error in time is not judged
       logical :: may_jump = .false.  !< tips may go on from piece to piece in it
       ! Of its tries
-      real(rk), allocatable :: unmoved(:)  !< (tips) K_eq of the first one [Pa m^1/2]
+      real(rk), allocatable :: unmoved(:)  !< (tips) excesses of the first one [-]
       integer(ik), allocatable :: kind(:)  !< (tips) from 1: those of one go equally far
       logical, allocatable :: has_begun(:)  !< (tips) a new piece
       type(lesson_t) :: lesson
@@ -110,11 +110,9 @@ contains
       search%may_jump = may_jump
       allocate (search%kind(size(self%tip)))
       allocate (search%has_begun(size(self%tip)), source=.false.)
-      associate (k => self%tip%intensity, toughness => self%rules%toughness, &
-                 segment => self%now%segment)
-         call self%now%company%find_kinds(self%tip%drive%intensity/toughness, &
-                                          max(k%k1_error, k%k2_error) &
-                                          /(toughness*self%tip%drive%resistance), segment%gain, &
+      associate (toughness => self%rules%toughness, segment => self%now%segment)
+         call self%now%company%find_kinds(self%tip%excess(toughness), &
+                                          self%tip%relative_error(toughness), segment%gain, &
                                           self%tip%arrested, self%rules%increment, &
                                           self%now%rivals, search%kind)
          call segment%restart()
@@ -155,7 +153,7 @@ contains
       call self%now%certainty%see_try(total_length(self%network), &
                                       self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
-      search%unmoved = self%tip%drive%intensity
+      search%unmoved = self%tip%excess(self%rules%toughness)
       if (.not. search%is_last) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
       if (.not. search%is_over) self%now%asked = are_asked(self)
@@ -178,11 +176,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical, dimension(size(self%tip)) :: in_play, moves
 
-      in_play = is_in_play(self%now%segment, excesses(self%tip, self%rules%toughness))
+      in_play = is_in_play(self%now%segment, self%tip%excess(self%rules%toughness))
       call search%lesson%tell(self%now%segment, self%tip, self%rules%toughness, self%now%rivals)
       call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
-      call search%lesson%begin(self%now%segment, self%tip)
+      call search%lesson%begin(self%now%segment, self%tip, self%rules%toughness)
       if (any_moves) search%advances = advances_t()  ! with the influences that have been measured
       call judge_tips(self%now%segment, self%now%rivals, shared_excesses(self), have_come(self), &
                       self%tip%arrested, search%kind, search%advances, moves, wants)
@@ -226,7 +224,8 @@ contains
 
    !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
    !! step: then they would exceed their toughness by more than the tolerance, and the step is cut
-   !! to where their excess vanishes.
+   !! to where their excess vanishes. Where tips may jump, straight lines say nothing of that: the
+   !! step is halved, until it is the last try.
    subroutine stop_gained(self, search, wants, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -237,11 +236,13 @@ contains
       stops = wants .and. self%has_gained()
       if (.not. any(stops)) return
       wants = wants .and. .not. stops
-      if (search%may_jump) return
-      trial%goes_too_far = any(stops .and. search%has_begun)
-      stops = stops .and. excesses(self%tip, self%rules%toughness) > tolerance
+      trial%goes_too_far = any(stops .and. search%has_begun) .and. .not. search%may_jump
+      stops = stops .and. self%tip%excess(self%rules%toughness) > tolerance &
+              .and. .not. search%is_last
       trial%gains_all = any(stops)
-      if (trial%gains_all) then
+      if (trial%gains_all .and. search%may_jump) then
+         trial%arrival = 0.5_rk
+      else if (trial%gains_all) then
          trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
                                          self%rules%toughness, 0.0_rk), mask=stops)
       end if
@@ -281,29 +282,30 @@ contains
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: excess(size(self%tip))
-      integer :: i
+      integer(ik) :: i
 
-      associate (toughness => self%rules%toughness, before => self%last%front%tip%drive%intensity)
-         search%is_over = any(wants .and. doubtful(self%tip, toughness))
-         if (search%is_over) then
-            call find_improvements(self, self%before%time, trial%improvements, error)
-            return
+      associate (toughness => self%rules%toughness, &
+                 before => self%last%front%tip%excess(self%rules%toughness))
+         if (any([(wants(i) .and. is_uncertain(self, i), i=1, size(wants, kind=ik))])) then
+            call find_improvements(self, self%before%time, trial%improvements)
+            search%is_over = size(trial%improvements) > 0
+            if (search%is_over) return
          end if
          if (any(wants .and. (search%has_begun .or. &
-                              excesses(self%tip, toughness) > excess_max))) then
+                              self%tip%excess(toughness) > excess_max))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! what jumps has no rates
          end if
          trial%goes_too_far = trial%jumps .and. .not. search%may_jump
          search%is_over = trial%goes_too_far
          if (search%is_over) then
-            trial%was_beyond = any(wants .and. before/toughness > 1.0_rk + excess_max)
+            trial%was_beyond = any(wants .and. before > excess_max)
             ! From where they come to the toughness on, not from the start of the step.
-            trial%onset = onset(before/toughness, search%unmoved/toughness, wants)
+            trial%onset = onset(before, search%unmoved, wants)
             return
          end if
       end associate
-      excess = excesses(self%tip, self%rules%toughness)
+      excess = self%tip%excess(self%rules%toughness)
       excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
       call begin_pieces(self, wants, timers, error)
       if (allocated(error)) return
@@ -341,7 +343,7 @@ contains
       end if
       call estimate_coarse_errors(self, timers, error)
       if (allocated(error)) return
-      call find_improvements(self, self%before%time, trial%improvements, error)
+      call find_improvements(self, self%before%time, trial%improvements)
    end subroutine conclude
 
    !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
@@ -350,9 +352,9 @@ contains
       class(two_levels_t), intent(in) :: self
       logical :: asked(size(self%tip))
 
-      associate (k => self%tip%intensity)
-         asked = self%now%segment%is_open .or. self%tip%drive%intensity &
-                 + max(k%k1_error, k%k2_error)/self%tip%drive%resistance > far*self%rules%toughness
+      associate (toughness => self%rules%toughness)
+         asked = self%now%segment%is_open .or. self%tip%excess(toughness) &
+                 + self%tip%relative_error(toughness) > -lack_of_far
       end associate
    end function are_asked
 
@@ -371,7 +373,7 @@ contains
       if (any(others)) call self%evaluate(timers, error)
       deallocate (self%now%asked)
       if (allocated(error)) return
-      any_exceeds = any(others .and. excesses(self%tip, self%rules%toughness) > tolerance)
+      any_exceeds = any(others .and. self%tip%excess(self%rules%toughness) > tolerance)
    end subroutine ask_others
 
    !> The tried state is accepted.
@@ -382,10 +384,10 @@ contains
       self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
                                   self%rules%increment)
       call self%now%segment%pace(self%tip%advance, dt, &
-                                 excesses(self%tip, self%rules%toughness) >= -tolerance)
+                                 self%tip%excess(self%rules%toughness) >= -tolerance)
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
-      call self%now%company%accept(self%tip%drive%intensity/self%rules%toughness, &
+      call self%now%company%accept(self%tip%excess(self%rules%toughness), &
                                    self%tip%advance, self%rules%increment)
       call self%now%segment%accept()
    end subroutine accept_equilibrium

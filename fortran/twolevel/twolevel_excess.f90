@@ -9,7 +9,7 @@ module twolevel_excess
    implicit none(type, external)
    private
 
-   public :: arrivals, at_joints, excesses, first_onset, onset, shared_excesses, tolerance
+   public :: arrivals, at_joints, first_onset, onset, shared_excesses, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
 
@@ -21,21 +21,13 @@ module twolevel_excess
 
 contains
 
-   !> Of K_eq over K_IC [-].
-   elemental real(rk) function excesses(tip, toughness) result(excess)
-      type(tip_t), intent(in) :: tip
-      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-
-      excess = tip%drive%intensity/toughness - 1.0_rk
-   end function excesses
-
    !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
    pure function shared_excesses(self) result(excess)
       class(two_levels_t), intent(in) :: self
       real(rk) :: excess(size(self%tip))
       integer(ik) :: i, j
 
-      excess = excesses(self%tip, self%rules%toughness)
+      excess = self%tip%excess(self%rules%toughness)
       do j = 1, size(excess, kind=ik)
          do i = 1, size(excess, kind=ik)
             if (.not. comes_to(self, i, j)) cycle
@@ -53,23 +45,23 @@ contains
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
-      first_onset = onset(before%drive%intensity/toughness, tips%drive%intensity/toughness, &
+      first_onset = onset(before%excess(toughness), tips%excess(toughness), &
                           .not. (tips%arrested .or. segments%gain > 0.0_rk))
    end function first_onset
 
    !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
    !! begins to grow, or where it does so at the end of the step.
    pure function onset(before, after, counts)
-      real(rk), intent(in) :: before(:), after(:)  !< K_eq/K_IC of the tips [-]
+      real(rk), intent(in) :: before(:), after(:)  !< excesses of the tips [-]
       logical, intent(in) :: counts(:)
       real(rk) :: onset
       integer :: i
 
       onset = 1.0_rk
       do i = 1, size(before)
-         if (.not. counts(i) .or. before(i) > 1.0_rk - onset_lack) cycle
-         if (after(i) <= 1.0_rk + tolerance) cycle
-         onset = min(onset, (1.0_rk - before(i))/(after(i) - before(i)))
+         if (.not. counts(i) .or. before(i) > -onset_lack) cycle
+         if (after(i) <= tolerance) cycle
+         onset = min(onset, -before(i)/(after(i) - before(i)))
       end do
    end function onset
 
@@ -85,12 +77,12 @@ contains
       real(rk), intent(in) :: allowed  !< excess of K_eq over K_IC [-]
       real(rk), dimension(size(tips)) :: beyond, excess, room, rise, share
 
-      excess = excesses(tips, toughness)
+      excess = tips%excess(toughness)
       room = segments%length - segments%accepted
       beyond = max(0.0_rk, excess)/abs(segments%falling_slope())
       share = room/max(room + beyond, tiny(1.0_rk))
       share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excess, tolerance))
-      rise = (tips%drive%intensity - before%drive%intensity)/toughness
+      rise = excess - before%excess(toughness)
       where (segments%stays() .and. rise > 0.0_rk)
          share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excess - allowed)/rise))
       end where

@@ -168,16 +168,16 @@ contains
       real(rk), intent(in) :: time  !< [s]
       logical, intent(in) :: growth_is_done  !< else tips must not grow in this state
       character(len=:), allocatable :: when
-      real(rk) :: drive(size(tips))
+      real(rk) :: excess(size(tips))
       integer(ik) :: i
 
       when = name_of(time)
       associate (toughness => scene%material%toughness, may_grow => scene%growth%enabled)
          call watch%see_tips(tips, toughness, may_grow, when)
          if (.not. growth_is_done .or. all(tips%arrested)) return
-         drive = merge(0.0_rk, tips%drive%intensity, tips%arrested)
-         i = worst_place(drive)
-         call watch%see(limit_keq, drive(i)/toughness, when, tips(i)%xy)
+         excess = merge(-1.0_rk, tips%excess(toughness), tips%arrested)
+         i = worst_place(excess)
+         call watch%see(limit_keq, 1.0_rk + excess(i), when, tips(i)%xy)
       end associate
    end subroutine watch_windows
 

@@ -135,8 +135,7 @@ contains
       real(rk) :: first(size(kind))
       integer(ik) :: i
 
-      first = [(min(0.0_rk, maxval(tips%drive%intensity/toughness - 1.0_rk, &
-                                   mask=kind == kind(i))), i=1, size(kind))]
+      first = [(min(0.0_rk, maxval(tips%excess(toughness), mask=kind == kind(i))), i=1, size(kind))]
       lags = (wants .or. (segments%is_open .and. segments%reached > segments%lowest())) .and. &
              lacks(tips, first) .and. (lacks(before, 0.0_rk) .or. .not. segments%gain > 0.0_rk)
       any_parted = .false.
@@ -154,10 +153,7 @@ contains
          type(tip_t), intent(in) :: tip
          real(rk), intent(in) :: first  !< what that of its kind lacks, as an excess [-]
 
-         associate (k => tip%intensity)
-            lacks = lags_behind(tip%drive%intensity/toughness - 1.0_rk - first, &
-                                max(k%k1_error, k%k2_error)/(toughness*tip%drive%resistance))
-         end associate
+         lacks = lags_behind(tip%excess(toughness) - first, tip%relative_error(toughness))
       end function lacks
 
    end subroutine part_company

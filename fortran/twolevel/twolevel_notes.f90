@@ -24,6 +24,7 @@ module twolevel_notes
    !> What has been noted so far.
    type :: notes_t
       type(approach_t), allocatable, private :: approach(:)  !< (tips) to their first growth
+      logical, allocatable :: is_uncertain(:)  !< (tips) stated with considerable errors of growth
       logical, private :: was_bifurcation = .false.  !< in the last step with growth
    contains
       procedure :: begin
@@ -39,6 +40,7 @@ contains
       integer, intent(in) :: n  !< tips
 
       allocate (self%approach(n))
+      allocate (self%is_uncertain(n), source=.false.)
    end subroutine begin
 
    !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
@@ -58,7 +60,7 @@ contains
             if (approach%is_over) cycle
             approach%is_over = segments(i)%gain > 0.0_rk
             if (approach%is_over) then
-               error = approach%uncertainty(tolerance*toughness)
+               error = approach%uncertainty(tolerance*tip%scale_of(toughness))
                onset = approach%onset_before(time, toughness)
                how_well = "known to "//brief_text(error, 3)//" s"
                if (.not. error < huge(1.0_rk)) how_well = "K_eq was not increasing: time unknown"
@@ -84,8 +86,8 @@ contains
       integer(ik) :: i
 
       do i = 1, size(tips, kind=ik)
+         if (tips(i)%arrested .or. .not. tips(i)%excess(toughness) > tolerance) cycle
          share = tips(i)%drive%intensity/toughness
-         if (tips(i)%arrested .or. .not. share > 1.0_rk + tolerance) cycle
          call chronicle%add_event(time, event_unstable, "K_eq is "//brief_text(share, 4)// &
                                   " K_IC in the initial state: growth is unstable from the "// &
                                   "start", tips(i)%fracture, tips(i)%origin)
@@ -134,7 +136,7 @@ contains
       associate (tip => front%tip, toughness => scene%material%toughness)
          tips%grows = tip%advance > 0.0_rk
          tips%error = tolerance + hypot(tip%intensity%k1_error, tip%intensity%k2_error) &
-                      /(toughness*tip%drive%resistance)
+                      /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
          call now%certainty%accept(dt, problem%well_pressure(scene, now%coarse), tips, &

@@ -27,7 +27,7 @@ module twolevel_probe
    !> A try, from which the next one teaches.
    type :: lesson_t
       real(rk), allocatable :: reached(:)  !< (tips) along their pieces [m]
-      real(rk), allocatable :: drive(:)  !< (tips) K_eq [Pa m^1/2]
+      real(rk), allocatable :: excess(:)  !< (tips) over the toughness [-]
    contains
       procedure :: begin
       procedure :: tell
@@ -71,8 +71,8 @@ contains
                call self%evaluate(timers, error)
                if (allocated(error)) return
                call self%now%rivals%note(asked(k), shift, &
-                                         tip%drive%intensity/self%rules%toughness, &
-                                         self%tip%drive%intensity/self%rules%toughness, segment)
+                                         tip%excess(self%rules%toughness), &
+                                         self%tip%excess(self%rules%toughness), segment)
             end if
             segment%reached = segment%reached - shift
          end associate
@@ -83,13 +83,14 @@ contains
    end subroutine measure_rivals
 
    !> Remember a try.
-   subroutine begin(self, segments, tips)
+   subroutine begin(self, segments, tips, toughness)
       class(lesson_t), intent(out) :: self
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
       self%reached = segments%reached
-      self%drive = tips%drive%intensity
+      self%excess = tips%excess(toughness)
    end subroutine begin
 
    !> What the last try has shown beside the one before.
@@ -102,7 +103,7 @@ contains
 
       if (.not. allocated(self%reached)) return
       call rivals%learn(segments%reached - self%reached, &
-                        (tips%drive%intensity - self%drive)/toughness)
+                        tips%excess(toughness) - self%excess)
    end subroutine tell
 
 end module twolevel_probe

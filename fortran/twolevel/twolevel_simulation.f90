@@ -9,7 +9,7 @@ module twolevel_simulation
    use report_rows, only: history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t
    use report_simulation, only: snapshot_t
-   use twolevel_doubt, only: find_improvements, improve_windows
+   use twolevel_doubt, only: find_improvements, improve_windows, note_uncertain_tips
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, note_excess
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
@@ -255,6 +255,7 @@ contains
          if (allocated(error)) return
          associate (toughness => self%rules%toughness, time => self%now%coarse%time)
             if (self%is_equilibrium()) then
+               call note_uncertain_tips(self, self%notes%is_uncertain)
                call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
                                            self%chronicle)
                if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
@@ -285,8 +286,7 @@ contains
          if (allocated(error)) return
          call estimate_coarse_errors(self, timers, error)
          if (allocated(error) .or. .not. self%is_equilibrium()) return
-         call find_improvements(self, self%now%coarse%time, improvements, error)
-         if (allocated(error)) return
+         call find_improvements(self, self%now%coarse%time, improvements)
          if (size(improvements) == 0) return
          call improve_windows(self, improvements)
       end do

@@ -2,7 +2,7 @@
 !! and windows. A step begins from this state, and rejected tries restore it.
 module twolevel_state
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use base_tolerances, only: same_place
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use mesh_geometry, only: cell_area
@@ -10,7 +10,7 @@ module twolevel_state
    use coarse_model, only: new_state, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
-   use growth_network, only: network_of_scene
+   use growth_network, only: fracture_length, network_of_scene
    use mesh_builder, only: build_mesh, mesh_spec_t, remesh
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_outline, only: outline_of_scene, outline_t
@@ -53,9 +53,11 @@ module twolevel_state
       type(coarse_problem_t), allocatable :: kept_problem  !< of `last`, where a try has a new mesh
       type(windows_t) :: windows
       type(windows_t) :: reference  !< the body as one window, against which these are held
+      real(rk) :: load_pressure = 0.0_rk  !< largest pressure expected by the loads [Pa]
       integer(ik) :: reference_most = 800  !< coarse fracture cells up to which they are
    contains
       procedure :: mesh_levels
+      procedure, private :: set_scales
       procedure :: begin_step
       procedure :: remember
       procedure :: put_back
@@ -106,6 +108,7 @@ contains
          call rest_wells(self)
          call self%find_tips(mesh%fracture)
       end associate
+      call self%set_scales()
       if (scene%growth%intensities) then
          ! The body beside windows has elements as large as the coarse cells: at the tips, where it
          ! matters, they are those of the windows.
@@ -121,6 +124,22 @@ contains
       call self%now%rivals%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
+
+   !> Pressure of the loads, and the least scale of K_eq of each tip: a share of what that pressure
+   !! would bring about in its fracture.
+   pure subroutine set_scales(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), parameter :: share = 0.01_rk
+      integer(ik) :: i
+
+      self%load_pressure = pressure_scale(self%scene)
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            tip%least_scale = share*self%load_pressure &
+                              *sqrt(0.5_rk*pi*fracture_length(self%network, tip%fracture))
+         end associate
+      end do
+   end subroutine set_scales
 
    !> A step is tried from now on: contact in the windows is accepted as it was evaluated last.
    subroutine begin_step(self)

@@ -2,7 +2,7 @@
 program test_growth_path
    use base_kinds, only: rk
    use growth_law, only: kink_angle
-   use growth_tip, only: path_t
+   use growth_tip, only: path_t, tip_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -16,9 +16,26 @@ program test_growth_path
    call finds_direction(-0.3_rk, "mild")
    call finds_direction(-40.0_rk, "saturated")
    call foresees()
+   call test_excess()
    call checks%finish()
 
 contains
+
+   !> K_eq is compared with the toughness, or with its least scale where that is larger.
+   subroutine test_excess()
+      type(tip_t) :: tip
+
+      tip%drive%intensity = 1.1e6_rk
+      tip%intensity%k2_error = 2.0e4_rk
+      tip%drive%resistance = 2.0_rk
+      call checks%is_close(tip%excess(1.0e6_rk), 0.1_rk, 1.0e-12_rk, "over the toughness")
+      call checks%is_close(tip%relative_error(1.0e6_rk), 0.01_rk, 1.0e-12_rk, "error over that")
+      tip%least_scale = 4.0e5_rk
+      call checks%is_close(tip%excess(1.0e6_rk), 0.1_rk, 1.0e-12_rk, "a scale below the toughness")
+      call checks%is_close(tip%excess(2.0e5_rk), 2.25_rk, 1.0e-12_rk, "above the toughness")
+      call checks%is_close(tip%excess(0.0_rk), 2.75_rk, 1.0e-12_rk, "no toughness")
+      call checks%is_close(tip%relative_error(0.0_rk), 0.025_rk, 1.0e-12_rk, "its error")
+   end subroutine test_excess
 
    !> A tip that has grown before and goes on by 0.1 m, first by the given kink.
    subroutine start(path, kink, has_wing)
