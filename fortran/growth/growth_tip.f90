@@ -54,6 +54,7 @@ module growth_tip
       logical :: joined = .false.  !< it has joined that; else it has stopped short of it
       integer(ik) :: heads_for = target_none  !< what the last piece of its path ends on
       logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
+      logical :: is_shut = .false.  !< the faces behind it stick: K = 0, without evaluation
       ! Before the last increment of any tip.
       logical, private :: was_arrested = .false., was_free = .true.
       real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
@@ -73,6 +74,8 @@ module growth_tip
       procedure :: excess
       procedure :: relative_error
       procedure :: has_state
+      procedure :: is_loaded
+      procedure :: shut
    end type tip_t
 
    !> By how much a kink by the criterion's angle changes that angle, where nothing is known yet: as
@@ -148,6 +151,24 @@ contains
       has_just_stopped = self%target /= target_none .and. .not. self%joined &
                          .and. .not. self%was_arrested
    end function has_just_stopped
+
+   !> A tip with intensities to be evaluated.
+   elemental logical function is_loaded(self)
+      class(tip_t), intent(in) :: self
+
+      is_loaded = self%is_free .and. .not. self%is_shut
+   end function is_loaded
+
+   !> The faces behind the tip stick, and have never moved: nothing drives it.
+   elemental subroutine shut(self)
+      class(tip_t), intent(inout) :: self
+      real(rk) :: resistance
+
+      self%is_shut = .true.
+      self%intensity = intensity_t()
+      resistance = self%drive%resistance
+      self%drive = growth_drive_t(resistance=resistance, crack_modulus=self%drive%crack_modulus)
+   end subroutine shut
 
    !> There is a tip to speak of: now, or before the last increment.
    elemental logical function has_state(self, is_before)

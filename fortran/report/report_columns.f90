@@ -411,7 +411,7 @@ module report_columns
                "the end, with the energy released"), &
       word_t("bifurcation", &
                "tips grow together, but any difference between them would grow: one of them "// &
-               "may advance ahead of the others"), &
+               "may advance ahead of the others; or one of equal tips is ahead, by chance"), &
       word_t("remesh", "the mesh was updated after growth"), &
     word_t("well", &
              "a stage of a well begins, it is shut in, or it reaches or leaves its pressure "// &

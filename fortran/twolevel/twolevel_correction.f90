@@ -91,7 +91,7 @@ contains
       nearest = 0
       shortest = huge(1.0_rk)
       do i = 1, size(tips, kind=ik)
-         if (.not. tips(i)%is_free) cycle
+         if (.not. tips(i)%is_loaded()) cycle
          associate (w => windows%window_of(i))
             if (.not. windows%slot(w)%window%holds(points)) cycle
             distance = norm2(0.5_rk*sum(points, dim=2) - tips(i)%xy)

@@ -26,10 +26,13 @@ module twolevel_notes
       type(approach_t), allocatable, private :: approach(:)  !< (tips) to their first growth
       logical, allocatable :: is_uncertain(:)  !< (tips) stated with considerable errors of growth
       logical, private :: was_bifurcation = .false.  !< in the last step with growth
+      logical, allocatable, private :: grew_together(:, :)  !< (tips, tips) as members of one group
+      logical, allocatable, private :: has_separated(:)  !< (tips) from such a tip
    contains
       procedure :: begin
       procedure :: note_onsets
       procedure :: note_competition
+      procedure :: note_separation
    end type notes_t
 
 contains
@@ -40,7 +43,8 @@ contains
       integer, intent(in) :: n  !< tips
 
       allocate (self%approach(n))
-      allocate (self%is_uncertain(n), source=.false.)
+      allocate (self%is_uncertain(n), self%has_separated(n), source=.false.)
+      allocate (self%grew_together(n, n), source=.false.)
    end subroutine begin
 
    !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
@@ -118,6 +122,38 @@ contains
       end if
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
+
+   !> Tips that have grown in one group, but whose gains differ by more than their errors now: nothing
+   !! but these errors has separated them, and it is chance which one is ahead.
+   subroutine note_separation(self, tips, now, time, chronicle)
+      class(notes_t), intent(inout) :: self
+      type(tip_t), intent(in) :: tips(:)
+      type(levels_state_t), intent(in) :: now
+      real(rk), intent(in) :: time  !< [s]
+      type(chronicle_t), intent(inout) :: chronicle
+      integer(ik) :: ahead, behind, i, j
+
+      if (.not. (allocated(now%company%kind) .and. allocated(now%certainty%tip))) return
+      do j = 2, size(tips, kind=ik)
+         do i = 1, j - 1
+            associate (gain => now%segment([i, j])%gain, kind => now%company%kind, &
+                       error => now%certainty%tip)
+               if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
+               if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
+               if (.not. abs(gain(1) - gain(2)) > error(i) + error(j)) cycle
+               ahead = merge(i, j, gain(1) > gain(2))
+               behind = merge(j, i, gain(1) > gain(2))
+               call chronicle%add_event(time, event_bifurcation, "this tip is ahead of "// &
+                                        "an equal one at ("//brief_text(tips(behind)%xy(1), 4)// &
+                                        ", "//brief_text(tips(behind)%xy(2), 4)//") m by "// &
+                                        brief_text(abs(gain(1) - gain(2)), 3)// &
+                                        " m, more than their errors: which one is ahead is "// &
+                                        "chance", tips(ahead)%fracture, tips(ahead)%xy)
+               self%has_separated([i, j]) = .true.
+            end associate
+         end do
+      end do
+   end subroutine note_separation
 
    !> How well length and pressure are known in the state that a step of length dt has led to.
    subroutine note_certainty(scene, front, problem, dt, now)

@@ -14,7 +14,7 @@ module twolevel_places
    implicit none(type, external)
    private
 
-   public :: advances, end_cell, place_tips, tip_cell_lengths
+   public :: advances, end_cell, place_tips, shut_tips, tip_cell_lengths
 
 contains
 
@@ -70,6 +70,30 @@ contains
 
       end_cell = findloc(fracture%cell_fracture, tip%fracture, dim=1, back=tip%end == 2)
    end function end_cell
+
+   !> Tips whose last two coarse cells have no jump: the faces stick there as they did before the
+   !! load, and K = 0. Tips that have grown are none of them.
+   pure function shut_tips(tips, segments, fracture, jump) result(is_shut)
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: jump(:, :, :)  !< (2, 2, fracture cells) [m]
+      logical :: is_shut(size(tips))
+      real(rk), parameter :: rounding = 1.0e-12_rk  ! in a jump, over the largest
+      real(rk) :: least
+      integer(ik) :: cell, i, next
+
+      is_shut = .false.
+      least = rounding*maxval(abs(jump))
+      do i = 1, size(tips, kind=ik)
+         if (.not. tips(i)%is_free .or. segments(i)%is_open .or. segments(i)%gain > 0.0_rk) cycle
+         cell = end_cell(fracture, tips(i))
+         next = cell + merge(1_ik, -1_ik, tips(i)%end == 1)
+         if (next < 1 .or. next > fracture%n_cells) cycle
+         if (fracture%cell_fracture(next) /= tips(i)%fracture) cycle
+         is_shut(i) = all(abs(jump(:, :, [cell, next])) <= least)
+      end do
+   end function shut_tips
 
    !> Length of the coarse cell at each tip [m]; 0 where there is none any more.
    pure function tip_cell_lengths(tips, problem) result(length)

@@ -20,6 +20,7 @@ module twolevel_state
    use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
+   use twolevel_places, only: shut_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
@@ -410,6 +411,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       logical :: asked(size(self%tip))
+      integer(ik) :: i
 
       call timers%heed(error)
       if (allocated(error)) return
@@ -418,11 +420,23 @@ contains
       associate (now => self%now)
          call follow_sides(self%scene, now%coarse%time, now%coarse%time)
          call timers%start(phase_tips)
+         self%tip%is_shut = .false.
+         if (self%problem%mesh%fracture%n_cells > 0) then
+            self%tip%is_shut = shut_tips(self%tip, now%segment, self%problem%mesh%fracture, &
+                                         now%coarse%jump)
+         end if
+         asked = asked .and. self%tip%is_loaded()
          call self%problem%find_values(now%coarse)
          call self%windows%evaluate(self%scene, self%network, self%tip, asked, &
                                     self%has_reference(), self%problem, now%coarse, &
                                     now%undrained, now%windows, error)
          call timers%stop(phase_tips)
+         do i = 1, size(self%tip, kind=ik)
+            if (.not. self%tip(i)%is_shut) cycle
+            call self%tip(i)%shut()
+            now%windows%tip(i)%found = self%tip(i)%intensity
+            call now%windows%tip(i)%forget_coarse_error()
+         end do
       end associate
    end subroutine evaluate
 

@@ -60,7 +60,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. any(self%tip%is_free)) return
+      if (.not. any(self%tip%is_loaded())) return
       call timers%start(phase_tips)
       call estimate(self, error)
       call timers%stop(phase_tips)
@@ -85,7 +85,7 @@ contains
       if (.not. allocated(error)) call compare_pressures(self, error)
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_free) cycle
+         if (.not. self%tip(i)%is_loaded()) cycle
          self%tip(i)%intensity = self%windows%intensity_of(i, self%now%windows%tip(i))
       end do
    end subroutine estimate
@@ -99,19 +99,19 @@ contains
 
       if (.not. is_due(self)) then
          do i = 1, size(tips, kind=ik)
-            if (self%tip(i)%is_free) call judge_as_before(self%now%windows%tip(i))
+            if (self%tip(i)%is_loaded()) call judge_as_before(self%now%windows%tip(i))
          end do
          return
       end if
       tips = self%tip
       associate (now => self%now)
-         call self%reference%evaluate(self%scene, self%network, tips, tips%is_free, .false., &
+         call self%reference%evaluate(self%scene, self%network, tips, tips%is_loaded(), .false., &
                                       self%problem, now%coarse, now%undrained, now%reference, &
                                       error)
       end associate
       if (allocated(error)) return
       do i = 1, size(tips, kind=ik)
-         if (.not. tips(i)%is_free) cycle
+         if (.not. tips(i)%is_loaded()) cycle
          call judge_beside(self%now%reference%tip(i), self%now%windows%tip(i))
          self%now%windows%tip(i)%compared_at = tips(i)%xy
       end do
@@ -125,7 +125,7 @@ contains
 
       is_due = .not. self%reference%has_to_mesh(self%tip)
       do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_free) cycle
+         if (.not. self%tip(i)%is_loaded()) cycle
          associate (tip => self%now%windows%tip(i))
             is_due = is_due .or. norm2(self%tip(i)%xy - tip%compared_at) > self%rules%increment &
                      .or. .not. norm2([tip%found%k1, tip%found%k2] - tip%compared) &
@@ -191,7 +191,7 @@ contains
             end associate
          end do
          do i = 1, size(tips, kind=ik)
-            if (.not. self%tip(i)%is_free) cycle
+            if (.not. self%tip(i)%is_loaded()) cycle
             associate (w => self%windows%window_of(i))
                call judge_edges(self, self%windows%slot(w)%window, better(:, i), worse(:, i), &
                                 tips(i))
@@ -245,7 +245,7 @@ contains
       call first_failure(failure, error)
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_free) cycle
+         if (.not. self%tip(i)%is_loaded()) cycle
          associate (tip => self%now%windows%tip(i))
             tip%passing = safety*share_of_pressure &
                           *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed) &

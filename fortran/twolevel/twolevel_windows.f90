@@ -330,13 +330,13 @@ contains
       end associate
    end function intensity_of
 
-   !> A window serves a tip that is free.
+   !> A window serves a tip with intensities to be evaluated.
    pure logical function is_asked(self, window, tips)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
 
-      is_asked = any(tips(self%slot(window)%window%serves)%is_free)
+      is_asked = any(tips(self%slot(window)%window%serves)%is_loaded())
    end function is_asked
 
    !> Meshes of some windows are those of other tips than these: to be made anew, or to be moved.
