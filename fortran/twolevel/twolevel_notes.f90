@@ -125,12 +125,13 @@ contains
 
    !> Tips that have grown in one group, but whose gains differ by more than their errors now: nothing
    !! but these errors has separated them, and it is chance which one is ahead.
-   subroutine note_separation(self, tips, now, time, chronicle)
+   subroutine note_separation(self, tips, now, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       type(levels_state_t), intent(in) :: now
-      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: increment  !< [m]
       type(chronicle_t), intent(inout) :: chronicle
+      real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the increment
       integer(ik) :: ahead, behind, i, j
 
       if (.not. (allocated(now%company%kind) .and. allocated(now%certainty%tip))) return
@@ -140,10 +141,10 @@ contains
                        error => now%certainty%tip)
                if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
                if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
-               if (.not. abs(gain(1) - gain(2)) > error(i) + error(j)) cycle
+               if (.not. abs(gain(1) - gain(2)) > max(least*increment, error(i) + error(j))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
-               call chronicle%add_event(time, event_bifurcation, "this tip is ahead of "// &
+               call chronicle%add_event(now%coarse%time, event_bifurcation, "this tip is ahead of "// &
                                         "an equal one at ("//brief_text(tips(behind)%xy(1), 4)// &
                                         ", "//brief_text(tips(behind)%xy(2), 4)//") m by "// &
                                         brief_text(abs(gain(1) - gain(2)), 3)// &

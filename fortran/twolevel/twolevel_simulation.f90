@@ -268,6 +268,9 @@ contains
       end if
       if (states_errors(self)) call note_certainty(self%scene, self%front_state_t, self%problem, &
                                                    self%dt, self%now)
+      if (may_grow .and. self%is_equilibrium()) then
+         call self%notes%note_separation(self%tip, self%now, self%rules%increment, self%chronicle)
+      end if
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
          self%owes_state = .false.

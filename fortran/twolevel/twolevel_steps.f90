@@ -202,7 +202,6 @@ contains
          call accept_equilibrium(self, merge(0.0_rk, self%dt, is_unstable .or. trial%has_joined))
          call self%notes%note_competition(self%tip, self%now%rivals, self%rules%increment, &
                                           self%now%coarse%time, self%chronicle)
-         call self%notes%note_separation(self%tip, self%now, self%now%coarse%time, self%chronicle)
       end if
       call self%stepper%step_done(trial, self%dt)
       call self%now%trend%accept(self%before, self%now%coarse, self%dt)
