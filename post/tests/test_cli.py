@@ -14,7 +14,7 @@ from matplotlib.image import imread
 
 from wingcrack.command_line import main
 from wingcrack.figures import style
-from wingcrack.figures.figures import Outcome
+from wingcrack.figures.catalogue import Outcome
 from wingcrack.figures.read import Run
 
 POST = Path(__file__).resolve().parents[1]
@@ -79,7 +79,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         file.touch()
         return Outcome(kind.name, (file,))
 
-    monkeypatch.setattr("wingcrack.figures.figures._drawn", pretend)
+    monkeypatch.setattr("wingcrack.figures.catalogue._drawn", pretend)
     return names
 
 
@@ -254,7 +254,7 @@ def test_figure_libraries_are_loaded_only_when_needed() -> None:
     code = (
         "import sys, wingcrack.command_line, wingcrack.figures.cli\n"
         "assert not {'matplotlib', 'pyvista', 'vtk'} & set(sys.modules)\n"
-        "import wingcrack.figures.figures\n"
+        "import wingcrack.figures.catalogue\n"
         "assert not {'pyvista', 'vtk', 'matplotlib.pyplot'} & set(sys.modules)\n"
     )
     done = subprocess.run(

@@ -22,8 +22,7 @@ import wingcrack
 from wingcrack.figures import AbsentError, read_run
 from wingcrack.figures.equilibrium import equilibrium_path, find_releases
 from wingcrack.figures.equilibrium_figure import draw_equilibrium, equilibrium_figure
-from wingcrack.figures.proportional import control_of, drive_of
-from wingcrack.figures.scene import read_groups
+from wingcrack.figures.scene import control_of, drive_of, read_groups
 from wingcrack.figures.table import FloatArray
 
 TOUGH, RISE, REST = 20.0, 1.0e3, 5.0e3  # G_c [J/m2], c1 [J/m3], c0 [J/m]

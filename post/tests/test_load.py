@@ -16,7 +16,7 @@ from wingcrack.figures.fields import MatrixField, read_matrix
 from wingcrack.figures.frames import Window, extent, usual_limit
 from wingcrack.figures.history import development, intensities
 from wingcrack.figures.load import abscissa, load_figure, moment_label
-from wingcrack.figures.stress import MEAN_COLOURS, stress_maps
+from wingcrack.figures.maps import MEAN_COLOURS, stress_maps
 
 
 @pytest.fixture

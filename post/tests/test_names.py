@@ -13,11 +13,10 @@ from matplotlib.figure import Figure
 
 from wingcrack.command_line import main
 from wingcrack.figures import figures, profiles
-from wingcrack.figures import foremost as foremost_module
-from wingcrack.figures.foremost import MOST, foremost
-from wingcrack.figures.growth import Growth
-from wingcrack.figures.names import Names, _candidates
+from wingcrack.figures import growth as growth_module
+from wingcrack.figures.growth import MOST, Growth, foremost
 from wingcrack.figures.scene import Scene, Well
+from wingcrack.figures.story_map import Names, _candidates
 from wingcrack.figures.table import FloatArray
 
 
@@ -87,7 +86,7 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
     own_run: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(profiles, "MOST", 2)
-    monkeypatch.setattr(foremost_module, "MOST", 2)
+    monkeypatch.setattr(growth_module, "MOST", 2)
     only = [kind for kind in figures._FIGURES if kind.group == "fractures"]
     monkeypatch.setattr(figures, "_FIGURES", only)
     path = own_run / "fractures.csv"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
 from wingcrack.figures.scene import read_groups, read_scene
 
 # in the form in which the solver writes it

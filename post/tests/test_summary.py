@@ -12,7 +12,7 @@ import pytest
 from wingcrack.command_line import main
 from wingcrack.figures import read_run
 from wingcrack.figures.facts import gather_facts
-from wingcrack.figures.loading import read_loading
+from wingcrack.figures.geometry import read_loading
 from wingcrack.figures.page import write_page
 from wingcrack.figures.summary import summary
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
 from wingcrack.figures.table import read_table
-from wingcrack.runs.tables import column
+from wingcrack.runs.results import column
 
 
 def _file(folder: Path, text: str) -> Path:

@@ -151,7 +151,7 @@ def test_another_way_of_drawing(drawn_run: Path, capsys: pytest.CaptureFixture[s
 def test_another_program(
     drawn_run: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wingcrack.figures.figures.program", lambda: "of tomorrow")
+    monkeypatch.setattr("wingcrack.figures.catalogue.program", lambda: "of tomorrow")
     assert _drawn(drawn_run, capsys) == ALL
 
 
@@ -167,7 +167,7 @@ def test_the_program_is_all_of_its_files_and_libraries(monkeypatch: pytest.Monke
 def test_a_drawing_that_fails_leaves_no_word_that_it_was_drawn(
     drawn_run: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("wingcrack.figures.figures.program", lambda: "of tomorrow")
+    monkeypatch.setattr("wingcrack.figures.catalogue.program", lambda: "of tomorrow")
 
     def failing(*_: object) -> None:
         raise KeyboardInterrupt

@@ -16,7 +16,7 @@ from synthetic_run import BODY, STEPS, save_raw, times
 from wingcrack.figures import AbsentError, Run, RunError, read_run, style
 from wingcrack.figures import view as module
 from wingcrack.figures.frames import Frame, read_frame
-from wingcrack.figures.stress import MEAN_COLOURS
+from wingcrack.figures.maps import MEAN_COLOURS
 from wingcrack.figures.view import WARP_SHARE, displacement_at, view
 
 

@@ -7,8 +7,14 @@ from pathlib import PurePosixPath
 import pytest
 
 from documents import NAMES, TOP
-from wingcrack_docs.dialect import to_python_markdown
-from wingcrack_docs.links import anchors, change_links, find_links, is_elsewhere, resolve
+from wingcrack_docs.links import (
+    anchors,
+    change_links,
+    find_links,
+    is_elsewhere,
+    resolve,
+    to_python_markdown,
+)
 
 CASES = [
     page.relative_to(TOP).as_posix() for page in sorted((TOP / "verification").glob("*/README.md"))

@@ -13,10 +13,9 @@ from urllib.parse import unquote
 import pytest
 
 from wingcrack.command_line import main, understand
-from wingcrack_docs import fortran, site
-from wingcrack_docs.errors import PagesError, SiteError
+from wingcrack_docs import cli, fortran
 from wingcrack_docs.links import is_elsewhere
-from wingcrack_docs.places import DOCS, SITE
+from wingcrack_docs.places import DOCS, SITE, DocsError
 
 
 class _Page(HTMLParser):
@@ -46,7 +45,7 @@ class _Page(HTMLParser):
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site without the Fortran modules; a warning would have failed."""
     folder = tmp_path_factory.mktemp("site")
-    site.build_site(folder, fortran=False)
+    cli.build_site(folder, fortran=False)
     return folder
 
 
@@ -102,9 +101,9 @@ def test_a_warning_of_mkdocs_is_a_failure(
     (tmp_path / "docs").mkdir()
     (tmp_path / "docs" / "index.md").write_text("[nowhere](none.md)\n")
     (tmp_path / "mkdocs.yml").write_text("site_name: broken\n")
-    monkeypatch.setattr(site, "CONFIGURATION", tmp_path / "mkdocs.yml")
-    with pytest.raises(SiteError, match="1 warnings in strict mode"):
-        site.build_site(tmp_path / "out", fortran=False)
+    monkeypatch.setattr(cli, "CONFIGURATION", tmp_path / "mkdocs.yml")
+    with pytest.raises(DocsError, match="1 warnings in strict mode"):
+        cli.build_site(tmp_path / "out", fortran=False)
     assert main(["docs", "--no-fortran", "--out", str(tmp_path / "out")]) == 1
     assert "wingcrack docs: the site was not built" in capsys.readouterr().err
 
@@ -134,7 +133,7 @@ def test_ford_that_fails_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(fortran, "TOP", tmp_path)
     monkeypatch.setattr(fortran, "FORTRAN_PAGES", tmp_path / "pages")
     monkeypatch.setattr("sys.executable", "/bin/false")
-    with pytest.raises(PagesError, match="FORD failed: it gave no reason"):
+    with pytest.raises(DocsError, match="FORD failed: it gave no reason"):
         fortran.make_fortran_pages()
 
 
@@ -152,7 +151,7 @@ def test_the_site_is_shown_to_this_machine_only(
         thread.join()
 
     monkeypatch.setattr(ThreadingHTTPServer, "serve_forever", serve)
-    site.serve_site(built, 0)
+    cli.serve_site(built, 0)
     assert seen == ["127.0.0.1", True]
 
 

@@ -11,10 +11,9 @@ import pytest
 
 from map_calls import imported, needs_solver
 from test_gmsh_files import MESH, RECTANGLES
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import CaseError, RunError
 from wingcrack.figures.read import read_run
 from wingcrack.studies.study import read_study
-from wingcrack.sweeps.errors import CaseError
 from wingcrack_maps import cli
 from wingcrack_verify.case import read_case
 

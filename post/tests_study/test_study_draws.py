@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from wingcrack.errors import CaseError
 from wingcrack.studies.distributions import read_draws
-from wingcrack.sweeps.errors import CaseError
 
 COUNT = 50
 

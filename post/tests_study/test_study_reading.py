@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from small_study import HEAD, LINES, ONSET, OVER, PRESSURE, SOUND, small_study
+from wingcrack.errors import CaseError
 from wingcrack.studies.study import Study, read_study
 from wingcrack.studies.units import column_name, pretty_number, spoken, unit_of_path
-from wingcrack.sweeps.errors import CaseError
 
 TOP = Path(__file__).resolve().parents[2]
 DRAW = """\

@@ -12,13 +12,13 @@ from matplotlib.patches import Rectangle
 from pyarrow import parquet
 
 from small_study import HEAD, LINES, ONSET, OVER, PRESSURE, SmallStudy, small_study
-from wingcrack.runner.outcome import Outcome
+from wingcrack.errors import CaseError
+from wingcrack.runner.task import Outcome
 from wingcrack.studies import figures
 from wingcrack.studies.plots import Plot, read_plot
 from wingcrack.studies.running import done_before, tasks_of
 from wingcrack.studies.study import Study, read_study
 from wingcrack.studies.table import StudyTable, make_table, write_csv, write_parquet
-from wingcrack.sweeps.errors import CaseError
 
 DRAW = """\
 [draw]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from wingcrack_verify.drawings import Sheet
+from wingcrack_verify.page import Sheet
 
 POST = Path(__file__).resolve().parents[1]
 _HEAD = (

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array, evaluate, names_in
 from wingcrack_verify.metrics import Pair, measure
 from wingcrack_verify.orders import Point, advise, observed_order, pareto_front

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from small_case import small_case
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.paths import network_table, path_distance
 from wingcrack_verify.judge import ERROR, PASSED

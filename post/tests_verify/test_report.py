@@ -13,17 +13,17 @@ import pytest
 
 from small_case import CHECKS, SmallCase, small_case
 from wingcrack.command_line import main
-from wingcrack_verify import printing
+from wingcrack_verify import report as report_module
 from wingcrack_verify.judge import ERROR
 
-INSTALLED = printing.BROWSERS
+INSTALLED = report_module.BROWSERS
 
 
 @pytest.fixture(scope="module", autouse=True)
 def no_browser() -> Iterator[None]:
     """Find no browser, whether there is one or not: printing takes seconds."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(printing, "BROWSERS", ())
+        patch.setattr(report_module, "BROWSERS", ())
         yield
 
 
@@ -208,10 +208,10 @@ def test_a_browser_prints_the_page(
         f'set -- "${{!#}}"; set -- "${{1#file://}}"\n{does}\n'
     )
     browser.chmod(0o755)
-    monkeypatch.setattr(printing, "BROWSERS", (str(browser),))
+    monkeypatch.setattr(report_module, "BROWSERS", (str(browser),))
     page, target = tmp_path / "index.html", tmp_path / "report.pdf"
     page.write_text("the page")
-    reason = printing.print_page(page, target)
+    reason = report_module.print_page(page, target)
     assert reason.endswith(told)
     assert target.exists() == (told == "") == (reason == "")
     assert told or target.read_text() == "the page"
@@ -223,8 +223,8 @@ def test_pages_of_the_pdf_hold_the_words(report: Path, tmp_path: Path) -> None:
         pytest.skip("chromium or pdftotext (Debian: poppler-utils) is not installed")
     target = tmp_path / "report.pdf"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(printing, "BROWSERS", INSTALLED)
-        assert printing.print_page(report / "index.html", target) == ""
+        patch.setattr(report_module, "BROWSERS", INSTALLED)
+        assert report_module.print_page(report / "index.html", target) == ""
     call = ["pdftotext", "-layout", str(target), "-"]
     words = subprocess.run(call, capture_output=True, text=True, check=True).stdout
     assert "Parabola" in words

@@ -9,7 +9,7 @@ from typing import Any
 import f90nml
 import pytest
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.scene import scene_text
 
 _SCENE = """\

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType, SimpleNamespace
 
 from wingcrack.command_line.declaring import TOP
-from wingcrack.command_line.solver_commands import judge_place
+from wingcrack.command_line.run_commands import judge_place
 
 _PROGRAMS = TOP / "build" / "release" / "fortran" / "app"
 SOLVER, RANKS_SOLVER = _PROGRAMS / "wingcrack-solver", _PROGRAMS / "wingcrack-ranks"

@@ -17,8 +17,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 import wingcrack
-from wingcrack_docs.dialect import to_python_markdown
-from wingcrack_docs.links import change_links, is_elsewhere, resolve
+from wingcrack_docs.links import change_links, is_elsewhere, resolve, to_python_markdown
 from wingcrack_docs.places import FORTRAN_PAGES, TOP
 
 _PAGES = {

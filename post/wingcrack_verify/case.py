@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wingcrack.errors import CaseError
 from wingcrack.figures import text_files
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.fields import TIME_LIMIT_S, Fields, as_number, read_toml
 from wingcrack.sweeps.likes import Likes, shared_likes
 from wingcrack.sweeps.selection import read_selection
@@ -36,10 +36,7 @@ _DEFAULTS = ("run", "check", "figure")  # kinds of entries that have some
 def read_case(folder: Path) -> Case:
     """Read ``check.toml`` of a case's folder.
 
-    Raises
-    ------
-    CaseError
-        If anything in it is missing, unknown or contradicts itself.
+    Raises `CaseError` if anything in it is missing, unknown or contradicts itself.
     """
     data = read_toml(folder / "check.toml")
     fields = Fields(data, "check.toml")

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.fields import Fields
 from wingcrack.sweeps.sweep import Table, read_tables
 

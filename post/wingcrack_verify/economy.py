@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import read_json
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.fields import Fields
 from wingcrack_verify.orders import Point
 
@@ -45,10 +45,7 @@ class Saving:
 def read_economy(data: Any, place: str, methods: Sequence[str]) -> Economy:
     """Read the table ``economy`` of a check.
 
-    Raises
-    ------
-    CaseError
-        If a name is missing or unknown, or a number out of range.
+    Raises `CaseError` if a name is missing or unknown, or a number out of range.
     """
     fields = Fields(data, f"{place}: economy")
     economy = Economy(

@@ -6,11 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.runner.outcome import Outcome
+from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.runner.pool import Pool
-from wingcrack.runner.task import Task, tables_of
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.runner.task import Outcome, Task, tables_of
 from wingcrack.sweeps.scene import scene_hash, scene_text
 from wingcrack_verify.contents import Run
 

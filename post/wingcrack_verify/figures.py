@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -14,11 +15,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from wingcrack.figures.style import CYCLE, new_figure, styled
+from wingcrack.figures.maps import pressure_maps
+from wingcrack.figures.network import network_figure
+from wingcrack.figures.read import Run, read_run
+from wingcrack.figures.story_map import draw_map
+from wingcrack.figures.style import CYCLE, new_figure, outside_legend, styled
 from wingcrack_verify.economy import observed_rate
 from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
 from wingcrack_verify.orders import Point, pareto_front
-from wingcrack_verify.pictures import picture_of
 from wingcrack_verify.stability import MapReport
 
 WIDTH, HEIGHT = 4.3, 2.7  # [inch]: at this width the letters keep their size on a phone
@@ -30,15 +34,9 @@ LABEL_LETTERS = 36  # that stand beside an axis of this height
 
 @dataclass(frozen=True)
 class Drawing:
-    """A finished figure.
+    """A finished figure."""
 
-    Attributes
-    ----------
-    title, caption : str
-        Said beside the figure.
-    svg : bytes
-    """
-
+    # title, caption: said beside the figure
     title: str
     caption: str
     svg: bytes
@@ -338,3 +336,31 @@ def check_drawings(report: CheckReport) -> Sequence[Drawing]:
     drawings = (profile_drawing(report), order_drawing(report))
     found = [drawing for drawing in drawings if drawing is not None]
     return [*found, *work_precision_drawings(report)]
+
+
+_STATE_SIZE = (4.3, 3.6)  # [inch]
+
+
+def _states(run: Run) -> Figure:
+    """The network at the end by contact state."""
+    figure = new_figure(*_STATE_SIZE)
+    assert run.fractures is not None
+    outside_legend(figure, draw_map(figure.add_subplot(), run, run.fractures), 3)
+    return figure
+
+
+def _pressure(run: Run) -> Figure:
+    """The pore pressure at the end, the fractures on top."""
+    return pressure_maps(run, (float(run.history.moments()[-1]),))
+
+
+_DRAW: dict[str, Callable[[Run], Figure]] = {
+    "network": network_figure,
+    "states": _states,
+    "pressure": _pressure,
+}
+
+
+def picture_of(picture: str, folder: Path) -> Figure:
+    """Draw the picture of a finished run that has written what it takes (`picture_files`)."""
+    return _DRAW[picture](read_run(folder))

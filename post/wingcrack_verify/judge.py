@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array, evaluate
 from wingcrack.sweeps.selection import Selection, Values, interpolated, select
 from wingcrack_verify.contents import Case, Check, FigureRequest, Run

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.paths import NETWORK, network_table
 
 _FIELDS = "matrix.pvd"

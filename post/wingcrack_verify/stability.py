@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import is_file, read_json
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.fields import Fields, read_toml
 from wingcrack.sweeps.likes import Likes, shared_likes
 from wingcrack.sweeps.selection import read_selection, select

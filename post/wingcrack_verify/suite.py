@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack_verify import case_folders
 from wingcrack_verify.case import read_case
 from wingcrack_verify.contents import Case, Run
@@ -70,10 +70,7 @@ class JudgedSuite:
 def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
     """Read the named cases, all of which are there, or every one.
 
-    Raises
-    ------
-    CaseError
-        If nothing is left to run; a broken case is part of the suite, and red.
+    Raises `CaseError` if nothing is left to run; a broken case is part of the suite, and red.
     """
     folders = case_folders(top)
     cases: list[Case | BrokenCase] = []

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.states import growth_start
@@ -57,10 +57,7 @@ def tip_steps(run: Run, table: Table) -> FloatArray:
 def load_figure(run: Run) -> Figure:
     """Load factor against the fractures' length, and both against the step.
 
-    Raises
-    ------
-    AbsentError
-        If no load factor drives the run, or nothing has grown.
+    Raises `AbsentError` if no load factor drives the run, or nothing has grown.
     """
     if not has_load(run):
         raise AbsentError("no load factor drives the run")
@@ -90,10 +87,7 @@ def load_figure(run: Run) -> Figure:
 def draw_load(axes: Axes, run: Run) -> None:
     """Draw the load factor against the fractures' length into axes.
 
-    Raises
-    ------
-    AbsentError
-        If no load factor drives the run.
+    Raises `AbsentError` if no load factor drives the run.
     """
     if not has_load(run):
         raise AbsentError("no load factor drives the run")

@@ -16,8 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.growth import Growth, moment_of, read_growth
 from wingcrack.figures.read import Run
 from wingcrack.figures.regions import draw_regions
@@ -38,10 +38,7 @@ _ONLY_LABELS = 0.8  # [inch] beside the axes without a colour bar
 def network_figure(run: Run) -> Figure:
     """Draw the network at the end of a run, with the outline of the body.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no network, or none with fractures.
+    Raises `AbsentError` if the run has no network, or none with fractures.
     """
     growths = grown_network(run)
     assert run.network is not None
@@ -60,10 +57,7 @@ def network_figure(run: Run) -> Figure:
 def grown_network(run: Run) -> list[Growth]:
     """Growth of all fractures.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no network, or none with fractures.
+    Raises `AbsentError` if the run has no network, or none with fractures.
     """
     if run.network is None:
         raise AbsentError("the run has no network.json")
@@ -89,8 +83,6 @@ def draw_network(
 
     Parameters
     ----------
-    axes : Axes
-    growths : sequence of Growth
     network : mapping
         Contents of network.json.
     history : Table

@@ -57,7 +57,6 @@ def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
 
     Parameters
     ----------
-    run : Run
     folder : Path
         Where the figures are.
     order : sequence of str

@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import abscissa
 from wingcrack.figures.marks import mark_moments
 from wingcrack.figures.read import Run, needed
@@ -54,10 +54,7 @@ def probe_names(table: Table) -> list[str]:
 def probe_histories(run: Run) -> Figure:
     """Draw every quantity at every probe: colour tells the probe, dashes the component.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no probes.
+    Raises `AbsentError` if the run has no probes.
     """
     table = needed(run.probes, "probes.csv", "values at probe points")
     names = probe_names(table)

@@ -12,10 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
-from wingcrack.figures.foremost import MOST, foremost
-from wingcrack.figures.growth import read_growth
+from wingcrack.figures.growth import MOST, foremost, read_growth
 from wingcrack.figures.load import moment_label
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.scales import (
@@ -59,12 +58,8 @@ def fracture_profiles(
 ) -> Iterator[tuple[str, Figure]]:
     """Draw one figure per fracture; yields its label in the files and the figure.
 
-    Of many fractures only the foremost get one, unless `every` one shall.
-
-    Raises
-    ------
-    AbsentError
-        If the run has no fracture cells; at the end, if fractures were left out.
+    Of many fractures only the foremost get one, unless `every` one shall. Raises `AbsentError` if
+    the run has no fracture cells; at the end, if fractures were left out.
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     labels = table.text("fracture")
@@ -173,10 +168,10 @@ def draw_profile(
 ) -> list[Line2D]:
     """Draw a column of fractures.csv along one fracture into axes; gives the legend's entries.
 
+    Raises `AbsentError` if the run has no fracture cells.
+
     Parameters
     ----------
-    axes : Axes
-    run : Run
     column : str
         One of `profile_columns`.
     label : str
@@ -184,11 +179,6 @@ def draw_profile(
     wanted_s : sequence of float
         Moments, in the unit of the tables; the nearest written ones are drawn. Default: see
         `select_states`.
-
-    Raises
-    ------
-    AbsentError
-        If the run has no fracture cells.
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     panel = next(panel for panel in _panels(table) if panel.column == column)

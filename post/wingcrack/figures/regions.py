@@ -23,20 +23,11 @@ _MOST_DECADES = 3.0
 
 @dataclass(frozen=True)
 class Region:
-    """A part of the rock.
-
-    Attributes
-    ----------
-    name : str
-    corners : (n, 2) array
-        Of its outline, which may reach beyond the body [m].
-    permeability_m2 : tuple of float
-        Components xx and yy [m2].
-    """
+    """A part of the rock."""
 
     name: str
-    corners: FloatArray
-    permeability_m2: tuple[float, float]
+    corners: FloatArray  # (n, 2) of its outline, which may reach beyond the body [m]
+    permeability_m2: tuple[float, float]  # components xx and yy [m2]
 
 
 def read_region(

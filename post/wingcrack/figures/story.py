@@ -12,15 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import abscissa
-from wingcrack.figures.names import HALO
 from wingcrack.figures.pressures import highest_pressures, injected_and_produced, well_pressures
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.states import growth_start
-from wingcrack.figures.story_map import draw_map
+from wingcrack.figures.story_map import HALO, draw_map
 from wingcrack.figures.table import FloatArray, Table
 from wingcrack.figures.units import MEGAPASCAL, area_unit, rate_unit, time_unit
 from wingcrack.figures.wells import MOST_WELLS, well_rows
@@ -67,10 +66,8 @@ class Mark:
 def story(run: Run) -> Figure:
     """Map of the network with slip events; pressure, injectivity, fluid, lengths, moment.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no wells, no fractures, one state only, or is of an earlier version.
+    Raises `AbsentError` if the run has no wells, no fractures, one state only, or is of an earlier
+    version.
     """
     table = run.history
     if not table.has("injected_m2"):

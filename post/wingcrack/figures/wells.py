@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import abscissa
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.table import FloatArray, Table
@@ -34,10 +34,7 @@ def well_rows(table: Table) -> Iterator[tuple[int, str, Rows]]:
 def well_histories(run: Run) -> Figure:
     """Pressure at depth and at the head, flow, volume and injectivity of each well.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no wells, or one state only.
+    Raises `AbsentError` if the run has no wells, or one state only.
     """
     table = needed(run.wells, "wells.csv", "what each well did")
     if run.history.rows == 1:

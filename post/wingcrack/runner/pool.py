@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Generic, TypeVar
 
-from wingcrack.runner.outcome import Outcome
-from wingcrack.runner.task import Task, run_task
+from wingcrack.runner.task import Outcome, Task, run_task
 
 Name = TypeVar("Name")
 

@@ -11,7 +11,7 @@ from matplotlib.colors import Colormap, Normalize
 from wingcrack.figures import style
 from wingcrack.figures.fields import MatrixField
 from wingcrack.figures.frames import extent, usual_limit, value_scale
-from wingcrack.figures.stress import MEAN_COLOURS
+from wingcrack.figures.maps import MEAN_COLOURS
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.units import MEGAPASCAL, Unit, displacement_unit, stress_unit
 from wingcrack.runs.fields import Fields

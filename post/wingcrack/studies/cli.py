@@ -13,8 +13,8 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from wingcrack.runner.outcome import Outcome
-from wingcrack.runner.task import Task
+from wingcrack.errors import CaseError
+from wingcrack.runner.task import Outcome, Task
 from wingcrack.studies.cluster import Cluster
 from wingcrack.studies.outputs import UnreadableError, judge_run
 from wingcrack.studies.running import Clock, check_scenes, done_before, run_tasks, tasks_of
@@ -27,7 +27,6 @@ from wingcrack.studies.table import (
     write_statistics,
     write_text,
 )
-from wingcrack.sweeps.errors import CaseError
 
 _ENDED_BY = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
@@ -131,10 +130,7 @@ class _Ledger:
     def judge(self, outcome: Outcome) -> None:
         """Refuse to go on if the first finished run lacks what shall be read of all.
 
-        Raises
-        ------
-        UnreadableError
-            With what it lacks.
+        Raises `UnreadableError`: with what it lacks.
         """
         if self._is_judged or outcome.status != "finished":
             return

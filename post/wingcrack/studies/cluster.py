@@ -9,9 +9,8 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
+from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.figures.choices import CLUSTERS
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.fields import Fields
 
 # Module and class of each kind, and what must be installed for it.
@@ -25,30 +24,17 @@ _CLASSES = {
 
 @dataclass(frozen=True)
 class Cluster:
-    """``[cluster]`` of a study.
+    """``[cluster]`` of a study."""
 
-    Attributes
-    ----------
-    kind : str
-        "none" for processes of this call, or one of Dask's classes.
-    workers : int or None
-        How many runs at a time; None for the cores at hand.
-    arguments : mapping of str to mapping
-        What is handed to the class of each kind.
-    """
-
-    kind: str
-    workers: int | None
-    arguments: Mapping[str, Mapping[str, Any]]
+    kind: str  # "none" for processes of this call, or one of Dask's classes
+    workers: int | None  # how many runs at a time; None for the cores at hand
+    arguments: Mapping[str, Mapping[str, Any]]  # what is handed to the class of each kind
 
 
 def read_cluster(data: Mapping[str, Any], place: str) -> Cluster:
     """Read ``[cluster]`` with ``[cluster.slurm]`` and so on, so that one file serves everywhere.
 
-    Raises
-    ------
-    CaseError
-        If a kind is unknown or the number of workers is none.
+    Raises `CaseError` if a kind is unknown or the number of workers is none.
     """
     fields = Fields(data, place)
     kind = fields.choice("kind", CLUSTERS, "none")
@@ -65,10 +51,8 @@ def read_cluster(data: Mapping[str, Any], place: str) -> Cluster:
 def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
     """Start a cluster and give a client of it; leaving the stack closes both.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If what the kind takes is not installed, or the cluster cannot be started.
+    Raises `EnvironmentLacksError` if what the kind takes is not installed, or the cluster cannot be
+    started.
     """
     module, name, needs = _CLASSES[cluster.kind]
     try:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.fields import Fields
 from wingcrack.sweeps.sweep import Table
@@ -21,6 +21,9 @@ SAMPLE = "sample"  # the parameter that numbers the draws, from 1
 def read_draws(data: Any, place: str, most: int, count: int | None = None) -> Table:
     """Lists of equal length, one per drawn parameter, and the numbers of the samples.
 
+    Raises `CaseError` if there are too many, or a distribution is unknown, impossible, or has no
+    probability within its bounds.
+
     Parameters
     ----------
     data : table
@@ -31,12 +34,6 @@ def read_draws(data: Any, place: str, most: int, count: int | None = None) -> Ta
         How many samples there may be.
     count : int, optional
         Instead of that of the table.
-
-    Raises
-    ------
-    CaseError
-        If there are too many, or a distribution is unknown, impossible, or has no probability
-        within its bounds.
     """
     fields = Fields(data, place)
     given, seed = _whole(fields, "count", 1), _whole(fields, "seed", 0)

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import CaseError
 from wingcrack.figures import style
 from wingcrack.studies.outputs import select_in_run
 from wingcrack.studies.plots import Plot
@@ -19,7 +20,6 @@ from wingcrack.studies.quantities import Quantity
 from wingcrack.studies.study import Parameter, Study, StudyRun
 from wingcrack.studies.table import StudyTable
 from wingcrack.studies.units import NONE, axis_label, pretty_number, pretty_unit, spoken
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.selection import Values
 
@@ -41,10 +41,7 @@ def draw(
 ) -> tuple[list[Path], list[str]]:
     """Draw a figure into ``figures/``; give its files, and what could not be drawn, run by run.
 
-    Raises
-    ------
-    CaseError
-        If there is nothing to draw.
+    Raises `CaseError` if there is nothing to draw.
     """
     if plot.selection is not None:
         curves, missing = _curves(study, plot, table, out)

@@ -7,11 +7,10 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import CaseError, RunError
 from wingcrack.figures.table import read_table
 from wingcrack.figures.text_files import read_json
 from wingcrack.names import columns
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.paths import COLUMNS, NETWORK
 from wingcrack.sweeps.selection import Selection, Values, names_of, select
 
@@ -34,17 +33,14 @@ def names_of_output() -> Mapping[str, Mapping[str, str]]:
 def judge_selection(selection: Selection, constants: Collection[str], has_fluid: bool) -> None:
     """Refuse a selection of what no run writes, before there is one.
 
+    Raises `CaseError`: with what would be right.
+
     Parameters
     ----------
     constants : collection of str
         Names that expressions can use beside those of the file.
     has_fluid : bool
         Whether any run of the study has a fluid.
-
-    Raises
-    ------
-    CaseError
-        With what would be right.
     """
     files = names_of_output()
     if selection.file not in files:
@@ -77,10 +73,7 @@ def judge_selection(selection: Selection, constants: Collection[str], has_fluid:
 def judge_run(selection: Selection, output: Path, constants: Collection[str]) -> None:
     """Refuse a selection of what a finished run has not written.
 
-    Raises
-    ------
-    UnreadableError
-        If the file, a column or a key is missing.
+    Raises `UnreadableError` if the file, a column or a key is missing.
     """
     path = _within(output, selection.file)
     try:
@@ -109,10 +102,7 @@ def select_in_run(
 ) -> Values:
     """As `select`, of a file that lies in the folder of a run, not where a link leads.
 
-    Raises
-    ------
-    CaseError
-        As `select`, and if the file lies elsewhere.
+    Raises `CaseError`: as `select`, and if the file lies elsewhere.
     """
     _within(output, selection.file)
     return select(selection, output, constants, as_path)

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.fields import Fields
 from wingcrack.sweeps.selection import Selection, read_selection
 
@@ -15,35 +15,22 @@ KINDS = ("lines", "over", "band", "histogram")
 
 @dataclass(frozen=True)
 class Plot:
-    """One ``[[figure]]``.
+    """One ``[[figure]]``."""
 
-    Attributes
-    ----------
-    kind : str
-        "lines" of all runs, a quantity "over" a parameter, the "band" of quantiles of lines, or
-        the "histogram" of a quantity.
-    name : str
-        Stem of its files.
-    title, x_label, y_label : str
-    by : tuple of str
-        Parameters that tell lines apart; empty for all that differ.
-    x_log, y_log, equal_axes : bool
-    selection : Selection or None
-        For lines and bands: what is read from each run.
-    quantity, over : str or None
-        For the others: the quantity, and the parameter or quantity that it is drawn over.
-    """
-
+    # "lines" of all runs, a quantity "over" a parameter, the "band" of quantiles of lines, or the
+    # "histogram" of a quantity
     kind: str
-    name: str
+    name: str  # stem of its files
     title: str
     x_label: str
     y_label: str
-    by: tuple[str, ...]
+    by: tuple[str, ...]  # parameters that tell lines apart; empty for all that differ
     x_log: bool
     y_log: bool
     equal_axes: bool
-    selection: Selection | None = None
+    selection: Selection | None = None  # for lines and bands: what is read from each run
+    # quantity, over: for the others: the quantity, and the parameter or quantity that it is drawn
+    # over
     quantity: str | None = None
     over: str | None = None
 
@@ -51,10 +38,7 @@ class Plot:
 def read_plot(data: Any, place: str) -> Plot:
     """Read one ``[[figure]]``.
 
-    Raises
-    ------
-    CaseError
-        If a key is missing, unknown or not for this kind.
+    Raises `CaseError` if a key is missing, unknown or not for this kind.
     """
     fields = Fields(data, place)
     name = fields.text("name")

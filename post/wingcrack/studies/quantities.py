@@ -7,30 +7,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack.errors import CaseError
 from wingcrack.studies.outputs import select_in_run
 from wingcrack.studies.units import column_name
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.fields import Fields
 from wingcrack.sweeps.selection import Selection, read_selection
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """One number per run.
+    """One number per run."""
 
-    Attributes
-    ----------
-    name, unit : str
-        As figures and the table have it.
-    selection : Selection
-        Where it stands in the files of a run.
-    may_be_absent : bool
-        Whether it is no fault if no row or file is there: wings that have not grown have no onset.
-    """
-
+    # name, unit: as figures and the table have it
     name: str
     unit: str
-    selection: Selection
+    selection: Selection  # where it stands in the files of a run
+    # whether it is no fault if no row or file is there: wings that have not grown have no onset
     may_be_absent: bool
 
     @property
@@ -42,10 +34,7 @@ class Quantity:
 def read_quantity(data: Any, place: str) -> Quantity:
     """Read one ``[[quantity]]``.
 
-    Raises
-    ------
-    CaseError
-        If it selects a whole profile, or is wrong in another way.
+    Raises `CaseError` if it selects a whole profile, or is wrong in another way.
     """
     fields = Fields(data, place)
     name = fields.text("name")

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import is_file
 from wingcrack.studies.cluster import Cluster, read_cluster
 from wingcrack.studies.distributions import SAMPLE, read_draws
@@ -16,7 +17,6 @@ from wingcrack.studies.outputs import judge_selection
 from wingcrack.studies.plots import Plot, read_plot
 from wingcrack.studies.quantities import Quantity, read_quantity
 from wingcrack.studies.units import NONE, column_name, spoken, unit_of_path
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.fields import TIME_LIMIT_S, Fields, read_toml
 from wingcrack.sweeps.scene import scene_text
 from wingcrack.sweeps.selection import Selection
@@ -96,17 +96,14 @@ class Study:
 def read_study(path: Path, quick: bool = False) -> Study:
     """Read a study's file and make the scene of each of its runs.
 
+    Raises `CaseError` if anything in it is missing, unknown or contradicts itself.
+
     Parameters
     ----------
     path : Path
         The TOML file; the scene is named relative to it.
     quick : bool
         Whether to take the short form that ``[quick]`` tells.
-
-    Raises
-    ------
-    CaseError
-        If anything in it is missing, unknown or contradicts itself.
     """
     fields = Fields(read_toml(path), path.name)
     title = fields.text("title")

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from wingcrack.runner.outcome import Outcome
+from wingcrack.runner.task import Outcome
 from wingcrack.studies.quantities import measure
 from wingcrack.studies.study import Study, StudyRun
 from wingcrack.studies.units import spoken

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from wingcrack.errors import CaseError
 from wingcrack.figures import text_files
-from wingcrack.sweeps.errors import CaseError
 
 TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
 REQUIRED: Any = object()

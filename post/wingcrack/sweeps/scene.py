@@ -10,9 +10,9 @@ from typing import Any, TypeAlias
 
 import f90nml
 
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import namelist_groups, read_text
 from wingcrack.runner.task import hash_of
-from wingcrack.sweeps.errors import CaseError
 
 _Groups: TypeAlias = dict[str, list[Any]]
 
@@ -23,6 +23,8 @@ DEFAULTS: dict[str, Any] = {"output.vtu": False}
 def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> str:
     """Text of a scene file after the changes.
 
+    Raises `CaseError` if the file cannot be read or an address leads nowhere.
+
     Parameters
     ----------
     path : Path
@@ -32,11 +34,6 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
         number from 1 or its name.
     unset : sequence of str
         Names, items or groups that are taken away first.
-
-    Raises
-    ------
-    CaseError
-        If the file cannot be read or an address leads nowhere.
     """
     try:
         groups = _groups(namelist_groups(read_text(path)))

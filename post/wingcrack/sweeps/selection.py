@@ -12,10 +12,9 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import CaseError, RunError
 from wingcrack.figures.table import Table, read_table
 from wingcrack.figures.text_files import read_json
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.expressions import FUNCTIONS, Array, evaluate, names_in
 from wingcrack.sweeps.fields import Fields, as_number
 from wingcrack.sweeps.paths import NETWORK, network_table
@@ -70,21 +69,11 @@ class Selection:
 
 @dataclass(frozen=True)
 class Values:
-    """Selected values, all finite.
+    """Selected values, all finite."""
 
-    Attributes
-    ----------
-    values : (n,) array
-        In the unit of the check; n = 1 unless it is a profile.
-    x : (n,) array or None
-        Abscissa of a profile, increasing.
-    profile : bool
-        Whether there may be several values.
-    """
-
-    values: Array
-    x: Array | None
-    profile: bool
+    values: Array  # (n,) in the unit of the check; n = 1 unless it is a profile
+    x: Array | None  # (n,) abscissa of a profile, increasing
+    profile: bool  # whether there may be several values
 
 
 def read_selection(fields: Fields, file: str) -> Selection:
@@ -164,12 +153,8 @@ def select(
 ) -> Values:
     """Read the selected values from a file in the folder.
 
-    With `as_path`, a profile keeps the order of the file's rows: a curve that may turn back.
-
-    Raises
-    ------
-    CaseError
-        If the file, a column or the row is not there, or if a value is no finite number.
+    With `as_path`, a profile keeps the order of the file's rows: a curve that may turn back. Raises
+    `CaseError` if the file, a column or the row is not there, or if a value is no finite number.
     """
     if selection.key is not None:
         return Values(np.array([_json_number(selection, folder)]), None, False)

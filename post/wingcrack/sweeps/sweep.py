@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence, Set
 from typing import Any, TypeAlias
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import FUNCTIONS, evaluate, names_in
 from wingcrack.sweeps.fields import Fields
 from wingcrack.sweeps.likes import Likes, joined
@@ -76,11 +76,8 @@ def read_tables(
 ) -> list[tuple[str, Table]]:
     """All tables of a kind, expanded, each with its place for errors.
 
-    Raises
-    ------
-    CaseError
-        As `_expand`; if a run has an ``over``, or a sweep has none; and if one is like another
-        that is not there.
+    Raises `CaseError`: as `_expand`; if a run has an ``over``, or a sweep has none; and if one is
+    like another that is not there.
     """
     found = []
     for index, item in enumerate(fields.tables(kind), start=1):
@@ -100,6 +97,9 @@ def _expand(
 ) -> list[Table]:
     """Tables that a table stands for: one per point of its ``over``, or itself without it.
 
+    Raises `CaseError` if ``over`` gives nothing, or a name twice, or one that nobody uses, or if a
+    template wants what the point does not have.
+
     Parameters
     ----------
     data : table
@@ -110,12 +110,6 @@ def _expand(
         Names of a point that become keys of the tables.
     outer : _Filler, optional
         That of the table that this one stands in: its names can be used too.
-
-    Raises
-    ------
-    CaseError
-        If ``over`` gives nothing, or a name twice, or one that nobody uses, or if a template
-        wants what the point does not have.
     """
     template = {name: value for name, value in data.items() if name != "over"}
     points = grid_points(data["over"], f"{place}: over") if "over" in data else [{}]
@@ -141,10 +135,7 @@ def filled(
 ) -> tuple[Table, set[str]]:
     """Table with the values of a point in its templates, and the names that these used.
 
-    Raises
-    ------
-    CaseError
-        If a template wants what the point does not have.
+    Raises `CaseError` if a template wants what the point does not have.
     """
     used: set[str] = set()
     return _Filler(dict(point), used, place).filled(table), used
@@ -153,10 +144,8 @@ def filled(
 def grid_points(over: Any, place: str, most: float = math.inf) -> list[Table]:
     """All combinations of the axes; the last axis changes first.
 
-    Raises
-    ------
-    CaseError
-        If an axis gives nothing, or two give the same name, or there would be more than `most`.
+    Raises `CaseError` if an axis gives nothing, or two give the same name, or there would be more
+    than `most`.
     """
     if not isinstance(over, Mapping) or not over:
         raise CaseError(f"{place} must be a table of lists")

@@ -22,18 +22,10 @@ _LIBRARIES = re.compile(
 
 @dataclass(frozen=True)
 class Baseline:
-    """What was stored.
+    """What was stored."""
 
-    Attributes
-    ----------
-    made_with : dict of str to str
-        Compilers, libraries and the processor that the code was made for.
-    instructions : dict of str to int
-        By measurement.
-    """
-
-    made_with: dict[str, str]
-    instructions: dict[str, int]
+    made_with: dict[str, str]  # compilers, libraries and the processor that the code was made for
+    instructions: dict[str, int]  # by measurement
 
 
 def made_with(solver: Path) -> dict[str, str]:

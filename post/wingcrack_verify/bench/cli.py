@@ -11,8 +11,7 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from types import SimpleNamespace
 
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack_verify.bench.baseline import (
     MOST_CPU,
     MOST_INSTRUCTIONS,
@@ -23,7 +22,6 @@ from wingcrack_verify.bench.baseline import (
     store,
 )
 from wingcrack_verify.bench.catalogue import TOP, Benchmark, read_benchmarks
-from wingcrack_verify.bench.growth import Exponent, exponents
 from wingcrack_verify.bench.measure import (
     Measurement,
     RunFailedError,
@@ -31,10 +29,12 @@ from wingcrack_verify.bench.measure import (
     measure,
 )
 from wingcrack_verify.bench.table import (
+    Exponent,
     as_growth,
     as_json,
     as_phases,
     as_table,
+    exponents,
     instructions_ratio,
 )
 from wingcrack_verify.environment import machine, revision

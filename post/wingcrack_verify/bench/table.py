@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from wingcrack_verify.bench.baseline import Baseline
-from wingcrack_verify.bench.growth import Exponent
+from wingcrack_verify.bench.catalogue import Growth
 from wingcrack_verify.bench.measure import Measurement
 
 _PHASE = 0.02  # share of the CPU time below which a phase is not shown
@@ -108,3 +109,39 @@ def _millions(count: int | None) -> str:
 
 def _ratio(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """How CPU time grows over measurements of one kind."""
+
+    of: str  # what is counted
+    sizes: tuple[int, ...]
+    cpu_s: tuple[float, ...]  # median CPU time [s] of each size
+    fitted: float  # slope of its logarithm over that of the size, by least squares
+    # CPU(4n)/CPU(n) from each size to the next one, at the slope between the two
+    fourfold: tuple[float, ...]
+
+
+def exponents(kinds: Sequence[Growth], measured: Mapping[str, Measurement]) -> tuple[Exponent, ...]:
+    """Fit each kind of which at least two sizes were measured."""
+    found = []
+    for kind in kinds:
+        mine = [measured[name] for name in kind.names if name in measured]
+        sizes = tuple(m.typical.sizes[kind.of] for m in mine)
+        if len(set(sizes)) >= 2:
+            found.append(fit(kind.of, sizes, tuple(m.median_s for m in mine)))
+    return tuple(found)
+
+
+def fit(of: str, sizes: tuple[int, ...], cpu_s: tuple[float, ...]) -> Exponent:
+    """Fit a power of the size to CPU times."""
+    x, y = [math.log(n) for n in sizes], [math.log(seconds) for seconds in cpu_s]
+    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+    slope = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y, strict=True)) / sum(
+        (a - mean_x) ** 2 for a in x
+    )
+    between = [
+        4.0 ** ((y[k + 1] - y[k]) / (x[k + 1] - x[k])) for k in range(len(x) - 1) if x[k + 1] > x[k]
+    ]
+    return Exponent(of, sizes, cpu_s, slope, tuple(between))

@@ -10,8 +10,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack.figures.choices import ALL, DEFAULT_FORMATS
-from wingcrack.figures.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack.figures.read import Run, read_run
 from wingcrack.figures.states import grows, slips_or_opens
 from wingcrack.figures.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
@@ -22,51 +22,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one figure.
+    """What became of one figure."""
 
-    Attributes
-    ----------
-    name : str
-        Name of the figure, the stem of its files (for profiles: of the first part of them).
-    files : tuple of Path
-        What was written, or was there and is still true; empty if it was left out.
-    reason : str
-        Why it was left out, else empty.
-    lacking : bool
-        Whether it was left out as this machine lacks something.
-    unchanged : bool
-        Whether nothing had to be drawn.
-    """
-
-    name: str
+    name: str  # name of the figure, the stem of its files (for profiles: of the first part of them)
+    # what was written, or was there and is still true; empty if it was left out
     files: tuple[Path, ...]
-    reason: str = ""
-    lacking: bool = False
-    unchanged: bool = False
+    reason: str = ""  # why it was left out, else empty
+    lacking: bool = False  # whether it was left out as this machine lacks something
+    unchanged: bool = False  # whether nothing had to be drawn
 
 
 @dataclass(frozen=True)
 class _Figures:
-    """A figure, or several of a kind.
-
-    Attributes
-    ----------
-    group, name : str
-    maker : str
-        Module and function, loaded when there is something to draw: the libraries take long.
-    of_fields : bool
-        Whether it needs the VTU files, and takes the wanted times.
-    several : bool
-        Whether the function gives pairs of a label and a figure, and takes the wanted times.
-    shown : callable
-        Whether it is drawn without being asked for: whether something happens in it.
-    """
+    """A figure, or several of a kind."""
 
     group: str
     name: str
+    # module and function, loaded when there is something to draw: the libraries take long
     maker: str
-    of_fields: bool = False
+    of_fields: bool = False  # whether it needs the VTU files, and takes the wanted times
+    # whether the function gives pairs of a label and a figure, and takes the wanted times
     several: bool = False
+    # whether it is drawn without being asked for: whether something happens in it
     shown: Callable[[Run], bool] = lambda _run: True
 
     def draw(
@@ -103,7 +80,7 @@ _FIGURES = (
     _Figures("story", "story", "story:story"),
     _Figures("network", "network", "network:network_figure", shown=grows),
     _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True, shown=slips_or_opens),
-    _Figures("maps", "stress_maps", "stress:stress_maps", of_fields=True, shown=slips_or_opens),
+    _Figures("maps", "stress_maps", "maps:stress_maps", of_fields=True, shown=slips_or_opens),
     _Figures(
         "fractures", "fracture", "profiles:fracture_profiles", several=True, shown=slips_or_opens
     ),
@@ -184,12 +161,8 @@ def _page(run: Run, record: Drawn, way: Sequence[str]) -> Outcome:
 def figure_of(run: Run, name: str) -> Figure:
     """Give one figure by the name of its files, as ``story`` or ``fracture_1``.
 
-    Raises
-    ------
-    AbsentError
-        If the run does not hold what it needs.
-    RunError
-        If there is no figure of that name.
+    Raises `AbsentError` if the run does not hold what it needs, `RunError` if there is no figure of
+    that name.
     """
     for figures in _FIGURES:
         if figures.several and not name.startswith(f"{figures.name}_"):
