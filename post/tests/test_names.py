@@ -12,7 +12,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from wingcrack.command_line import main
-from wingcrack.figures import figures, profiles
+from wingcrack.figures import catalogue, profiles
 from wingcrack.figures import growth as growth_module
 from wingcrack.figures.growth import MOST, Growth, foremost
 from wingcrack.figures.scene import Scene, Well
@@ -87,8 +87,8 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
 ) -> None:
     monkeypatch.setattr(profiles, "MOST", 2)
     monkeypatch.setattr(growth_module, "MOST", 2)
-    only = [kind for kind in figures._FIGURES if kind.group == "fractures"]
-    monkeypatch.setattr(figures, "_FIGURES", only)
+    only = [kind for kind in catalogue._FIGURES if kind.group == "fractures"]
+    monkeypatch.setattr(catalogue, "_FIGURES", only)
     path = own_run / "fractures.csv"
     head, *rows = path.read_text(encoding="utf-8").splitlines()
     place = head.split(",").index("fracture")

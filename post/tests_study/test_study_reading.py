@@ -34,7 +34,7 @@ def test_the_last_axis_changes_first(tmp_path: Path) -> None:
     ]
     assert values == [(1e-9, 0.3), (1e-9, 0.4), (2e-9, 0.3), (2e-9, 0.4)]
     assert "friction = 0.4" in study.runs[1].text
-    assert [parameter.column for parameter in study.parameters] == [
+    assert [parameter.heading for parameter in study.parameters] == [
         "injection_rate_m2_s",
         "fracture_f1_friction",
     ]
@@ -237,7 +237,7 @@ def test_constants_parameters_and_probes_can_be_read(tmp_path: Path) -> None:
         + probe.replace('"pressure"', '"probed"')
         + KEY,
     )  # fmt: skip
-    assert [item.selection.file for item in study.quantities] == [
+    assert [item.file for item in study.quantities] == [
         "history.csv",
         "probes.csv",
         "run.json",

@@ -15,10 +15,11 @@ from small_study import HEAD, LINES, ONSET, OVER, PRESSURE, SmallStudy, small_st
 from wingcrack.errors import CaseError
 from wingcrack.runner.task import Outcome
 from wingcrack.studies import figures
-from wingcrack.studies.plots import Plot, read_plot
+from wingcrack.studies.plots import Plot
 from wingcrack.studies.running import done_before, tasks_of
 from wingcrack.studies.study import Study, read_study
 from wingcrack.studies.table import StudyTable, make_table, write_csv, write_parquet
+from wingcrack.sweeps.fields import read_entry
 
 DRAW = """\
 [draw]
@@ -178,8 +179,8 @@ def test_a_run_that_no_worker_could_run_is_a_row(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("key", ["x_log", "y_log"])
 def test_axes_can_be_logarithmic(tmp_path: Path, key: str) -> None:
-    plot: Plot = read_plot(
-        {"name": "a", "kind": "over", "quantity": "p", "over": "q", key: True}, "figure 1"
+    plot = read_entry(
+        Plot, {"name": "a", "kind": "over", "quantity": "p", "over": "q", key: True}, "figure 1"
     )
     _, axes = figures._empty(plot)
     assert {"x_log": axes.get_xscale(), "y_log": axes.get_yscale()}[key] == "log"
@@ -187,7 +188,8 @@ def test_axes_can_be_logarithmic(tmp_path: Path, key: str) -> None:
 
 def test_quantities_are_not_for_lines() -> None:
     with pytest.raises(CaseError, match="'quantity' is unknown"):
-        read_plot(
+        read_entry(
+            Plot,
             {
                 "name": "a",
                 "kind": "lines",

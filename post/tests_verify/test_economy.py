@@ -47,18 +47,20 @@ def test_errors_that_rise_again_count_against_the_method() -> None:
 
 def test_a_saving_is_the_share_of_the_unknowns() -> None:
     points = [*runs("slow", 30.0, -1.0), *runs("fast", 30.0 * 150.0, -2.0)]
-    found = saving(Economy("fast", "slow", 0.1, 0.75), points)  # 212.1 of 300
+    found = saving(
+        Economy(method="fast", than="slow", error=0.1, at_most=0.75), points
+    )  # 212.1 of 300
     assert found.share == pytest.approx(150.0**0.5 * 300.0**0.5 / 300.0)
     assert found.good
-    assert not saving(Economy("fast", "slow", 0.1, 0.7), points).good
+    assert not saving(Economy(method="fast", than="slow", error=0.1, at_most=0.7), points).good
 
 
 def test_a_method_that_never_gets_there_needs_more_than_it_had() -> None:
     points = [*runs("slow", 3000.0, -1.0), *runs("fast", 30.0 * 150.0, -2.0)]
-    found = saving(Economy("fast", "slow", 0.1, 0.5), points)
+    found = saving(Economy(method="fast", than="slow", error=0.1, at_most=0.5), points)
     assert found.unknowns_than == 800.0
     assert found.good
-    turned = saving(Economy("slow", "fast", 0.1, 0.5), points)
+    turned = saving(Economy(method="slow", than="fast", error=0.1, at_most=0.5), points)
     assert turned.share is None
     assert not turned.good
 

@@ -152,8 +152,9 @@ def test_a_case_without_quick_parts_is_no_part_of_quick(tmp_path: Path) -> None:
     [
         ('name = "steep"', "", "part 1: 'name' is missing"),
         ('name = "steep"', 'name = "steep"\nfudge = 1', "part 'steep': check.toml: 'fudge' is unk"),
-        ("[[part.check]]", "[[part.checks]]", "part 'steep': check.toml: a case needs at least"),
-        ("[[part.run]]", "[[part.runs]]", "part 'steep': check.toml: a case needs at least one"),
+        ("[[part.check]]", "[[part.checks]]", "'checks' is unknown; did you mean 'check'?"),
+        ("[[part.run]]", "[[part.runs]]", "part 'steep': check.toml: 'runs' is unknown; did you"),
+        (PART, "[[part]]\nname = 'steep'\n", "part 'steep': check.toml: a case needs at least"),
         ("[[part]]", "[part]", "'part' must be a list of tables"),
         ('run = "fine"', 'run = "middle"', "part 'steep': figure 'pressure': line 1: there is no"),
         ("[part.defaults.run]", "[part.defaults.runs]", "defaults: 'runs' is unknown"),
@@ -196,7 +197,7 @@ def test_a_check_takes_what_it_does_not_say_from_the_one_that_it_is_like(tmp_pat
     case = liked_case(tmp_path)
     first, second = read(case).checks
     assert (second.unit, second.judged, second.tolerance) == ("Pa", ("fine",), first.tolerance)
-    assert (second.result.take, second.result.columns) == ("min", first.result.columns)
+    assert (second.result.take, second.result.column) == ("min", first.result.column)
     assert case.judge().verdict == PASSED
 
 

@@ -276,7 +276,7 @@ def test_figures_and_their_lines_can_be_lists(tmp_path: Path) -> None:
     figures = read(case).figures
     assert [figure.title for figure in figures] == ["pressure", "twice the pressure"]
     assert [line.run for line in figures[1].lines] == [None, "middle", "fine"]
-    assert [line.selection.columns for line in figures[1].lines] == [("2*p_pa",)] * 3
+    assert [line.all_columns for line in figures[1].lines] == [("2*p_pa",)] * 3
     assert case.judge().verdict == PASSED
 
 

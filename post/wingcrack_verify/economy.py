@@ -7,27 +7,34 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+from pydantic import model_validator
 
-from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import read_json
-from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.fields import Entry, Positive, Text
 from wingcrack_verify.orders import Point
 
 
-@dataclass(frozen=True)
-class Economy:
+class Economy(Entry):
     """What is asked for.
 
     `method` has the error with at most the share `at_most` of the unknowns that `than` needs.
     """
 
-    method: str
-    than: str
-    error: float
-    at_most: float
+    method: Text
+    than: Text
+    error: Positive
+    at_most: Positive
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if self.method == self.than:
+            raise ValueError(f"'{self.method}' would be compared with itself")
+        if not self.at_most < 1.0:
+            raise ValueError("'at_most' must be less than 1")
+        return self
 
 
 @dataclass(frozen=True)
@@ -40,29 +47,6 @@ class Saving:
     share: float | None
     good: bool
     reason: str
-
-
-def read_economy(data: Any, place: str, methods: Sequence[str]) -> Economy:
-    """Read the table ``economy`` of a check.
-
-    Raises `CaseError` if a name is missing or unknown, or a number out of range.
-    """
-    fields = Fields(data, f"{place}: economy")
-    economy = Economy(
-        fields.text("method"),
-        fields.text("than"),
-        fields.positive("error"),
-        fields.positive("at_most"),
-    )
-    fields.done()
-    for name in (economy.method, economy.than):
-        if name not in methods:
-            raise CaseError(f"{fields.place}: no measured run has the method '{name}'")
-    if economy.method == economy.than:
-        raise CaseError(f"{fields.place}: '{economy.method}' would be compared with itself")
-    if not economy.at_most < 1.0:
-        raise CaseError(f"{fields.place}: 'at_most' must be less than 1")
-    return economy
 
 
 def run_record(output: Path) -> Any:

@@ -71,7 +71,7 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
             fillstyle="none",
             label=item.run.name,
         )
-    axes.set_xlabel(report.check.x_label or "value")
+    axes.set_xlabel(report.check.abscissa or "value")
     axes.set_ylabel(_wrapped(f"{report.check.quantity} [{report.check.unit}]"))
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Result and reference.")
@@ -89,8 +89,8 @@ def _path_drawing(report: CheckReport, shown: Sequence[Measured]) -> Drawing:
             item.pair.x, item.pair.result, color=CYCLE[index], ls="--", lw=1.0, label=item.run.name
         )
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(report.check.x_label)
-    axes.set_ylabel(f"{report.check.result.columns[0]} [{report.check.unit}]")
+    axes.set_xlabel(report.check.abscissa)
+    axes.set_ylabel(f"{report.check.result.all_columns[0]} [{report.check.unit}]")
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Path and reference.")
 

@@ -11,13 +11,12 @@ import numpy as np
 from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array, evaluate
 from wingcrack.sweeps.selection import Selection, Values, interpolated, select
-from wingcrack_verify.contents import Case, Check, FigureRequest, Run
+from wingcrack_verify.contents import Case, Check, FigureRequest, Run, require_files
 from wingcrack_verify.economy import Saving, saving, unknowns_of
 from wingcrack_verify.execute import Outcome
 from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
-from wingcrack_verify.picture_files import require_files
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
 VERDICTS = (PASSED, GAP, FAILED, ERROR)  # from good to bad
@@ -357,7 +356,7 @@ def _figure(case: Case, request: FigureRequest, outcomes: Mapping[str, Outcome])
             folder = Path(outcomes[line.run].folder) / "output"
             constants = runs[line.run].constants
         try:
-            values = select(line.selection, folder, constants, as_path=True)
+            values = select(line, folder, constants, as_path=True)
         except CaseError as reason:
             return DrawnFigure(request, (), f"{request.title}, {line.label}: {reason}")
         lines.append(DrawnLine(line.label, values, line.points))

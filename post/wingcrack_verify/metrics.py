@@ -18,7 +18,7 @@ TENTH = 0.1  # a tolerance is at most this share of the signal
 class Pair:
     """Result and reference at the same points."""
 
-    # result, reference: (n,)s in the unit of the check
+    # result, reference: (n,) in the unit of the check
     result: Array
     reference: Array
     x: Array | None  # (n,) abscissa, increasing; of a path in the order of its points

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from wingcrack_verify.contents import GROUPS, UNREADABLE
 from wingcrack_verify.economy import observed_rate
-from wingcrack_verify.groups import GROUPS, UNREADABLE, title_of
 from wingcrack_verify.judge import PASSED, VERDICTS, CaseReport, CheckReport, Measured, worst_of
 from wingcrack_verify.orders import Point
 from wingcrack_verify.rows import Row, quantity_text, unit_of, worst_text
@@ -82,7 +82,7 @@ def _check_record(report: CheckReport) -> dict[str, Any]:
         "known_gap": check.known_gap,
         "reasons": list(report.reasons),
         "runs": [_measured_record(report, item) for item in report.measured],
-        "order_expected": asdict(check.order) if check.order else None,
+        "order_expected": check.order.model_dump() if check.order else None,
         "orders": [
             {
                 "method": order.method,
@@ -251,7 +251,7 @@ def groups_of(
         groups.append(
             {
                 "name": name or "unreadable",
-                "title": title_of(name),
+                "title": GROUPS.get(name, "Files that cannot be used"),
                 "verdict": worst_of([item.verdict for item in inside]),
                 "counts": _counts(found),
                 "cpu_s": sum(cpu_s[item.name] for item in inside),

@@ -9,9 +9,8 @@ from pathlib import Path
 from wingcrack.errors import CaseError
 from wingcrack_verify import case_folders
 from wingcrack_verify.case import read_case
-from wingcrack_verify.contents import Case, Run
+from wingcrack_verify.contents import UNREADABLE, Case, Run
 from wingcrack_verify.execute import Job, Outcome
-from wingcrack_verify.groups import UNREADABLE
 from wingcrack_verify.judge import CaseReport, judge_case, worst_of
 from wingcrack_verify.stability import (
     Stability,

@@ -62,7 +62,7 @@ def _study(given: SimpleNamespace) -> int:
     clock = Clock()
     study = read_study(given.study, given.quick)
     kind = given.cluster or study.cluster.kind
-    cluster = Cluster(kind, study.cluster.workers, study.cluster.arguments)
+    cluster = study.cluster.model_copy(update={"kind": kind})
     workers = given.jobs or cluster.workers or len(os.sched_getaffinity(0))
     tasks = tasks_of(study, given.build, given.out)
     before = done_before(tasks)
@@ -136,10 +136,10 @@ class _Ledger:
             return
         self._is_judged = True
         output, study = Path(outcome.folder) / "output", self._study
-        may_lack = {item.selection.file for item in study.quantities if item.may_be_absent}
-        for selection in study.selections:
+        may_lack = {item.file for item in study.quantities if item.may_be_absent}
+        for place, selection in study.selections:
             if selection.file not in may_lack or (output / selection.file).exists():
-                judge_run(selection, output, study.names)
+                judge_run(selection, place, output, study.names)
 
     def _left(self) -> str:
         """How long the rest will take, if it is like what was run."""
@@ -186,7 +186,7 @@ def _finish(
 def _read_of_none(study: Study, table: StudyTable) -> str:
     """Name of a quantity that no run has, and that may not be absent."""
     for quantity in study.quantities:
-        if not quantity.may_be_absent and all(row[quantity.column] is None for row in table.rows):
+        if not quantity.may_be_absent and all(row[quantity.heading] is None for row in table.rows):
             return quantity.name
     return ""
 

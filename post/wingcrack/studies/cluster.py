@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import importlib
 import logging
-from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
+
+from pydantic import Field
 
 from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.figures.choices import CLUSTERS
-from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.fields import Entry, Table, choice, whole
 
 # Module and class of each kind, and what must be installed for it.
 _CLASSES = {
@@ -22,30 +22,15 @@ _CLASSES = {
 }
 
 
-@dataclass(frozen=True)
-class Cluster:
-    """``[cluster]`` of a study."""
+class Cluster(Entry):
+    """``[cluster]`` of a study, with a table for the class of each kind."""
 
-    kind: str  # "none" for processes of this call, or one of Dask's classes
-    workers: int | None  # how many runs at a time; None for the cores at hand
-    arguments: Mapping[str, Mapping[str, Any]]  # what is handed to the class of each kind
-
-
-def read_cluster(data: Mapping[str, Any], place: str) -> Cluster:
-    """Read ``[cluster]`` with ``[cluster.slurm]`` and so on, so that one file serves everywhere.
-
-    Raises `CaseError` if a kind is unknown or the number of workers is none.
-    """
-    fields = Fields(data, place)
-    kind = fields.choice("kind", CLUSTERS, "none")
-    workers = fields.take("workers", None)
-    arguments = {name: fields.mapping(name) for name in _CLASSES}
-    fields.done()
-    if workers is not None and (
-        isinstance(workers, bool) or not isinstance(workers, int) or workers < 1
-    ):
-        raise CaseError(f"{place}: 'workers' must be a whole number from 1 on")
-    return Cluster(kind, workers, arguments)
+    kind: Annotated[str, choice(CLUSTERS)] = "none"  # "none" for processes of this call
+    workers: Annotated[int | None, whole(1)] = None  # runs at a time; None for the cores at hand
+    local: Table = Field(default_factory=dict)
+    slurm: Table = Field(default_factory=dict)
+    pbs: Table = Field(default_factory=dict)
+    ssh: Table = Field(default_factory=dict)
 
 
 def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
@@ -64,7 +49,7 @@ def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
             f"a cluster of kind '{cluster.kind}' takes the Python package {needs}, "
             f"which is not in .venv (.venv/bin/python -m pip install {needs})"
         ) from None
-    given = dict(cluster.arguments[cluster.kind])
+    given = dict(getattr(cluster, cluster.kind))
     if cluster.kind == "local":
         given = {
             "n_workers": workers,

@@ -254,7 +254,7 @@ def _column(study: Study, name: str) -> tuple[str, str]:
     named: tuple[Quantity | Parameter, ...] = (*study.quantities, *study.parameters)
     for item in named:
         if item.name == name:
-            return item.column, axis_label(item.name, item.unit)
+            return item.heading, axis_label(item.name, item.unit)
     raise CaseError(f"there is no quantity or parameter '{name}'")
 
 

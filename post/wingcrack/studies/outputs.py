@@ -30,7 +30,9 @@ def names_of_output() -> Mapping[str, Mapping[str, str]]:
     return files
 
 
-def judge_selection(selection: Selection, constants: Collection[str], has_fluid: bool) -> None:
+def judge_selection(
+    selection: Selection, place: str, constants: Collection[str], has_fluid: bool
+) -> None:
     """Refuse a selection of what no run writes, before there is one.
 
     Raises `CaseError`: with what would be right.
@@ -45,7 +47,7 @@ def judge_selection(selection: Selection, constants: Collection[str], has_fluid:
     files = names_of_output()
     if selection.file not in files:
         raise CaseError(
-            f"{selection.place}: '{selection.file}' is no file of a run"
+            f"{place}: '{selection.file}' is no file of a run"
             f" that can be read; there are: {', '.join(files)}"
         )
     known = files[selection.file]
@@ -59,18 +61,18 @@ def judge_selection(selection: Selection, constants: Collection[str], has_fluid:
         near = difflib.get_close_matches(name, known, n=1)
         hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
         raise CaseError(
-            f"{selection.place}: {selection.file} has no {kind} '{name}' (docs/output.md); {hint}"
+            f"{place}: {selection.file} has no {kind} '{name}' (docs/output.md); {hint}"
         )
     for name in sorted(names_of(selection)):
         runs = known.get(name, "")
         if runs.startswith("without a fluid" if has_fluid else "with a fluid"):
             raise CaseError(
-                f"{selection.place}: {selection.file} has the {kind} '{name}' only {runs}, and"
+                f"{place}: {selection.file} has the {kind} '{name}' only {runs}, and"
                 f" the scenes of this study have {'one' if has_fluid else 'none'}"
             )
 
 
-def judge_run(selection: Selection, output: Path, constants: Collection[str]) -> None:
+def judge_run(selection: Selection, place: str, output: Path, constants: Collection[str]) -> None:
     """Refuse a selection of what a finished run has not written.
 
     Raises `UnreadableError` if the file, a column or a key is missing.
@@ -83,11 +85,11 @@ def judge_run(selection: Selection, output: Path, constants: Collection[str]) ->
         elif selection.file != NETWORK:
             known = set(read_table(path).cells)
     except FileNotFoundError:
-        raise UnreadableError(f"{selection.place}: the run has no {selection.file}") from None
+        raise UnreadableError(f"{place}: the run has no {selection.file}") from None
     except (OSError, ValueError, RunError) as reason:
-        raise UnreadableError(f"{selection.place}: {reason}") from None
+        raise UnreadableError(f"{place}: {reason}") from None
     if strange := sorted(names_of(selection, known.__contains__) - set(constants)):
-        raise UnreadableError(f"{selection.place}: {selection.file} of the run has no {strange[0]}")
+        raise UnreadableError(f"{place}: {selection.file} of the run has no {strange[0]}")
 
 
 def _keys(content: Any, stem: str = "") -> Iterable[str]:

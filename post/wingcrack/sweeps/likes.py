@@ -5,12 +5,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from wingcrack.errors import CaseError
 from wingcrack.figures import text_files
-
-Table: TypeAlias = dict[str, Any]
+from wingcrack.sweeps.fields import Table
 
 SHARED = "like.toml"  # beside the cases: entries that several of them are like
 
