@@ -88,7 +88,7 @@ def test_an_interrupted_call_goes_on_where_it_stopped(tmp_path: Path) -> None:
     for name, folder in (("cases", "verification"), ("build", "build"), ("cache", "cache")):
         command += [f"--{name}", str(tmp_path / folder)]
     command += ["--report", str(tmp_path / "report")]
-    packages = {"PYTHONPATH": str(Path(__file__).parents[1])}
+    packages = {"PYTHONPATH": str(Path(__file__).parents[2])}
     with subprocess.Popen(command, env=os.environ | packages, preexec_fn=heed_interrupts) as call:
         deadline = time.monotonic() + 60.0
         while not (tmp_path / "started").exists() and time.monotonic() < deadline:

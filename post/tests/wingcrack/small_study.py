@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 
 # The stand-in knows p = 1e15 rate*time, and takes its orders from a scene's title.
 _SOLVER = r"""#!/bin/bash

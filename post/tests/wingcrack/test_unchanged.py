@@ -15,7 +15,7 @@ import pytest
 from wingcrack.command_line import main
 from wingcrack.figures import unchanged
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 ALL = ["probes", "view"]
 
 

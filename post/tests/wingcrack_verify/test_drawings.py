@@ -11,7 +11,7 @@ import pytest
 
 from wingcrack_verify.page import Sheet
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 _HEAD = (
     '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
     'viewBox="0 0 30 20">'

@@ -9,7 +9,7 @@ import pytest
 
 import wingcrack
 
-TOP = Path(__file__).resolve().parents[2]
+TOP = Path(__file__).resolve().parents[3]
 ONSET = TOP / "inputs" / "paper_c" / "onset.nml"
 
 # It is told what to do by words in the scene.

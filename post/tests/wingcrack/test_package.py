@@ -16,7 +16,7 @@ from wingcrack.names import columns
 from wingcrack.runs.units import column_unit, column_words, field_unit
 from wingcrack.view.content import Content
 
-TOP = Path(__file__).resolve().parents[2]
+TOP = Path(__file__).resolve().parents[3]
 
 
 def described() -> list[tuple[str, str, str]]:

@@ -30,7 +30,7 @@ from synthetic_run import (
     wing_length,
 )
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 SCRIPT = """\
 import matplotlib, wingcrack; matplotlib.use("agg")
 run = wingcrack.open({run!r})

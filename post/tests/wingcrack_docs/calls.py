@@ -98,7 +98,7 @@ def understand(words: list[str]) -> None:
 
 @cache
 def _names_of_tests() -> str:
-    folders = ("fortran/*/tests", "cpp_mesh/tests", "tests", "post/tests*")
+    folders = ("fortran/*/tests", "cpp_mesh/tests", "tests", "post/tests/*")
     files = [file.stem for folder in folders for file in TOP.glob(f"{folder}/test_*")]
     return " ".join(files) + (TOP / "tools" / "lint.sh").read_text("utf-8")
 

@@ -31,7 +31,7 @@ from wingcrack.view import content
 from wingcrack.view.content import Content
 from wingcrack.view.server import serve
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 _KINDS = {"Float32Array": "<f4", "Float64Array": "<f8", "Uint32Array": "<u4", "Uint8Array": "u1"}
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from wingcrack_docs.links import prose
 
-TOP = Path(__file__).resolve().parents[2]
+TOP = Path(__file__).resolve().parents[3]
 PAGES = (
     TOP / "README.md",
     TOP / "CONTRIBUTING.md",

@@ -12,7 +12,7 @@ import pytest
 from wingcrack.command_line import main
 from wingcrack.scenes.solver import SOLVER
 
-TOP = Path(__file__).resolve().parents[2]
+TOP = Path(__file__).resolve().parents[3]
 OUTCROP = TOP / "inputs" / "examples" / "outcrop.geojson"
 
 needs_solver = pytest.mark.skipif(not SOLVER.exists(), reason="the solver is not built")

@@ -14,7 +14,7 @@ from wingcrack_verify.contents import Case
 from wingcrack_verify.judge import ERROR, FAILED, PASSED
 from wingcrack_verify.suite import BrokenCase, read_suite
 
-TOP = Path(__file__).resolve().parents[2]
+TOP = Path(__file__).resolve().parents[3]
 
 # A second part, whose checks see its own runs alone.
 PART = """

@@ -15,7 +15,7 @@ from map_calls import fractures, imported, needs_solver
 from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.read import read_map
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 
 LINE = "Point(1) = {0, 0, 0};\nPoint(2) = {10, 0, 0};\nLine(1) = {1, 2};\n"
 NAMED = LINE + 'Physical Curve("f1") = {1};\n'

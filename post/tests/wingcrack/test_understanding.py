@@ -11,7 +11,7 @@ import pytest
 
 from wingcrack.command_line.declaring import command
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 SCENE = POST.parent / "inputs" / "paper_c" / "onset.nml"
 LAWS = ["--box=0,0,9,9", "--density=p20=1", "--length", "constant:1", "--orientation", "uniform"]
 

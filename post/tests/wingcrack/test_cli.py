@@ -17,7 +17,7 @@ from wingcrack.figures import style
 from wingcrack.figures.catalogue import Outcome
 from wingcrack.figures.read import Run
 
-POST = Path(__file__).resolve().parents[1]
+POST = Path(__file__).resolve().parents[2]
 
 
 def test_all_figures_of_some_groups(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,7 +11,7 @@ from wingcrack.errors import CaseError
 from wingcrack.studies.study import Study, read_study
 from wingcrack.studies.units import column_name, pretty_number, spoken, unit_of_path
 
-TOP = Path(__file__).resolve().parents[2]
+TOP = Path(__file__).resolve().parents[3]
 DRAW = """\
 [draw]
 count = 4
