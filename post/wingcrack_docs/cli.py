@@ -52,12 +52,8 @@ def build_site(out: Path, *, fortran: bool) -> None:
 
     Raises `DocsError` if MkDocs warns of something or cannot build the site.
 
-    Parameters
-    ----------
-    out : Path
-        What it holds is replaced.
-    fortran : bool
-        Whether the pages of the Fortran modules, made before, belong to it.
+    `out`: what it holds is replaced. `fortran`: whether the pages of the Fortran modules, made
+    before, belong to it.
     """
     os.environ["NO_MKDOCS_2_WARNING"] = "true"  # the theme's remark about a later MkDocs
     from mkdocs.commands.build import build

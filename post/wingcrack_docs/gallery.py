@@ -42,10 +42,7 @@ def write_gallery(runs: Mapping[Path, wingcrack.Run]) -> None:
 
     Raises `DocsError` if a scene's folder is not known here.
 
-    Parameters
-    ----------
-    runs : mapping of Path to Run
-        Every scene of inputs/ with its run.
+    `runs`: every scene of inputs/ with its run.
     """
     pictures = PICTURES / "gallery"
     pictures.mkdir(parents=True, exist_ok=True)

@@ -17,13 +17,7 @@ from wingcrack.scenes.new import new_scene
 from wingcrack.scenes.solver import SOLVER
 from wingcrack_docs.gallery import write_gallery
 from wingcrack_docs.places import PICTURES, SCENES, TOP, DocsError
-from wingcrack_docs.thumbnail import (
-    draw_states,
-    draw_story,
-    draw_summary,
-    new_figure,
-    save_small,
-)
+from wingcrack_docs.thumbnail import draw_states, draw_story, draw_summary, new_figure, save_small
 
 _RUNS = TOP / "build" / "pictures"
 _LIMIT_S = 3600.0

@@ -71,8 +71,10 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
             fillstyle="none",
             label=item.run.name,
         )
-    axes.set_xlabel(report.check.abscissa or "value")
-    axes.set_ylabel(_wrapped(f"{report.check.quantity} [{report.check.unit}]"))
+    axes.set(
+        xlabel=report.check.abscissa or "value",
+        ylabel=_wrapped(f"{report.check.quantity} [{report.check.unit}]"),
+    )
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Result and reference.")
 
@@ -89,8 +91,10 @@ def _path_drawing(report: CheckReport, shown: Sequence[Measured]) -> Drawing:
             item.pair.x, item.pair.result, color=CYCLE[index], ls="--", lw=1.0, label=item.run.name
         )
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(report.check.abscissa)
-    axes.set_ylabel(f"{report.check.result.all_columns[0]} [{report.check.unit}]")
+    axes.set(
+        xlabel=report.check.abscissa,
+        ylabel=f"{report.check.result.all_columns[0]} [{report.check.unit}]",
+    )
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Path and reference.")
 
@@ -127,8 +131,7 @@ def order_drawing(report: CheckReport) -> Drawing | None:
     if not sizes:
         return None
     _plain_logs(axes)
-    axes.set_xlabel("size (cell size [m] or time step [s])")
-    axes.set_ylabel(f"error, {check.metric}")
+    axes.set(xlabel="size (cell size [m] or time step [s])", ylabel=f"error, {check.metric}")
     _legend(figure, axes)
     return _finish(
         figure, f"{check.quantity}: convergence", "Observed order of each method in the legend."
@@ -210,11 +213,9 @@ def _cost_drawing(
             fillstyle="none",
             label="default setting",
         )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     _plain_logs(axes)
-    axes.set_xlabel(label)
-    axes.set_ylabel("error [% of the signal]")
+    axes.set(xlabel=label, ylabel="error [% of the signal]")
     _legend(figure, axes)
     return _finish(figure, title, caption)
 
@@ -237,8 +238,7 @@ def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
         else:
             look |= {"linestyle": ("-", "--", "-.")[index // len(CYCLE) % 3]}
         axes.plot(np.asarray(line.values.x), line.values.values, **look)
-    axes.set_xlabel(request.x_label)
-    axes.set_ylabel(request.y_label)
+    axes.set(xlabel=request.x_label, ylabel=request.y_label)
     if request.x_log:
         axes.set_xscale("log")
     if request.y_log:
@@ -280,8 +280,7 @@ def map_drawing(report: MapReport) -> Drawing:
     axes.grid(visible=False)
     axes.set_xticks(range(shape[1]), [f"{value:g}" for value in chart.x.values])
     axes.set_yticks(range(shape[0]), [f"{value:g}" for value in chart.y.values])
-    axes.set_xlabel(chart.x.label)
-    axes.set_ylabel(chart.y.label)
+    axes.set(xlabel=chart.x.label, ylabel=chart.y.label)
     figure.colorbar(image, ax=axes, label="Newton iterations per step, mean")
     done = sum(cell.newton_mean is not None for cell in report.cells)
     return _finish(

@@ -49,15 +49,9 @@ def work_of(output: Path) -> float | None:
 def front(points: Sequence[Point], share: float, others: Sequence[Sequence[Point]] = ()) -> Front:
     """Look for a run that has at most the default's errors with less than a share of its work.
 
-    Parameters
-    ----------
-    points : sequence of Point
-        Runs that solve the same problem; one of them is the default.
-    share : float
-        Of the work, from 0 to 1: savings that are smaller do not count.
-    others : sequence of sequences of Point, optional
-        The errors of the same runs in other quantities. A run of which one of them tells nothing
-        does not count.
+    `points`: runs that solve the same problem; one of them is the default. `share`: of the work,
+    from 0 to 1: savings that are smaller do not count. `others`: the errors of the same runs in
+    other quantities. A run of which one of them tells nothing does not count.
     """
     defaults = [point for point in points if point.default]
     if len(defaults) != 1 or defaults[0].work is None:

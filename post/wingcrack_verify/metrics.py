@@ -87,8 +87,7 @@ def _apart(pair: Pair, _by_range: bool) -> float:
     if pair.x is None or pair.reference_x is None:
         raise CaseError("the metric path needs x, and a reference with x")
     return path_distance(
-        np.column_stack((pair.x, pair.result)),
-        np.column_stack((pair.reference_x, pair.reference)),
+        np.column_stack((pair.x, pair.result)), np.column_stack((pair.reference_x, pair.reference))
     )
 
 

@@ -41,10 +41,7 @@ _COLUMNS = {
 
 
 def page_text(
-    judged: JudgedSuite,
-    record: dict[str, Any],
-    pictures: Mapping[str, Illustration],
-    folder: Path,
+    judged: JudgedSuite, record: dict[str, Any], pictures: Mapping[str, Illustration], folder: Path
 ) -> str:
     """Text of index.html; `folder` is where it will be, for the links to the cases' files."""
     sheet = Sheet()

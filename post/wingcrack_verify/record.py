@@ -54,14 +54,12 @@ def record_of(
     return cleaned
 
 
+_OF_ALL = ("name", "title", "group", "source", "verdict", "broken")
+
+
 def _case_record(case: CaseReport) -> dict[str, Any]:
     return {
-        "name": case.name,
-        "title": case.title,
-        "group": case.group,
-        "source": case.source,
-        "verdict": case.verdict,
-        "broken": case.broken,
+        **{name: getattr(case, name) for name in _OF_ALL},
         "cpu_s": sum(outcome.cpu_s for outcome in case.outcomes.values()),
         "wall_s": sum(outcome.wall_s for outcome in case.outcomes.values()),
         "checks": [_check_record(report) for report in case.checks],
@@ -147,10 +145,7 @@ def _settings(judged: JudgedSuite) -> list[dict[str, Any]]:
                     "quantity": report.check.quantity,
                     "default": _point_record(default),
                     "targets": [
-                        {
-                            "target": advice.target,
-                            "setting": _point_record(advice.point),
-                        }
+                        {"target": advice.target, "setting": _point_record(advice.point)}
                         for advice in report.advice
                     ],
                 }
@@ -168,12 +163,7 @@ def _point_record(point: Point | None) -> dict[str, Any] | None:
 def _stability_record(item: StabilityReport) -> dict[str, Any]:
     cells = [cell for chart in item.maps for cell in chart.cells]
     return {
-        "name": item.name,
-        "title": item.title,
-        "group": item.group,
-        "source": item.source,
-        "verdict": item.verdict,
-        "broken": item.broken,
+        **{name: getattr(item, name) for name in _OF_ALL},
         "cpu_s": sum(trial.cpu_s for trial in (*item.trials, *cells)),
         "estimates": any(trial.condition_estimate is not None for trial in item.trials),
         "trials": [_trial_record(trial) for trial in item.trials],
@@ -230,12 +220,7 @@ def groups_of(
 
     Cases are in the order of their names, those with trials beside those with checks.
 
-    Parameters
-    ----------
-    rows : sequence of Row
-        Those of all cases.
-    cpu_s : mapping of str to float
-        CPU seconds of all runs, by case.
+    `rows`: those of all cases. `cpu_s`: CPU seconds of all runs, by case.
     """
     items: list[CaseReport | StabilityReport] = [*judged.cases, *judged.stability]
     items.sort(key=lambda item: item.name)

@@ -12,6 +12,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from wingcrack.figures.text_files import write_whole
 from wingcrack_verify import environment
 from wingcrack_verify.judge import PASSED, VERDICTS
 from wingcrack_verify.page import illustrate, page_text, shortened
@@ -84,9 +85,9 @@ def make_report(report: Report, folder: Path) -> tuple[Path, str]:
     )
     record = record_of(report.judged, report.rows, report.counts, context)
     pictures = illustrate(report.judged, report.jobs, passed=not report.quick)
-    _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
+    write_whole(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
-    _write(page, page_text(report.judged, record, pictures, folder).encode())
+    write_whole(page, page_text(report.judged, record, pictures, folder).encode())
     return page, print_page(page, folder / "report.pdf")
 
 
@@ -94,12 +95,6 @@ def _scope(report: Report) -> str:
     which = "the quick cases" if report.quick else "all cases"
     which = f"{which} that were asked for by name" if report.selected else which
     return f"{which}, figures of what did not pass" if report.quick else which
-
-
-def _write(path: Path, content: bytes) -> None:
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    aside.write_bytes(content)
-    aside.replace(path)
 
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")

@@ -438,11 +438,7 @@ def _finite(value: object, name: str) -> float:
 
 
 def _report(
-    trial: Trial,
-    outcome: Outcome,
-    verdict: str,
-    reason: str,
-    numbers: Mapping[str, float | None],
+    trial: Trial, outcome: Outcome, verdict: str, reason: str, numbers: Mapping[str, float | None]
 ) -> TrialReport:
     status = _STATUS.get(outcome.status, outcome.status)
     return TrialReport(

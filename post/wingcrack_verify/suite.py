@@ -12,12 +12,7 @@ from wingcrack_verify.case import read_case
 from wingcrack_verify.contents import UNREADABLE, Case, Run
 from wingcrack_verify.execute import Job, Outcome
 from wingcrack_verify.judge import CaseReport, judge_case, worst_of
-from wingcrack_verify.stability import (
-    Stability,
-    StabilityReport,
-    judge_stability,
-    read_stability,
-)
+from wingcrack_verify.stability import Stability, StabilityReport, judge_stability, read_stability
 
 
 @dataclass(frozen=True)

@@ -71,9 +71,7 @@ def draw_equilibrium(axes: Axes, run: Run, against: str = "length") -> None:
         )
     if path.releases:
         axes.plot([], [], label="a load that stays", **_HELD)
-    axes.set_title(title)
-    axes.set_xlabel(label)
-    axes.set_ylabel(LOAD_LABEL)
+    axes.set(title=title, xlabel=label, ylabel=LOAD_LABEL)
 
 
 def _abscissa(run: Run, path: EquilibriumPath, against: str) -> tuple[FloatArray, str, str]:

@@ -193,10 +193,7 @@ def draw_fractures(axes: Axes, fractures: FractureField | None, width: float, un
         return
     # a white casing keeps all three colours apart from light and dark parts of the map
     casing = LineCollection(
-        list(unit.of(fractures.segments)),
-        colors="white",
-        linewidths=width + 1.0,
-        capstyle="round",
+        list(unit.of(fractures.segments)), colors="white", linewidths=width + 1.0, capstyle="round"
     )
     axes.add_collection(casing, autolim=False)
     for number, state in enumerate(style.STATES):

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from wingcrack.errors import RunError
+from wingcrack.figures import style
 from wingcrack.figures.read import Run
 from wingcrack.figures.regions import draw_regions
 from wingcrack.figures.scene import read_groups
@@ -227,10 +228,7 @@ def draw_geometry(axes: Axes, run: Run) -> list[Artist]:
     room = _ROOM * float(unit.of(size))
     axes.set_xlim(low[0] - room, high[0] + room)
     axes.set_ylim(low[1] - room, high[1] + room)
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_xlabel(f"$x$ [{unit.name}]")
-    axes.set_ylabel(f"$y$ [{unit.name}]")
+    style.map_axes(axes, unit)
     return handles
 
 
@@ -337,7 +335,7 @@ def _draw_arrows(
 
 
 def _arrow_handle(label: str, colour: str, width: float = 0.9) -> Line2D:
-    return Line2D([], [], color=colour, lw=width, marker=">", ms=3, label=label)
+    return style.handle(color=colour, lw=width, marker=">", ms=3, label=label)
 
 
 def _draw_supports(axes: Axes, loading: Loading, size: float, unit: Unit) -> list[Artist]:
@@ -351,5 +349,5 @@ def _draw_supports(axes: Axes, loading: Loading, size: float, unit: Unit) -> lis
         if chosen:
             shown = np.array([one.place + 0.025 * size * one.outwards for one in chosen])
             axes.plot(*unit.of(shown).T, marker, ms=3, zorder=4, **_SUPPORT)
-            handles.append(Line2D([], [], marker=marker, ms=3, label=label, **_SUPPORT))
+            handles.append(style.handle(marker=marker, ms=3, label=label, **_SUPPORT))
     return handles

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
@@ -306,14 +305,12 @@ def _tip_handles(
 ) -> list[Artist]:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     handles: list[Artist] = [
-        Line2D([], [], **style.line_look(index), label=_group_label(run, table, names))
+        style.handle(**style.line_look(index), label=_group_label(run, table, names))
         for index, (names, _) in enumerate(tips)
     ]
-    handles.append(Line2D([], [], color="#555555", label="lines: interaction integral"))
+    handles.append(style.handle(color="#555555", label="lines: interaction integral"))
     handles.append(
-        Line2D(
-            [],
-            [],
+        style.handle(
             color="#555555",
             linestyle="none",
             marker="o",
@@ -325,12 +322,10 @@ def _tip_handles(
         handles.append(Patch(facecolor="#555555", alpha=0.25, label="bands: estimated error"))
     if toughness is not None:
         handles.append(
-            Line2D([], [], color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")
+            style.handle(color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")
         )
     return handles
 
 
 def _finish(axes: Axes, title: str, label: str, below: str) -> None:
-    axes.set_title(title)
-    axes.set_ylabel(label)
-    axes.set_xlabel(below)
+    axes.set(title=title, ylabel=label, xlabel=below)

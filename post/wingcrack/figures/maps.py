@@ -45,10 +45,7 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     Fractures that are small in the body get a second panel each, below the whole body. Raises
     `AbsentError` if the run wrote no VTU files, or none with a pressure (mechanics only).
 
-    Parameters
-    ----------
-    wanted_s : sequence of float
-        Times [s]; the nearest written ones are drawn. Default: see `select_states`.
+    `wanted_s`: times [s]; the nearest written ones are drawn. Default: see `select_states`.
     """
     frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_pressure)
     body = extent([frame.matrix for frame in frames])
@@ -148,11 +145,8 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     on: earlier ones would be pale images of it. Raises `AbsentError` if the run wrote no VTU files,
     or has a pore pressure (whose maps say more).
 
-    Parameters
-    ----------
-    wanted_s : sequence of float
-        Moments, in the unit of the tables; the nearest written ones are drawn. Default: see
-        `select_states`.
+    `wanted_s`: moments, in the unit of the tables; the nearest written ones are drawn. Default: see
+    `select_states`.
     """
     frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_stress, since_growth=True)
     body = extent([frame.matrix for frame in frames])

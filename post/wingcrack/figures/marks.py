@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from wingcrack.figures import style
 from wingcrack.figures.load import abscissa, has_load
 from wingcrack.figures.read import Run
 from wingcrack.figures.states import growth_start
@@ -51,5 +52,5 @@ def mark_moments(run: Run, panels: Sequence[Axes]) -> list[Line2D]:
             for axes in panels:
                 axes.axvline(float(place), zorder=1, **look)
         if moments:
-            handles.append(Line2D([], [], label=name, **look))
+            handles.append(style.handle(label=name, **look))
     return handles

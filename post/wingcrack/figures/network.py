@@ -12,7 +12,6 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
@@ -81,14 +80,8 @@ def draw_network(
     Colours count the increments of growth; the load factor (in scenes with a fluid the time) at
     which each came stands beside the number.
 
-    Parameters
-    ----------
-    network : mapping
-        Contents of network.json.
-    history : Table
-        history.csv.
-    scene : Scene or None
-        For the outline of the body.
+    `network`: contents of network.json. `history`: history.csv. `scene`: for the outline of the
+    body.
     """
     box = network_box(growths, scene)
     # that of the body, as in all other maps, not of the part in view
@@ -123,10 +116,7 @@ def draw_network(
         axes.plot(*place, "o", mfc="white", mec="#D55E00", mew=0.9, ms=4, zorder=5)
     axes.set_xlim(*unit.of(np.array(box[:2])))
     axes.set_ylim(*unit.of(np.array(box[2:])))
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_xlabel(f"$x$ [{unit.name}]")
-    axes.set_ylabel(f"$y$ [{unit.name}]")
+    style.map_axes(axes, unit)
     axes.locator_params(nbins=5)
     if order:
         _colour_bar(axes, norm, order, growths, network, history)
@@ -200,13 +190,13 @@ def _constant_from(values: Mapping[int, float]) -> str:
 
 
 def _handles(regions: Sequence[Patch], *, has_growth: bool, has_joints: bool) -> list[Artist]:
-    handles: list[Artist] = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
+    handles: list[Artist] = [style.handle(color=INITIAL, linewidth=THICK, label="at the start")]
     if has_growth:
         colour = style.time_colours()(0.5)
-        handles.append(Line2D([], [], color=colour, linewidth=THIN, label="grown"))
+        handles.append(style.handle(color=colour, linewidth=THIN, label="grown"))
     if has_joints:
         look: dict[str, Any] = {"mfc": "white", "mec": "#D55E00", "mew": 0.9, "ms": 4}
-        handles.append(Line2D([], [], linestyle="none", marker="o", label="joint", **look))
+        handles.append(style.handle(linestyle="none", marker="o", label="joint", **look))
     return [*handles, *regions]
 
 

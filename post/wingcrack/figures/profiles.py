@@ -17,12 +17,7 @@ from wingcrack.figures import style
 from wingcrack.figures.growth import MOST, foremost, read_growth
 from wingcrack.figures.load import moment_label
 from wingcrack.figures.read import Run, needed
-from wingcrack.figures.scales import (
-    jump_scale,
-    run_length_unit,
-    traction_scale,
-    without_round_off,
-)
+from wingcrack.figures.scales import jump_scale, run_length_unit, traction_scale, without_round_off
 from wingcrack.figures.states import select_states
 from wingcrack.figures.table import BoolArray, FloatArray, Table
 from wingcrack.figures.units import Unit, displacement_unit, stress_unit
@@ -170,15 +165,8 @@ def draw_profile(
 
     Raises `AbsentError` if the run has no fracture cells.
 
-    Parameters
-    ----------
-    column : str
-        One of `profile_columns`.
-    label : str
-        The fracture in fractures.csv.
-    wanted_s : sequence of float
-        Moments, in the unit of the tables; the nearest written ones are drawn. Default: see
-        `select_states`.
+    `column`: one of `profile_columns`. `label`: the fracture in fractures.csv. `wanted_s`: moments,
+    in the unit of the tables; the nearest written ones are drawn. Default: see `select_states`.
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     panel = next(panel for panel in _panels(table) if panel.column == column)
@@ -242,8 +230,7 @@ def _draw_panel(axis: Axes, lines: _Lines, panel: _Panel) -> None:
     for rows, colour in zip(lines.rows, lines.colours, strict=True):
         marker = style.lone_marker(rows.size)
         axis.plot(lines.place[rows], unit.of(values[rows]), color=colour, marker=marker)
-    axis.set_title(panel.title)
-    axis.set_ylabel(f"{panel.label} [{unit.name}]")
+    axis.set(title=panel.title, ylabel=f"{panel.label} [{unit.name}]")
     style.steady(axis, [unit.of(value) for value in shown])
     _mark_initial_ends(axis, lines.initial)
 
@@ -303,10 +290,9 @@ def _time_handles(
     friction: float | None,
 ) -> list[Line2D]:
     handles = [
-        Line2D([], [], color=colour, label=name)
-        for name, colour in zip(names, colours, strict=True)
+        style.handle(color=colour, label=name) for name, colour in zip(names, colours, strict=True)
     ]
     if friction is not None:
         bound = rf"friction bound $\mu_s |f_n|$, $\mu_s$ = {friction:g}"
-        handles.append(Line2D([], [], color="#555555", label=bound, **_DASHED))
+        handles.append(style.handle(color="#555555", label=bound, **_DASHED))
     return handles

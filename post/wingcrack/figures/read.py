@@ -63,10 +63,7 @@ def read_run(directory: str | Path) -> Run:
 
     Raises `RunError` if the directory or ``history.csv`` is missing, or a file is damaged.
 
-    Parameters
-    ----------
-    directory : str or Path
-        What ``wingcrack run`` wrote, for instance ``out/wing_crack``.
+    `directory`: what ``wingcrack run`` wrote, for instance ``out/wing_crack``.
     """
     root = Path(directory)
     if not root.is_dir():

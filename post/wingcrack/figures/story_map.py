@@ -9,7 +9,6 @@ import matplotlib.patheffects as effects
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.text import Text
 from matplotlib.transforms import Bbox, IdentityTransform
@@ -33,14 +32,9 @@ _ROOM = 1.0  # [point] around what must stay clear
 class Names(Artist):
     """Names of lines, in the order in which they are placed.
 
-    Parameters
-    ----------
-    lines : sequence of (str, (n, 2) array)
-        Names, and the lines that they stand beside, in the unit of the axes.
-    others : sequence of (n, 2) array
-        Lines that names should not cross, where another place is free.
-    points : (n, 2) array
-        Marks that names must not cover.
+    `lines`: names, and the lines that they stand beside, in the unit of the axes. `others`: lines
+    that names should not cross, where another place is free. `points` (n, 2): marks that names must
+    not cover.
     """
 
     def __init__(
@@ -167,11 +161,11 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     begins = [points[0] for g in growths for points in (g.start, g.end) if len(points) > 1]
     if begins:
         axes.plot(*unit.of(np.array(begins)).T, "s", zorder=5, ls="none", **_WING)
-        handles.append(Line2D([], [], ls="none", marker="s", label="a wing begins", **_WING))
+        handles.append(style.handle(ls="none", marker="s", label="a wing begins", **_WING))
     joints = [(joint["x_m"], joint["y_m"]) for joint in network.get("joints", [])]
     if joints:
         axes.plot(*unit.of(np.array(joints)).T, "o", zorder=6, ls="none", **_JOINT)
-        handles.append(Line2D([], [], ls="none", marker="o", label="joint", **_JOINT))
+        handles.append(style.handle(ls="none", marker="o", label="joint", **_JOINT))
     handles += draw_wells(axes, run, unit)
     wells = well_places(scene, network)
     named = [(item.name, unit.of(item.initial)) for item in foremost(growths, scene)]
@@ -180,10 +174,7 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     handles += _draw_events(axes, run, unit)
     axes.set_xlim(*unit.of(np.array(box[:2])))
     axes.set_ylim(*unit.of(np.array(box[2:])))
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_xlabel(f"$x$ [{unit.name}]")
-    axes.set_ylabel(f"$y$ [{unit.name}]")
+    style.map_axes(axes, unit)
     return handles
 
 
@@ -231,7 +222,7 @@ def _draw_states(axes: Axes, network: Mapping[str, Any], cells: Table, unit: Uni
             _draw_piece(axes, unit.of(_between(points, arc, edges[first], edges[k])), name)
             first = k
     return [
-        Line2D([], [], label=name, path_effects=_effects(name), **_look(name))
+        style.handle(label=name, path_effects=_effects(name), **_look(name))
         for name in style.STATES
         if name in found
     ]
@@ -271,7 +262,7 @@ def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
         return []
     whole = any(well.place_m is None for well in wells)
     label = "well, along its fracture" if whole else "well"
-    return [Line2D([], [], ls="none", marker="v", label=label, **_WELL)]
+    return [style.handle(ls="none", marker="v", label=label, **_WELL)]
 
 
 def well_places(scene: Scene | None, network: Mapping[str, Any]) -> list[tuple[float, float]]:
@@ -315,9 +306,7 @@ def _draw_events(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
         place = unit.of(np.array([table.number("x_m")[k], table.number("y_m")[k]]))
         axes.plot(*place, "o", zorder=5, ms=float(width[k]), **_EVENT)
     return [
-        Line2D(
-            [],
-            [],
+        style.handle(
             ls="none",
             marker="o",
             ms=7,

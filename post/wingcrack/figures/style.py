@@ -16,6 +16,8 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from wingcrack.figures.units import Unit
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -93,10 +95,7 @@ def line_look(index: int) -> dict[str, Any]:
 
     Neighbours differ in both, so that a line on top of another one lets it be seen.
     """
-    return {
-        "color": CYCLE[index % len(CYCLE)],
-        "linestyle": LINE_STYLES[index % len(LINE_STYLES)],
-    }
+    return {"color": CYCLE[index % len(CYCLE)], "linestyle": LINE_STYLES[index % len(LINE_STYLES)]}
 
 
 def ordered_colours(count: int) -> list[tuple[float, float, float, float]]:
@@ -140,9 +139,19 @@ def steady(axes: Axes, values: Sequence[npt.ArrayLike]) -> None:
 def state_handles(line_width: float = 2.0) -> list[Line2D]:
     """Entries of the legend that tells stick, slip and open."""
     return [
-        Line2D([], [], color=STATE_COLOURS[state], linewidth=line_width, label=state)
-        for state in STATES
+        handle(color=STATE_COLOURS[state], linewidth=line_width, label=state) for state in STATES
     ]
+
+
+def handle(**look: Any) -> Line2D:
+    """Entry of a legend that stands for lines or marks of a look."""
+    return Line2D([], [], **look)
+
+
+def map_axes(axes: Axes, unit: Unit) -> None:
+    """Axes of a map: both of one scale, in this unit, without a grid."""
+    axes.set(aspect="equal", xlabel=f"$x$ [{unit.name}]", ylabel=f"$y$ [{unit.name}]")
+    axes.grid(visible=False)
 
 
 def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:

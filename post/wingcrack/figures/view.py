@@ -43,11 +43,8 @@ def view(run: Run, wanted: Sequence[float] = ()) -> Figure:
 
     Raises `AbsentError` if the run wrote no VTU files, `RunError` if a VTU file is damaged.
 
-    Parameters
-    ----------
-    wanted : sequence of float
-        Moments, in the unit of the tables; the written state nearest to the last of them is drawn.
-        Default: the last one that is in no short step after growth.
+    `wanted`: moments, in the unit of the tables; the written state nearest to the last of them is
+    drawn. Default: the last one that is in no short step after growth.
     """
     written, rows = written_states(run)
     if wanted:

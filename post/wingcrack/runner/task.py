@@ -18,7 +18,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from wingcrack.figures.text_files import read_json
+from wingcrack.figures.text_files import read_json, write_whole
 
 RECORD = "outcome.json"
 
@@ -65,10 +65,7 @@ def judge_end(folder: Path, status: int, late: bool, limit_s: float, wall_s: flo
 
 def write_outcome(folder: Path, outcome: Outcome) -> None:
     """Leave the outcome in the run's folder, for later calls; it appears whole."""
-    record = folder / RECORD
-    aside = record.with_suffix(".aside")
-    aside.write_text(json.dumps(asdict(outcome), indent=1), encoding="utf-8")
-    aside.replace(record)
+    write_whole(folder / RECORD, json.dumps(asdict(outcome), indent=1))
 
 
 def read_outcome(folder: Path) -> Outcome | None:
@@ -134,9 +131,7 @@ def copy_tables(task: Task, folder: Path) -> None:
 
 
 def run_task(
-    task: Task,
-    started: Starter = lambda start: start(),
-    ended: Ender = lambda child: None,
+    task: Task, started: Starter = lambda start: start(), ended: Ender = lambda child: None
 ) -> Outcome:
     """Run a task, or find what an earlier call left.
 

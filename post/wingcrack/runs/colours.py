@@ -44,10 +44,7 @@ def default_field(found: Fields) -> str:
 def values_of(found: Fields, field: str) -> FloatArray:
     """Values of the cells [SI]; ``stress.mean`` is the mean of the normal stresses in the plane.
 
-    Raises
-    ------
-    AbsentError
-        If the state has no such field.
+    Raises `AbsentError` if the state has no such field.
     """
     if field == MEAN:
         return np.asarray(0.5 * (found.of_rock("stress.xx") + found.of_rock("stress.yy")))

@@ -51,7 +51,6 @@ class Picture:
 
     Parameters
     ----------
-    run : Results
     field : str or None
         As for `Run.plot_map`; None: pressure, without a fluid the mean stress.
     off_screen : bool
@@ -207,10 +206,7 @@ def _has_display() -> bool:
 def _load_pyvista(*, off_screen: bool) -> ModuleType:
     """Load pyvista so that VTK does not look for a display that is not wanted.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If it cannot be loaded.
+    Raises `EnvironmentLacksError` if it cannot be loaded.
     """
     if off_screen and not _has_display():
         _need_egl()

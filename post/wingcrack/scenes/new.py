@@ -90,12 +90,8 @@ def _comment(text: str, indent: str) -> list[str]:
 def new_scene(kind: str, name: str) -> str:
     """Text of a new scene.
 
-    Parameters
-    ----------
-    kind : str
-        One of the files in the folder ``kinds``.
-    name : str
-        What the scene is called, after its file.
+    `kind`: one of the files in the folder ``kinds``. `name`: what the scene is called, after its
+    file.
     """
     text = (KINDS / f"{kind}.nml").read_text(encoding="utf-8")
     head, _, rest = text.partition("&scene\n")

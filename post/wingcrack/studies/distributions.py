@@ -118,12 +118,7 @@ def _integers(
 
 
 def _within(
-    kind: str,
-    first: float,
-    second: float,
-    bounds: tuple[float, float],
-    shares: Array,
-    place: str,
+    kind: str, first: float, second: float, bounds: tuple[float, float], shares: Array, place: str
 ) -> list[Any]:
     """Quantiles of the distribution cut off at the bounds (no heap of values at them)."""
     from scipy import stats

@@ -145,12 +145,8 @@ def read_study(path: Path, quick: bool = False) -> Study:
 
     Raises `CaseError` if anything in it is missing, unknown or contradicts itself.
 
-    Parameters
-    ----------
-    path : Path
-        The TOML file; the scene is named relative to it.
-    quick : bool
-        Whether to take the short form that ``[quick]`` tells.
+    `path`: the TOML file; the scene is named relative to it. `quick`: whether to take the short
+    form that ``[quick]`` tells.
     """
     said = read_entry(_StudyFile, read_toml(path), path.name)
     scene = path.parent / said.scene

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 
+from wingcrack.figures.text_files import write_whole
 from wingcrack.runner.task import Outcome
 from wingcrack.studies.quantities import measure
 from wingcrack.studies.study import Study, StudyRun
@@ -89,7 +90,9 @@ def write_parquet(table: StudyTable, csv_file: Path, path: Path) -> None:
         pa.field(name, types[name], metadata=_metadata(table.units.get(name)))
         for name in table.columns
     ]
-    _whole(path, lambda aside: parquet.write_table(found.cast(pa.schema(fields)), aside))
+    content = io.BytesIO()
+    parquet.write_table(found.cast(pa.schema(fields)), content)
+    write_whole(path, content.getvalue())
 
 
 def write_statistics(study: Study, table: StudyTable, path: Path) -> None:
@@ -117,18 +120,7 @@ def write_rows(path: Path, header: Sequence[str], rows: Sequence[Sequence[str]])
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)
-    write_text(path, text.getvalue())
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file that appears whole."""
-    _whole(path, lambda aside: aside.write_text(text, encoding="utf-8"))
-
-
-def _whole(path: Path, write: Callable[[Path], object]) -> None:
-    aside = path.with_name(f".{path.name}.aside")
-    write(aside)
-    aside.replace(path)
+    write_whole(path, text.getvalue())
 
 
 def _cell(value: Any) -> str:

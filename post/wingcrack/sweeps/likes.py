@@ -14,13 +14,7 @@ from wingcrack.sweeps.fields import Table
 SHARED = "like.toml"  # beside the cases: entries that several of them are like
 
 # Key that names an entry, by kind.
-NAMED_BY = {
-    "run": "name",
-    "sweep": "name",
-    "check": "quantity",
-    "figure": "title",
-    "trial": "name",
-}
+NAMED_BY = {"run": "name", "sweep": "name", "check": "quantity", "figure": "title", "trial": "name"}
 _OWN = ("like", "known_gap", "default")  # said of one entry, never of those that are like it
 
 

@@ -26,10 +26,7 @@ def path_distance(first: Array, second: Array) -> float:
     parallel; segments are halved until they are short beside the distance found). Raises
     `CaseError` if a path has no length.
 
-    Parameters
-    ----------
-    first, second : (n, 2), (m, 2) arrays
-        Points of the polylines [m].
+    `first` and `second` (n, 2), (m, 2): points of the polylines [m].
     """
     length = min(_length(first), _length(second))
     if not length > 0.0:

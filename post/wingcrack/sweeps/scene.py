@@ -25,15 +25,9 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
 
     Raises `CaseError` if the file cannot be read or an address leads nowhere.
 
-    Parameters
-    ----------
-    path : Path
-        The scene file.
-    changes : mapping
-        New values by ``group.name`` or, in repeated groups, ``group.item.name``; an item is its
-        number from 1 or its name.
-    unset : sequence of str
-        Names, items or groups that are taken away first.
+    `path`: the scene file. `changes`: new values by ``group.name`` or, in repeated groups,
+    ``group.item.name``; an item is its number from 1 or its name. `unset`: names, items or groups
+    that are taken away first.
     """
     try:
         groups = _groups(namelist_groups(read_text(path)))

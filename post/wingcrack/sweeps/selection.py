@@ -157,10 +157,7 @@ def names_of(
 
 
 def select(
-    selection: Selection,
-    folder: Path,
-    constants: Mapping[str, float],
-    as_path: bool = False,
+    selection: Selection, folder: Path, constants: Mapping[str, float], as_path: bool = False
 ) -> Values:
     """Read the selected values from a file in the folder.
 

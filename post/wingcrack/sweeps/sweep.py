@@ -82,16 +82,9 @@ def _expand(
     Raises `CaseError` if ``over`` gives nothing, or a name twice, or one that nobody uses, or if a
     template wants what the point does not have.
 
-    Parameters
-    ----------
-    data : table
-        With templates: texts with names of the point in braces.
-    place : str
-        Where it stands, for errors.
-    keys : set of str
-        Names of a point that become keys of the tables.
-    outer : _Filler, optional
-        That of the table that this one stands in: its names can be used too.
+    `data`: with templates: texts with names of the point in braces. `place`: where it stands, for
+    errors. `keys`: names of a point that become keys of the tables. `outer`: that of the table that
+    this one stands in: its names can be used too.
     """
     template = {name: value for name, value in data.items() if name != "over"}
     points = grid_points(data["over"], f"{place}: over") if "over" in data else [{}]

@@ -108,9 +108,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(message)
 
 
-def _answers(
-    content: Content,
-) -> dict[str, Callable[[dict[str, str]], tuple[str, bytes, str]]]:
+def _answers(content: Content) -> dict[str, Callable[[dict[str, str]], tuple[str, bytes, str]]]:
     """What there is at each path; a query without what it needs is a KeyError or ValueError."""
 
     def page(path: Path) -> Callable[[dict[str, str]], tuple[str, bytes, str]]:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from wingcrack.figures.text_files import write_whole
 from wingcrack_verify.environment import machine, packages
 
 MOST_INSTRUCTIONS = 1.10  # over the stored count: more is a loss
@@ -63,9 +64,7 @@ def store(path: Path, new: Baseline) -> None:
         "made_with": new.made_with,
         "instructions": dict(sorted({**counts, **new.instructions}.items())),
     }
-    part = path.with_name(f"{path.name}.part")
-    part.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-    part.replace(path)
+    write_whole(path, json.dumps(content, indent=2) + "\n")
 
 
 def differences(stored: Mapping[str, str], here: Mapping[str, str]) -> list[str]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from wingcrack.errors import CaseError, EnvironmentLacksError
+from wingcrack.figures.text_files import write_whole
 from wingcrack_verify.bench.baseline import (
     MOST_CPU,
     MOST_INSTRUCTIONS,
@@ -22,12 +23,7 @@ from wingcrack_verify.bench.baseline import (
     store,
 )
 from wingcrack_verify.bench.catalogue import TOP, Benchmark, read_benchmarks
-from wingcrack_verify.bench.measure import (
-    Measurement,
-    RunFailedError,
-    count,
-    measure,
-)
+from wingcrack_verify.bench.measure import Measurement, RunFailedError, count, measure
 from wingcrack_verify.bench.table import (
     Exponent,
     as_growth,
@@ -127,9 +123,7 @@ def _write(
         "measurements": as_json(measured, stored),
         "growth": [asdict(exponent) for exponent in found],
     }
-    part = out / "bench.json.part"
-    part.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
-    part.replace(out / "bench.json")
+    write_whole(out / "bench.json", json.dumps(record, indent=2) + "\n")
 
 
 def _store(measured: Sequence[Measurement], here: dict[str, str], path: Path) -> int:
