@@ -149,7 +149,7 @@ def _why_not() -> int:
         )
     return _say(
         f"the solver cannot start without {lacking}; remove the folders {TOP / '.venv'} and"
-        f" {TOP / 'build'} and call again, which installs and builds anew",
+        f" {TOP / 'build'} and call again, which installs and builds again",
         3,
     )
 

@@ -52,7 +52,7 @@ def build_site(out: Path, *, fortran: bool) -> None:
 
     Raises `DocsError` if MkDocs warns of something or cannot build the site.
 
-    `out`: what it holds is replaced. `fortran`: whether the pages of the Fortran modules, made
+    `out`: its contents are replaced. `fortran`: whether the pages of the Fortran modules, made
     before, belong to it.
     """
     os.environ["NO_MKDOCS_2_WARNING"] = "true"  # the theme's remark about a later MkDocs

@@ -12,7 +12,7 @@ from wingcrack_docs.places import FORTRAN_PAGES, TOP, DocsError
 
 _SETTINGS = """\
 project: wingcrack
-summary: The modules of the solver. Modules of a room begin with its name.
+summary: The modules of the solver. Modules of a component begin with its name.
 author: The wingcrack developers
 src_dir: {sources}
 exclude_dir: {sources}/*/tests
@@ -26,7 +26,7 @@ print_creation_date: false
 display: public
 quiet: true
 ---
-The rooms and how they use each other are explained on the page
+The components and how they use each other are explained on the page
 [Architecture](../architecture.html).
 """
 _MATHS = re.compile(r"<script[^>]*(?:x-mathjax-config|MathJax\.js)[^>]*>.*?</script>", re.DOTALL)

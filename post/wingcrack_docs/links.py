@@ -110,7 +110,7 @@ _DEEPER = 4  # columns by which Python-Markdown wants content of an item further
 
 
 def to_python_markdown(text: str) -> str:
-    """Give the text as Python-Markdown shall read it."""
+    """The text in the dialect of Python-Markdown."""
     lines: list[str] = []
     contents: list[int] = []  # columns where the contents of the open items begin
     before = ""

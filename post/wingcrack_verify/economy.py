@@ -39,7 +39,7 @@ class Economy(Entry):
 
 @dataclass(frozen=True)
 class Saving:
-    """What was found; `share` is None where it cannot be told."""
+    """What was found; `share` is None where it is not known."""
 
     wanted: Economy
     unknowns: float | None

@@ -54,7 +54,7 @@ class Runner:
     def run_all(
         self, jobs: Iterable[Job], progress: Callable[[Job, Outcome], None]
     ) -> dict[tuple[str, str], Outcome]:
-        """Outcome of each job by case and run; `progress` is told of each as it ends."""
+        """Outcome of each job by case and run; `progress` is called with each as it ends."""
         listed = list(jobs)
         outcomes = self._pool.run_all(
             range(len(listed)),

@@ -29,14 +29,14 @@ WIDTH, HEIGHT = 4.3, 2.7  # [inch]: at this width the letters keep their size on
 MARKERS = "osD^vP*X<>"
 MOST_PROFILES = 4  # in one figure
 RASTER_DPI = 160  # of fields, 200 in the size of the PDF
-LABEL_LETTERS = 36  # that stand beside an axis of this height
+LABEL_LETTERS = 36  # that fit along an axis of this height
 
 
 @dataclass(frozen=True)
 class Drawing:
     """A finished figure."""
 
-    # title, caption: said beside the figure
+    # title, caption: text with the figure
     title: str
     caption: str
     svg: bytes
@@ -176,7 +176,7 @@ def _cost_drawing(
     costs: Sequence[tuple[float, Point]],
     tell_rates: bool = False,
 ) -> Drawing:
-    """Error against a cost, a line per method; with the Pareto front unless rates are told."""
+    """Error against a cost, a line per method; with the Pareto front unless rates are given."""
     figure, axes = _new()
     if not tell_rates:
         front = pareto_front([point for _, point in costs])
@@ -291,7 +291,7 @@ def map_drawing(report: MapReport) -> Drawing:
 
 
 def _wrapped(label: str) -> str:
-    """Label in lines that fit beside an axis."""
+    """Label in lines that fit along an axis."""
     return textwrap.fill(label, LABEL_LETTERS)
 
 

@@ -273,7 +273,7 @@ def _pair(
 def _pair_of_runs(
     check: Check, case: Case, result: Values, outcomes: Mapping[str, Outcome]
 ) -> Pair:
-    """Result beside the same quantity of another run of the case."""
+    """Result and the same quantity of another run of the case."""
     assert check.reference.selection is not None
     other = next(run for run in case.runs if run.name == check.reference.other_run)
     if outcomes[other.name].status != "finished":

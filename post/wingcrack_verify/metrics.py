@@ -136,7 +136,7 @@ def signal(name: str, pair: Pair, scale: float | None) -> float:
     """Size of what is measured, which a tolerance is compared with; 1 for relative metrics.
 
     Raises `CaseError` if the reference is 0 and no scale is given, or if one is given where it is
-    not 0. Paths need a scale: the length that their distance is small beside.
+    not 0. Paths need a scale: the length with which their distance is compared.
     """
     if not METRICS[name].has_unit:
         if scale is not None:
@@ -144,7 +144,9 @@ def signal(name: str, pair: Pair, scale: float | None) -> float:
         return 1.0
     if METRICS[name].is_path:
         if scale is None:
-            raise CaseError("'scale' must say what length the paths are near beside")
+            raise CaseError(
+                "'scale' must be the length with which the distance of the paths is compared"
+            )
         return scale
     size = float(np.max(np.abs(pair.reference)))
     if size == 0.0:

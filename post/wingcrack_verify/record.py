@@ -218,7 +218,7 @@ def groups_of(
 ) -> list[dict[str, Any]]:
     """The groups that have cases, in their order, each with its cases, counts and worst row.
 
-    Cases are in the order of their names, those with trials beside those with checks.
+    Cases are in the order of their names, those with trials among those with checks.
 
     `rows`: those of all cases. `cpu_s`: CPU seconds of all runs, by case.
     """

@@ -53,7 +53,7 @@ class Report:
         return {verdict: found[verdict] for verdict in VERDICTS}
 
     def summary_lines(self) -> list[str]:
-        """What the terminal is told in the end: what is not in order, then the counts."""
+        """Lines for the terminal at the end: what did not pass, then the counts."""
         lines = [
             f"{row.verdict.upper()}  {row.case}: {row.quantity}: {reason}"
             for row in self.rows

@@ -211,5 +211,5 @@ def test_a_run_that_goes_on_is_followed(browser: Any, own_run: Path) -> None:
             path.unlink()
         window.choose("field", "displacement.x")
         window.choose("slider", 7)
-        window.wait(lambda: "written anew" in window.text("note"))
+        window.wait(lambda: "written again" in window.text("note"))
     assert wingcrack.open(own_run).status == "finished"

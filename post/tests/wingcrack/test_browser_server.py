@@ -215,7 +215,7 @@ def test_pages_of_other_hosts_cannot_use_what_they_fetch(page: Page) -> None:
         ("/state", {"place": "x", "field": "pressure", "stamp": "a"}, 400, "is no request"),
         ("/state", {"place": 99, "field": "pressure", "stamp": "a"}, 404, "there is no state 99"),
         ("/state", {"place": -1, "field": "pressure", "stamp": "a"}, 404, "there is no state -1"),
-        ("/state", {"place": 0, "field": "pressure", "stamp": "old"}, 404, "written anew"),
+        ("/state", {"place": 0, "field": "pressure", "stamp": "old"}, 404, "written again"),
         ("/scale", {"field": "heat"}, 404, "the rock has no field 'heat'"),
         ("/scale", {"field": "stress"}, 404, "'stress' needs one of stress.xx"),
         ("/history", {"column": "nothing"}, 503, "there is no column 'nothing'"),

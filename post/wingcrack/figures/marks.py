@@ -39,7 +39,7 @@ def well_mark(run: Run, moment: float) -> str:
 def mark_moments(run: Run, panels: Sequence[Axes]) -> list[Line2D]:
     """Draw thin lines at first growth and where wells start and stop; gives their legend.
 
-    Names beside the lines would run into curves.
+    Names next to the lines would cross curves.
     """
     growth, wells = growth_start(run), [moment for moment, _ in well_marks(run)]
     handles = []

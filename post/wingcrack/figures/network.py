@@ -30,7 +30,7 @@ _MARGIN = 0.12  # around the network, as a share of its size
 _LARGE = 0.5  # share of the body from which on the whole body is shown
 _SIZE = (3.6, 5.0)  # [inch] of the axes at most
 _BESIDE = (1.75, 0.95)  # [inch] for labels and colour bar
-_ONLY_LABELS = 0.8  # [inch] beside the axes without a colour bar
+_ONLY_LABELS = 0.8  # [inch] next to the axes without a colour bar
 
 
 @style.styled

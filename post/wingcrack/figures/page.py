@@ -52,7 +52,7 @@ $figures
 
 
 def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
-    """Write the page beside the figures that are there; it appears whole.
+    """Write the page into the folder of the figures; it appears whole.
 
     `folder`: where the figures are. `order`: names of figures, or their beginnings, as they shall
     follow each other.

@@ -236,7 +236,7 @@ def _draw_panel(axis: Axes, lines: _Lines, panel: _Panel) -> None:
 
 
 def _draw_bound(axis: Axes, lines: _Lines) -> float | None:
-    """Draw the bound of friction beside the tangential traction; gives the coefficient."""
+    """Draw the bound of friction with the tangential traction; gives the coefficient."""
     friction = _friction(lines.run, lines.label)
     if friction is not None:
         values = lines.table.number("traction_t_pa")[lines.mine]
@@ -250,7 +250,7 @@ def _draw_bound(axis: Axes, lines: _Lines) -> float | None:
 
 
 def _jump_unit(panel: _Panel, axis: Axes, shown: Sequence[FloatArray]) -> Unit:
-    """Unit of a jump; apertures of new wings beside much wider ones get a logarithmic axis."""
+    """Unit of a jump; apertures that differ much (new wings) get a logarithmic axis."""
     values = np.concatenate(shown)
     smallest = float(np.nanmin(values))
     if panel.column != "aperture_m" or not 0.0 < _FAR * smallest < float(np.nanmax(values)):

@@ -122,7 +122,7 @@ def region_label(region: Region) -> str:
     along_x, along_y = region.permeability_m2
     if along_x == along_y:
         return f"{region.name}: $k$ = {_power(along_x)} m²"
-    # on two lines: one would be too long beside a map
+    # on two lines: one would be too long next to a map
     return f"{region.name}: $k_{{xx}}$ = {_power(along_x)} m²,\n$k_{{yy}}$ = {_power(along_y)} m²"
 
 

@@ -26,13 +26,13 @@ from wingcrack.figures.units import Unit, length_unit
 HALO = [effects.withStroke(linewidth=1.8, foreground="white")]
 _SIZE = 7  # [point]
 _ASIDE, _BACK = 7.0, 4.0  # [point] from an end: away from the line, and beyond its end
-_ROOM = 1.0  # [point] around what must stay clear
+_GAP = 1.0  # [point] around what must stay clear
 
 
 class Names(Artist):
     """Names of lines, in the order in which they are placed.
 
-    `lines`: names, and the lines that they stand beside, in the unit of the axes. `others`: lines
+    `lines`: names and their lines, in the unit of the axes. `others`: lines
     that names should not cross, where another place is free. `points` (n, 2): marks that names must
     not cover.
     """
@@ -98,7 +98,7 @@ class Names(Artist):
         frame = self.axes.bbox
         second = None
         for place in _candidates(line, scale):
-            box = size.translated(*place).padded(_ROOM * scale)
+            box = size.translated(*place).padded(_GAP * scale)
             inside = frame.x0 <= box.x0 <= box.x1 <= frame.x1
             if not (inside and frame.y0 <= box.y0 <= box.y1 <= frame.y1):
                 continue
@@ -117,7 +117,7 @@ def _around(point: FloatArray, half: float) -> Bbox:
 
 
 def _candidates(line: FloatArray, scale: float) -> Iterator[FloatArray]:
-    """Places beside the ends of a line and its middle, first those above it."""
+    """Places next to the ends of a line and its middle, first those above it."""
     along = line[0] - line[-1]
     along = along / max(float(np.linalg.norm(along)), 1e-300)
     above = np.array([-along[1], along[0]])

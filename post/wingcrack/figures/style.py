@@ -26,7 +26,7 @@ DOUBLE_COLUMN = 7.1  # [inch]
 
 # Okabe and Ito (2008), "Color universal design"; yellow is left out: too light on paper
 CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
-MARKERS = ("", "o", "s", "^", "v", "D", "x")  # beside the colours, for grey print
+MARKERS = ("", "o", "s", "^", "v", "D", "x")  # in addition to the colours, for grey print
 LINE_STYLES: tuple[Literal["-", "--", "-.", ":"], ...] = ("-", "--", "-.", ":")
 
 STATES = ("stick", "slip", "open")  # in the order of their numbers in the VTU files

@@ -39,7 +39,7 @@ _MARGIN = 0.04  # of the body's size around it
 
 @style.styled
 def view(run: Run, wanted: Sequence[float] = ()) -> Figure:
-    """Draw the deformed body, and beside it (where fractures are small) what is near them.
+    """Draw the deformed body and, where fractures are small, their surroundings.
 
     Raises `AbsentError` if the run wrote no VTU files, `RunError` if a VTU file is damaged.
 

@@ -103,7 +103,7 @@ class Task:
     program: Path  # the executable
     text: str | None  # the scene, for the solver; None for a program with arguments
     args: tuple[str, ...]  # arguments of a program
-    tables: tuple[Path, ...]  # files that the scene names, to be put beside it
+    tables: tuple[Path, ...]  # files that the scene names, to be put next to it
     time_limit_s: float  # a run that takes longer is ended, and has crashed [s]
     code: str = ""  # hash of the modules that decided what is run
 
@@ -118,13 +118,13 @@ class Task:
 
 
 def tables_of(scene: Path, text: str) -> tuple[Path, ...]:
-    """CSV files that the text of a scene names: they lie beside its file."""
+    """CSV files that the text of a scene names: in the folder of its file."""
     names = re.findall(r"^\s*schedule\s*=\s*'([^']+)'", text, re.MULTILINE)
     return tuple(scene.parent / name for name in names)
 
 
 def copy_tables(task: Task, folder: Path) -> None:
-    """Put the files that the scene names beside it; one that is missing is the solver's to tell."""
+    """Put the files that the scene names next to it; the solver reports one that is missing."""
     for table in task.tables:
         if table.is_file():
             shutil.copy(table, folder)
@@ -156,7 +156,7 @@ def run_task(
 
 
 def slug(name: str) -> str:
-    """Name of a folder for a label: readable, and no two alike."""
+    """Name of a folder for a label: readable and unique."""
     readable = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:40]
     return f"{readable}-{hash_of(name.encode())[:6]}"
 

@@ -55,7 +55,7 @@ def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
             "n_workers": workers,
             "threads_per_worker": 1,
             "dashboard_address": None,
-            "silence_logs": logging.CRITICAL,  # a worker that is lost is told by the study
+            "silence_logs": logging.CRITICAL,  # the study reports a lost worker
             **given,
         }
     elif cluster.kind == "ssh" and "hosts" not in given:

@@ -99,7 +99,7 @@ def _lines(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
 def _looks(curves: Sequence[_Curve], names: Sequence[str]) -> list[dict[str, Any]]:
     """Colours by the first of the names and dashes by the others, if there are enough of both.
 
-    Else every line has a look of its own. Lines that nothing tells apart look alike.
+    Otherwise every line has its own look. Lines that no parameter distinguishes look the same.
     """
     if not names:
         return [{"color": style.CYCLE[0]} for _ in curves]

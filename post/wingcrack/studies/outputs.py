@@ -37,8 +37,8 @@ def judge_selection(
 
     Raises `CaseError`: with what would be right.
 
-    `constants`: names that expressions can use beside those of the file. `has_fluid`: whether any
-    run of the study has a fluid.
+    `constants`: names that expressions can use in addition to those of the file. `has_fluid`:
+    whether any run of the study has a fluid.
     """
     files = names_of_output()
     if selection.file not in files:

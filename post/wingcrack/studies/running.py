@@ -109,7 +109,7 @@ def run_tasks(
     workers: int,
     progress: Callable[[int, Outcome], None],
 ) -> None:
-    """Run all tasks; `progress` is told of each as it ends, and keeps it.
+    """Run all tasks; `progress` is called with each as it ends, and keeps it.
 
     Raises `EnvironmentLacksError` if the cluster cannot be started.
     """

@@ -37,7 +37,7 @@ from wingcrack.sweeps.sweep import filled, grid_points
 
 MOST_RUNS = 10_000
 
-# Columns that the table of every study has, beside those of its own.
+# Columns that the table of every study has, in addition to its own.
 FIXED_COLUMNS = ("run", "label", "status", "reason", "cpu_s", "wall_s", "folder")
 
 
@@ -93,7 +93,7 @@ class Study:
 
     @property
     def names(self) -> set[str]:
-        """Names that expressions can use beside those of columns."""
+        """Names that expressions can use in addition to columns."""
         return {*self.constants, *(name for run in self.runs for name in run.constants)}
 
     @property

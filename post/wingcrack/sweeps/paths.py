@@ -23,7 +23,7 @@ def path_distance(first: Array, second: Array) -> float:
     Both begin at the same place of a crack, so each is cut off at an arc length from its first
     point. Of every point of one path the distance to the nearest place of the other counts (the
     Hausdorff distance of polylines, whose maximum is taken at vertices where the paths are nearly
-    parallel; segments are halved until they are short beside the distance found). Raises
+    parallel; segments are halved until they are short compared with the distance found). Raises
     `CaseError` if a path has no length.
 
     `first` and `second` (n, 2), (m, 2): points of the polylines [m].

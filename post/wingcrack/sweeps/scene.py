@@ -46,7 +46,7 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
 
 @lru_cache(maxsize=1)
 def scene_hash() -> str:
-    """Hash of this module, which changes scenes; judging is always done anew."""
+    """Hash of this module, which changes scenes; results are always judged again."""
     return hash_of(Path(__file__).read_bytes())
 
 

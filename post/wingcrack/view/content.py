@@ -55,7 +55,7 @@ _WATCHED = ("history.csv", "run.json", "network.json", "scene.nml", "matrix.pvd"
 
 
 class Content:
-    """The files of a run as messages for the page; a run that goes on is read anew as it grows.
+    """The files of a run as messages for the page; a run that continues is read again.
 
     Places in messages are relative to the middle of the body, as 32-bit numbers: coordinates of
     a survey would lose their last digits.
@@ -215,7 +215,7 @@ class Content:
         snapshot = self._matrix[place]
         key = _stamp(snapshot.path)
         if stamp is not None and stamp != key:
-            raise AbsentError(f"state {place} has been written anew")
+            raise AbsentError(f"state {place} has been written again")
         found = self._kept.pop(key, None)
         if found is None:
             found = read_fields(self._directory, self._matrix, self._fractures, snapshot.time_s)
@@ -278,7 +278,7 @@ def _mesh_of(found: Fields) -> str:
 
 
 def _stamp(path: Path) -> str:
-    """A text that differs once a file is written anew."""
+    """A text that differs once a file is written again."""
     try:
         seen = path.stat()
     except OSError:

@@ -30,7 +30,7 @@ class Baseline:
 
 
 def made_with(solver: Path) -> dict[str, str]:
-    """Tell what the count of a solver's instructions depends on, beside its own source."""
+    """What the count of a solver's instructions depends on, apart from its own source."""
     build = next((p for p in solver.resolve().parents if (p / "CMakeCache.txt").is_file()), None)
     found: dict[str, str] = {}
     if build is not None:

@@ -148,7 +148,7 @@ def count(benchmark: Benchmark, solver: Path) -> tuple[int | None, str]:
             # a build for this processor may use what valgrind does not know
             return None, f"valgrind cannot run the program here ({reason})"
     found = re.search(r"I +refs: +([0-9,]+)", words)
-    return (int(found[1].replace(",", "")), "") if found else (None, "valgrind told no count")
+    return (int(found[1].replace(",", "")), "") if found else (None, "valgrind gave no count")
 
 
 def _folder() -> tempfile.TemporaryDirectory[str]:
