@@ -20,6 +20,7 @@ from wingcrack.figures.read import Run
 POST = Path(__file__).resolve().parents[2]
 
 
+@pytest.mark.usefixtures("full_size")
 def test_all_figures_of_some_groups(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", str(own_run), "--only", "maps,fractures,tips,probes"]) == 0
     names = ["pressure_maps", "fracture_1", "intensities", "development", "balance", "probes"]
