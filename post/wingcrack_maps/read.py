@@ -20,16 +20,10 @@ ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
 def read_map(path: Path, unit: str | None) -> Map:
     """Read a map in metres.
 
-    Parameters
-    ----------
-    unit : str, optional
-        That of the map's coordinates; without one they are metres, and a GeoJSON file that says no
-        coordinate system must have numbers that cannot be degrees.
+    Raises `SceneError` if the file cannot be read or understood; nothing is guessed.
 
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or understood; nothing is guessed.
+    `unit`: that of the map's coordinates; without one they are metres, and a GeoJSON file that says
+    no coordinate system must have numbers that cannot be degrees.
     """
     ending = path.suffix.lower()
     if ending == ".msh":

@@ -7,8 +7,9 @@ import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from wingcrack_docs.links import prose
+from wingcrack_docs.links import CODE, LINK, prose
 
 TOP = Path(__file__).resolve().parents[3]
 PAGES = (
@@ -23,6 +24,7 @@ NAMES = [page.relative_to(TOP).as_posix() for page in PAGES]
 _SHELL = re.compile(
     r"(\./wingcrack|\.venv/bin/|build/release/|cmake |podman |python3 |[A-Z_]+=\S+ \S|/opt/)"
 )
+_HEADING = re.compile(r"^#{1,6} +(.*?)(?: +#+)? *$")
 _SPAN = re.compile(r"(?<!`)`([^`]+)`(?!`)")
 
 
@@ -80,3 +82,41 @@ def spans(page: str) -> Iterator[tuple[int, str]]:
 def _flush_left(lines: list[str]) -> str:
     margin = min(len(line) - len(line.lstrip()) for line in lines if line.strip())
     return "\n".join(line[margin:] for line in lines).strip("\n") + "\n"
+
+
+class Link(NamedTuple):
+    """A link: its line in the text, from 1, and where it leads."""
+
+    line: int
+    target: str
+
+
+def find_links(text: str) -> list[Link]:
+    """All links of a text that are not in code."""
+    return [
+        Link(number, match[2])
+        for number, line, is_prose in prose(text)
+        if is_prose
+        for match in LINK.finditer(CODE.sub(lambda code: " " * len(code[0]), line))
+    ]
+
+
+def anchors(text: str) -> set[str]:
+    """Anchors of a text's headings, as hosts of plain files and the site make them."""
+    found: set[str] = set()
+    for _, line, is_prose in prose(text):
+        heading = _HEADING.match(line)
+        if is_prose and heading:
+            slug = _slug(heading[1])
+            count, name = 0, slug
+            while name in found:
+                count += 1
+                name = f"{slug}-{count}"
+            found.add(name)
+    return found
+
+
+def _slug(heading: str) -> str:
+    words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
+    kept = re.sub(r"[^\w\- ]", "", words.lower())
+    return kept.strip().replace(" ", "-")

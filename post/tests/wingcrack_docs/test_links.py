@@ -6,11 +6,9 @@ from pathlib import PurePosixPath
 
 import pytest
 
-from documents import NAMES, TOP
+from documents import NAMES, TOP, anchors, find_links
 from wingcrack_docs.links import (
-    anchors,
     change_links,
-    find_links,
     is_elsewhere,
     resolve,
     to_python_markdown,
