@@ -70,7 +70,11 @@ _DEEPER = 4  # columns by which Python-Markdown wants content of an item further
 
 
 def to_python_markdown(text: str) -> str:
-    """The text in the dialect of Python-Markdown."""
+    """The text in the dialect of Python-Markdown.
+
+    It differs from CommonMark, which hosts of plain files read, where these pages make use of it: a
+    list needs a blank line before it, and what belongs to an item stands four columns further in.
+    """
     lines: list[str] = []
     contents: list[int] = []  # columns where the contents of the open items begin
     before = ""

@@ -12,9 +12,8 @@ from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array, evaluate
 from wingcrack.sweeps.selection import Selection, Values, interpolated, select
 from wingcrack_verify.contents import Case, Check, FigureRequest, Run, require_files
-from wingcrack_verify.economy import Saving, saving, unknowns_of
+from wingcrack_verify.economy import Front, Saving, front, saving, unknowns_of, work_of
 from wingcrack_verify.execute import Outcome
-from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from wingcrack_verify.front import front, work_of
+from wingcrack_verify.economy import front, work_of
 from wingcrack_verify.orders import Point
 
 

@@ -30,11 +30,12 @@ _GAP = 1.0  # [point] around what must stay clear
 
 
 class Names(Artist):
-    """Names of lines, in the order in which they are placed.
+    """Names of lines without overlaps, in the order in which they are placed.
 
-    `lines`: names and their lines, in the unit of the axes. `others`: lines
-    that names should not cross, where another place is free. `points` (n, 2): marks that names must
-    not cover.
+    A name for which there is no space is omitted. The free space is known once the figure is laid
+    out, so places are found when it is drawn. `lines`: names and their lines, in the unit of the
+    axes. `others`: lines that names should not cross, where another place is free. `points` (n, 2):
+    marks that names must not cover.
     """
 
     def __init__(

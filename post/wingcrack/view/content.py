@@ -292,7 +292,12 @@ _KINDS = {"f4": "Float32Array", "f8": "Float64Array", "u4": "Uint32Array", "u1":
 
 
 def pack(head: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:
-    """Put a head and arrays (of float32, float64, uint32 or uint8) into one message."""
+    """Put a head and arrays (of float32, float64, uint32 or uint8) into one message.
+
+    Layout: length of the head as a 32-bit number, the head in JSON, then the arrays, all
+    little-endian; each begins at a multiple of eight bytes from the start, so that typed arrays of
+    JavaScript can lie on them without a copy.
+    """
     parts: list[bytes] = []
     places: dict[str, tuple[str, int, int]] = {}
     offset = 0

@@ -13,25 +13,23 @@ from types import SimpleNamespace
 
 from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.figures.text_files import write_whole
-from wingcrack_verify.bench.baseline import (
-    MOST_CPU,
-    MOST_INSTRUCTIONS,
-    Baseline,
-    differences,
-    made_with,
-    read_baseline,
-    store,
-)
 from wingcrack_verify.bench.catalogue import TOP, Benchmark, read_benchmarks
 from wingcrack_verify.bench.measure import Measurement, RunFailedError, count, measure
 from wingcrack_verify.bench.table import (
+    MOST_CPU,
+    MOST_INSTRUCTIONS,
+    Baseline,
     Exponent,
     as_growth,
     as_json,
     as_phases,
     as_table,
+    differences,
     exponents,
     instructions_ratio,
+    made_with,
+    read_baseline,
+    store,
 )
 from wingcrack_verify.environment import machine, revision
 
