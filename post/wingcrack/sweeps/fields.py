@@ -82,14 +82,15 @@ Values = Annotated[tuple[Any, ...], _list_of("at least one value", lambda _: Tru
 Tables = Annotated[tuple[Any, ...], _list_of("tables", lambda item: isinstance(item, Mapping))]
 
 
-def read_by(read: Callable[[Any], Any]) -> PlainValidator:
-    """What a function makes of a value; its `CaseError` becomes the error of the key."""
+def read_by(read: Callable[[Any], Any], *, names_key: bool = True) -> PlainValidator:
+    """What a function makes of a value; its `CaseError`, which may name the key, is the error."""
 
     def judge(value: Any) -> Any:
         try:
             return read(value)
         except CaseError as reason:
-            raise ValueOfKeyError(str(reason)) from None
+            kind = ValueOfKeyError if names_key else ValueError
+            raise kind(str(reason)) from None
 
     return PlainValidator(judge)
 
@@ -142,11 +143,18 @@ def _sentence(error: Any, kind: type[Entry], place: str) -> str:
     if name == "extra_forbidden":
         near = difflib.get_close_matches(key, kind.model_fields, n=1) if len(parts) == 1 else []
         return f"{where}: '{key}' is unknown" + (f"; did you mean '{near[0]}'?" if near else "")
-    if name == "greater_than":
-        return f"{where}: '{key}' must be positive, not {value}"
-    if name in ("float_type", "finite_number"):
-        return f"{where}: '{key}' must be a finite number, not {value!r}"
-    wanted = {"bool_type": "true or false", "dict_type": "a table", "model_type": "a table"}
+    limits = error.get("ctx", {})
+    wanted = {
+        "greater_than": f"positive, not {value}",
+        "less_than": f"less than {limits.get('lt')}, not {value}",
+        "float_type": f"a finite number, not {value!r}",
+        "finite_number": f"a finite number, not {value!r}",
+        "bool_type": "true or false",
+        "dict_type": "a table",
+        "model_type": "a table",
+        "tuple_type": "a list of tables",
+        "too_short": "a table that is not empty",
+    }
     return f"{where}: '{key}' must be {wanted.get(name, 'a text')}"
 
 

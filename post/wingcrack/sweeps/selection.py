@@ -76,7 +76,7 @@ def _abscissa(value: Any) -> str | tuple[float, ...] | None:
     return tuple(map(float, value))
 
 
-Conditions: TypeAlias = dict[str, Annotated[Wanted, read_by(_condition)]]
+Conditions: TypeAlias = dict[str, Annotated[Wanted, read_by(_condition, names_key=False)]]
 
 
 class Selection(Entry):
