@@ -9,12 +9,20 @@ import pytest
 
 from wingcrack.command_line import main, understand
 from wingcrack_verify.bench import cli
-from wingcrack_verify.bench.baseline import Baseline, differences, made_with, read_baseline, store
 from wingcrack_verify.bench.catalogue import TOP, read_benchmarks
-from wingcrack_verify.bench.growth import exponents, fit
-from wingcrack_verify.bench.measure import Measurement, Run
-from wingcrack_verify.bench.scenes import write_scene
-from wingcrack_verify.bench.table import as_growth, as_phases, as_table
+from wingcrack_verify.bench.measure import Measurement, Run, write_scene
+from wingcrack_verify.bench.table import (
+    Baseline,
+    as_growth,
+    as_phases,
+    as_table,
+    differences,
+    exponents,
+    fit,
+    made_with,
+    read_baseline,
+    store,
+)
 
 
 def _run(cpu_s: float, cells: int = 100) -> Run:

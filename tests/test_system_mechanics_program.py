@@ -12,7 +12,7 @@ from callgrind_profile import profile
 from system_scene import SCENE, SOLVER
 
 from wingcrack_verify.bench.catalogue import read_benchmarks
-from wingcrack_verify.bench.scenes import write_scene
+from wingcrack_verify.bench.measure import write_scene
 
 WITHOUT = SOLVER.with_name("wingcrack-mechanics")
 

@@ -27,7 +27,7 @@ prepare() {
     fi
 }
 
-prepare_study() { need requirements_study.txt dask distributed pyarrow scipy; }
+prepare_study() { need requirements_study.txt dask distributed pyarrow pydantic scipy; }
 prepare_maps() { need requirements_maps.txt shapely; }
 prepare_ranks() { fail "$exit_usage" '--ranks needs the folder of the sources'; }
 

@@ -4,9 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from wingcrack.figures.errors import AbsentError, EnvironmentLacksError, RunError
 
-__all__ = ["AbsentError", "EnvironmentLacksError", "RunError", "RunFailedError", "SceneError"]
+class RunError(Exception):
+    """The files of the run are missing, damaged or not what the contract says."""
+
+
+class AbsentError(Exception):
+    """A sound run that simply does not hold what a figure needs, such as pressure or tips."""
+
+
+class EnvironmentLacksError(Exception):
+    """The machine lacks something that is needed: a library, the solver, another program."""
+
+
+class CaseError(Exception):
+    """A case is wrong in itself: a key, metric, column or row that is not there, a NaN."""
 
 
 class SceneError(Exception):

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType, SimpleNamespace
 
 from wingcrack.command_line.declaring import TOP
-from wingcrack.command_line.solver_commands import judge_place
+from wingcrack.command_line.run_commands import judge_place
 
 _PROGRAMS = TOP / "build" / "release" / "fortran" / "app"
 SOLVER, RANKS_SOLVER = _PROGRAMS / "wingcrack-solver", _PROGRAMS / "wingcrack-ranks"
@@ -149,7 +149,7 @@ def _why_not() -> int:
         )
     return _say(
         f"the solver cannot start without {lacking}; remove the folders {TOP / '.venv'} and"
-        f" {TOP / 'build'} and call again, which installs and builds anew",
+        f" {TOP / 'build'} and call again, which installs and builds again",
         3,
     )
 

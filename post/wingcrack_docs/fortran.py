@@ -8,12 +8,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-from wingcrack_docs.errors import PagesError
-from wingcrack_docs.places import FORTRAN_PAGES, TOP
+from wingcrack_docs.places import FORTRAN_PAGES, TOP, DocsError
 
 _SETTINGS = """\
 project: wingcrack
-summary: The modules of the solver. Modules of a room begin with its name.
+summary: The modules of the solver. Modules of a component begin with its name.
 author: The wingcrack developers
 src_dir: {sources}
 exclude_dir: {sources}/*/tests
@@ -27,7 +26,7 @@ print_creation_date: false
 display: public
 quiet: true
 ---
-The rooms and how they use each other are explained on the page
+The components and how they use each other are explained on the page
 [Architecture](../architecture.html).
 """
 _MATHS = re.compile(r"<script[^>]*(?:x-mathjax-config|MathJax\.js)[^>]*>.*?</script>", re.DOTALL)
@@ -39,10 +38,7 @@ _THEIRS = ("css/bootstrap.min.css", "js/bootstrap.bundle.min.js")
 def make_fortran_pages() -> bool:
     """Make the pages unless they are newer than every module; return whether they were made.
 
-    Raises
-    ------
-    PagesError
-        If FORD fails.
+    Raises `DocsError` if FORD fails.
     """
     sources = TOP / "fortran"
     index = FORTRAN_PAGES / "index.html"
@@ -59,7 +55,7 @@ def make_fortran_pages() -> bool:
     )
     if done.returncode != 0 or not (new / "index.html").is_file():
         words = (done.stderr or done.stdout).strip().splitlines()
-        raise PagesError(f"FORD failed: {words[-1] if words else 'it gave no reason'}")
+        raise DocsError(f"FORD failed: {words[-1] if words else 'it gave no reason'}")
     keep_at_home(new)
     shutil.rmtree(FORTRAN_PAGES, ignore_errors=True)
     new.rename(FORTRAN_PAGES)

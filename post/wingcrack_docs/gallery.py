@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
+import numpy as np
+
 import wingcrack
-from wingcrack_docs.cases import cases_of
-from wingcrack_docs.errors import PicturesError
-from wingcrack_docs.errors_of_run import describe_errors
-from wingcrack_docs.places import DOCS, PICTURES, TOP
+from wingcrack_docs.places import DOCS, PICTURES, TOP, DocsError
 from wingcrack_docs.thumbnail import draw_thumbnail
+from wingcrack_verify.suite import read_suite
 
 _SECTIONS = {
     "paper_a": "Cracks in specimens under compression (Paper A)",
@@ -39,15 +40,9 @@ reliability of these estimates.
 def write_gallery(runs: Mapping[Path, wingcrack.Run]) -> None:
     """Draw the pictures and write the page.
 
-    Parameters
-    ----------
-    runs : mapping of Path to Run
-        Every scene of inputs/ with its run.
+    Raises `DocsError` if a scene's folder is not known here.
 
-    Raises
-    ------
-    PicturesError
-        If a scene's folder is not known here.
+    `runs`: every scene of inputs/ with its run.
     """
     pictures = PICTURES / "gallery"
     pictures.mkdir(parents=True, exist_ok=True)
@@ -55,7 +50,7 @@ def write_gallery(runs: Mapping[Path, wingcrack.Run]) -> None:
     for scene, run in sorted(runs.items()):
         folder = scene.parent.name
         if folder not in entries:
-            raise PicturesError(f"the gallery has no section for inputs/{folder}")
+            raise DocsError(f"the gallery has no section for inputs/{folder}")
         picture = pictures / _picture(scene)
         draw_thumbnail(run, picture)
         entries[folder].append(_entry(scene, run, picture.name))
@@ -107,3 +102,70 @@ def _processor() -> str:
         if line.startswith("model name"):
             return line.partition(":")[2].strip()
     return "of a kind that it does not tell"
+
+
+def cases_of(scene: str) -> list[str]:
+    """Names of the cases that run a scene, given by its path in the tree."""
+    return sorted(_runs().get(scene, ()))
+
+
+@cache
+def _runs() -> dict[str, set[str]]:
+    found: dict[str, set[str]] = {}
+    for job in read_suite(TOP / "verification", (), quick=False).jobs:
+        if job.run.scene is not None:
+            path = job.run.scene.resolve()
+            if path.is_relative_to(TOP):
+                found.setdefault(path.relative_to(TOP).as_posix(), set()).add(job.case)
+    return found
+
+
+_KEPT = 1.0e-3  # tips with less than this share of the largest K_eq are at rest
+
+
+def describe_errors(run: wingcrack.Run) -> str:
+    """Give the run's own estimates: of K, of length and pressure, of the fluid's balance."""
+    said = [*_of_intensities(run), *_of_history(run)]
+    energy = run.record.get("energy_error_relative")
+    if energy is not None:
+        said.append(f"energy norm {percent(float(energy))}")
+    return ", ".join(said) or "none: no stress intensity factors"
+
+
+def _of_intensities(run: wingcrack.Run) -> Iterator[str]:
+    try:
+        tips = run.tips
+    except wingcrack.AbsentError:
+        return
+    size = np.hypot(tips["k1_pa_sqrtm"], tips["k2_pa_sqrtm"])
+    error = np.hypot(tips["k1_error_pa_sqrtm"], tips["k2_error_pa_sqrtm"])
+    loaded = size > _KEPT * size.max() if size.size else np.zeros(0, dtype=bool)
+    if not loaded.any():
+        return
+    growing = loaded & (tips["advance_m"] > 0.0)
+    if growing.any():
+        yield f"K {percent(float((error / size)[growing].max()))} where tips grow"
+    else:
+        last = loaded & (tips["history_row"] == tips["history_row"][loaded].max())
+        yield f"K {percent(float((error / size)[last].max()))} at the end"
+
+
+def _of_history(run: wingcrack.Run) -> Iterator[str]:
+    last = run.history.iloc[-1]
+    length = last.get("fracture_length_error_m", -1.0)
+    if length > 0.0:
+        yield f"length {1e3 * length:.2g} mm of {last['fracture_length_m']:.3g} m"
+    pressure = last.get("well_pressure_error_pa", -1.0)
+    if pressure > 0.0:
+        said = f"well pressure {1e-3 * pressure:.2g} kPa"
+        # of several wells it is the error of their mean
+        yield (
+            f"{said} of {1e-6 * whole:.3g} MPa" if (whole := last.get("well_pressure_pa")) else said
+        )
+    if "mass_error_relative" in last:
+        yield f"fluid {run.record['mass_error_relative']:.0e}"
+
+
+def percent(share: float) -> str:
+    """A share in per cent with two digits, and what is too small to matter as less than 0.01 %."""
+    return "below 0.01 %" if share < 1.0e-4 else f"{100.0 * share:.2g} %"

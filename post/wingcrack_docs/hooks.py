@@ -1,4 +1,4 @@
-"""What MkDocs is told beside mkdocs.yml: pages that lie outside docs/, and where links lead.
+"""Settings of MkDocs in addition to mkdocs.yml: pages outside docs/, and targets of links.
 
 The pages are written for the tree: README.md is the site's first page, scenes are files beside
 them. Here each of them gets its place in the site, and links are changed to those places.
@@ -17,8 +17,7 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 import wingcrack
-from wingcrack_docs.dialect import to_python_markdown
-from wingcrack_docs.links import change_links, is_elsewhere, resolve
+from wingcrack_docs.links import change_links, is_elsewhere, resolve, to_python_markdown
 from wingcrack_docs.places import FORTRAN_PAGES, TOP
 
 _PAGES = {
@@ -67,7 +66,7 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
 
 
 def on_post_build(*, config: MkDocsConfig) -> None:
-    """Put the pages of the Fortran modules beside the others."""
+    """Put the pages of the Fortran modules with the others."""
     if _with_fortran(config):
         shutil.copytree(FORTRAN_PAGES, Path(config.site_dir) / "fortran", dirs_exist_ok=True)
 

@@ -5,19 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from pathlib import PurePosixPath
-from typing import NamedTuple
 
 _FENCE = re.compile(r"^ *(```|~~~)")
-_CODE = re.compile(r"(`+)(?:.*?[^`])?\1(?!`)")
-_LINK = re.compile(r"(!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^()\s]+)(\))")
-_HEADING = re.compile(r"^#{1,6} +(.*?)(?: +#+)? *$")
-
-
-class Link(NamedTuple):
-    """A link: its line in the text, from 1, and where it leads."""
-
-    line: int
-    target: str
+CODE = re.compile(r"(`+)(?:.*?[^`])?\1(?!`)")
+LINK = re.compile(r"(!?\[(?:[^\[\]]|\[[^\]]*\])*\]\()([^()\s]+)(\))")
 
 
 def prose(text: str) -> Iterator[tuple[int, str, bool]]:
@@ -40,16 +31,6 @@ def prose(text: str) -> Iterator[tuple[int, str, bool]]:
         after_blank = not line.strip() or line.startswith("#")
 
 
-def find_links(text: str) -> list[Link]:
-    """All links of a text that are not in code."""
-    return [
-        Link(number, match[2])
-        for number, line, is_prose in prose(text)
-        if is_prose
-        for match in _LINK.finditer(_CODE.sub(lambda code: " " * len(code[0]), line))
-    ]
-
-
 def change_links(text: str, change: Callable[[str], str]) -> str:
     """Put `change(target)` in place of the target of each link that is not in code."""
     lines = []
@@ -59,8 +40,8 @@ def change_links(text: str, change: Callable[[str], str]) -> str:
 
 
 def _change_line(line: str, change: Callable[[str], str]) -> str:
-    covered = _CODE.sub(lambda code: "\0" * len(code[0]), line)
-    for match in reversed(list(_LINK.finditer(covered))):
+    covered = CODE.sub(lambda code: "\0" * len(code[0]), line)
+    for match in reversed(list(LINK.finditer(covered))):
         begin, end = match.span(2)
         line = line[:begin] + change(match[2]) + line[end:]
     return line
@@ -69,27 +50,6 @@ def _change_line(line: str, change: Callable[[str], str]) -> str:
 def is_elsewhere(target: str) -> bool:
     """Whether a link leads to another machine."""
     return re.match(r"[a-z][a-z0-9+.-]*:", target) is not None
-
-
-def anchors(text: str) -> set[str]:
-    """Anchors of a text's headings, as hosts of plain files and the site make them."""
-    found: set[str] = set()
-    for _, line, is_prose in prose(text):
-        heading = _HEADING.match(line)
-        if is_prose and heading:
-            slug = _slug(heading[1])
-            count, name = 0, slug
-            while name in found:
-                count += 1
-                name = f"{slug}-{count}"
-            found.add(name)
-    return found
-
-
-def _slug(heading: str) -> str:
-    words = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading)
-    kept = re.sub(r"[^\w\- ]", "", words.lower())
-    return kept.strip().replace(" ", "-")
 
 
 def resolve(page: PurePosixPath, path: str) -> PurePosixPath | None:
@@ -103,3 +63,42 @@ def resolve(page: PurePosixPath, path: str) -> PurePosixPath | None:
         elif part != ".":
             parts.append(part)
     return PurePosixPath(*parts)
+
+
+_ITEM = re.compile(r"^( *)([-*]|\d+\.)( +)(?=\S)")
+_DEEPER = 4  # columns by which Python-Markdown wants content of an item further in
+
+
+def to_python_markdown(text: str) -> str:
+    """The text in the dialect of Python-Markdown.
+
+    It differs from CommonMark, which hosts of plain files read, where these pages make use of it: a
+    list needs a blank line before it, and what belongs to an item stands four columns further in.
+    """
+    lines: list[str] = []
+    contents: list[int] = []  # columns where the contents of the open items begin
+    before = ""
+    for _, line, is_prose in prose(text):
+        item = _ITEM.match(line) if is_prose or contents else None
+        if item:
+            column = len(item[1])
+            contents = [content for content in contents if content <= column]
+            if before.strip() and not contents and not _belongs_to_item(before):
+                lines.append("")
+            depth = len(contents)
+            contents.append(item.end())
+            lines.append(" " * (_DEEPER * depth) + item[2] + " " + line[item.end() :])
+        elif contents and line.strip():
+            column = len(line) - len(line.lstrip())
+            if not before.strip():
+                contents = [content for content in contents if content <= column]
+            inner = min(contents[-1], column) if contents else 0
+            lines.append(" " * (_DEEPER * len(contents)) + line[inner:] if contents else line)
+        else:
+            lines.append(line)
+        before = line
+    return "\n".join(lines) + "\n"
+
+
+def _belongs_to_item(line: str) -> bool:
+    return _ITEM.match(line) is not None or line.startswith(("#", " "))

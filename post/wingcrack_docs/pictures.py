@@ -15,16 +15,9 @@ from wingcrack.runner.pool import Pool
 from wingcrack.runner.task import Task, tables_of
 from wingcrack.scenes.new import new_scene
 from wingcrack.scenes.solver import SOLVER
-from wingcrack_docs.errors import PicturesError
 from wingcrack_docs.gallery import write_gallery
-from wingcrack_docs.places import PICTURES, SCENES, TOP
-from wingcrack_docs.thumbnail import (
-    draw_states,
-    draw_story,
-    draw_summary,
-    new_figure,
-    save_small,
-)
+from wingcrack_docs.places import PICTURES, SCENES, TOP, DocsError
+from wingcrack_docs.thumbnail import draw_states, draw_story, draw_summary, new_figure, save_small
 
 _RUNS = TOP / "build" / "pictures"
 _LIMIT_S = 3600.0
@@ -36,12 +29,8 @@ _RATES = (2.0e-9, 5.0e-9, 1.0e-8)  # [m2/s] of the tutorial's study
 def make_pictures() -> None:
     """Run what has not run, draw all pictures, write the gallery's page.
 
-    Raises
-    ------
-    PicturesError
-        If a scene does not reach its end, or has no place in the gallery.
-    EnvironmentLacksError
-        If there is no solver.
+    Raises `DocsError` if a scene does not reach its end, or has no place in the gallery,
+    `EnvironmentLacksError` if there is no solver.
     """
     scenes = {
         scene.relative_to(SCENES).with_suffix("").as_posix(): scene
@@ -72,14 +61,14 @@ def _map_scene() -> str:
     with redirect_stdout(StringIO()) as said:
         status = main([*words, "--out", str(file)])
     if status != 0:
-        raise PicturesError(f"{_MAP.name} was not imported: {said.getvalue().strip()}")
+        raise DocsError(f"{_MAP.name} was not imported: {said.getvalue().strip()}")
     return file.read_text("utf-8")
 
 
 def _at_rate(text: str, rate: float) -> str:
     changed = text.replace("rate = 5.0e-9", f"rate = {rate:g}")
     if f"rate = {rate:g}" not in changed:
-        raise PicturesError("the scene of `new injection` has no rate of 5.0e-9 any more")
+        raise DocsError("the scene of `new injection` has no rate of 5.0e-9 any more")
     return changed
 
 
@@ -104,7 +93,7 @@ def _run(tasks: list[Task]) -> dict[str, wingcrack.Run]:
     )
     for label, outcome in outcomes.items():
         if outcome.status != "finished":
-            raise PicturesError(f"the run {label} has {outcome.status}: {outcome.reason}")
+            raise DocsError(f"the run {label} has {outcome.status}: {outcome.reason}")
     return {
         label: wingcrack.open(Path(outcome.folder) / "output")
         for label, outcome in outcomes.items()

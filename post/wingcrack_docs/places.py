@@ -1,4 +1,4 @@
-"""Where things are in the tree."""
+"""Where the documentation is in the tree, and its error."""
 
 from __future__ import annotations
 
@@ -11,3 +11,7 @@ PICTURES = DOCS / "pictures"
 SITE = TOP / "build" / "site"
 FORTRAN_PAGES = TOP / "build" / "fortran_pages"
 CONFIGURATION = TOP / "mkdocs.yml"
+
+
+class DocsError(Exception):
+    """Pages or pictures cannot be made; the message is one sentence for the user."""

@@ -15,17 +15,10 @@ from wingcrack.scenes.errors import SceneError
 
 @dataclass
 class Base:
-    """A scene file as far as it matters here.
+    """A scene file as far as it matters here."""
 
-    Attributes
-    ----------
-    text : str
-        The whole file, which is kept as it is.
-    groups : dict
-        Its groups by name, each a list.
-    """
-
-    text: str = ""
+    text: str = ""  # the whole file, which is kept as it is
+    # its groups by name, each a list
     groups: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
 
     @property

@@ -15,10 +15,7 @@ from wingcrack_maps.features import Area, Line, Map
 def assign_roles(content: Map, polygons: str | None, path: str) -> None:
     """Let each polygon be boundary or region, by what the map or the call says.
 
-    Parameters
-    ----------
-    polygons : str, optional
-        Role of polygons of which the map says none: ``boundary`` or ``region``.
+    `polygons`: role of polygons of which the map says none: ``boundary`` or ``region``.
     """
     for area in content.areas:
         if not area.role and polygons is None:
@@ -48,10 +45,7 @@ def boundary_of(content: Map) -> Area | None:
 def rectangle_around(lines: Sequence[Line], margin: float | None) -> Polygon:
     """Rectangle around all fractures.
 
-    Parameters
-    ----------
-    margin : float, optional
-        Room on each side [m]; half the network's larger extent without it.
+    `margin`: room on each side [m]; half the network's larger extent without it.
     """
     places = np.vstack([line.points for line in lines])
     low, high = places.min(axis=0), places.max(axis=0)

@@ -22,10 +22,7 @@ _GEOMETRIC = ("name", "x", "y", "x_other", "y_other", "x_vertex", "y_vertex", "c
 def give_names(content: Map, taken: set[str]) -> None:
     """Make all names such that a scene may have them, each different; what changes is noted.
 
-    Parameters
-    ----------
-    taken : set of str
-        Names that are there already.
+    `taken`: names that are there already.
     """
     nameless = 0
     kinds: tuple[tuple[str, Sequence[Line | Area], set[str]], ...] = (
@@ -68,12 +65,8 @@ def entry_values(
 ) -> list[dict[str, Value]]:
     """Entries of a group for each feature, by the names of its attributes.
 
-    Attributes that are no entry of the group are noted, once each.
-
-    Raises
-    ------
-    SceneError
-        If a value is of the wrong kind.
+    Attributes that are no entry of the group are noted, once each. Raises `SceneError` if a value
+    is of the wrong kind.
     """
     group = groups()[group_name]
     unknown: Counter[str] = Counter()
@@ -99,10 +92,7 @@ def entry_values(
 def entry_value(parameter: Parameter, value: object, where: str) -> Value:
     """Give a value as the kind that the parameter has.
 
-    Raises
-    ------
-    SceneError
-        If it cannot be one.
+    Raises `SceneError` if it cannot be one.
     """
     if parameter.kind == "number":
         number = _number(value)
@@ -161,10 +151,7 @@ def complete(
 ) -> None:
     """Add what is missing to the entries of each fracture.
 
-    Parameters
-    ----------
-    assumed : bool
-        The values are ours and not the user's: that is noted.
+    `assumed`: the values are ours and not the user's: that is noted.
     """
     for name, value in defaults.items():
         lacking = [entries for entries in values if name not in entries]

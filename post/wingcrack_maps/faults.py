@@ -23,46 +23,23 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Limits:
-    """What counts as near.
+    """What counts as near."""
 
-    Attributes
-    ----------
-    near : float
-        Distance below which things that do not touch were hardly meant to be apart [m].
-    angle_deg : float
-        Angle below which two fractures that meet, or run beside each other, count as one [degree].
-    same : float
-        Distance of what is one place [m].
-    """
-
-    near: float
+    near: float  # distance below which things that do not touch were hardly meant to be apart [m]
+    # angle below which two fractures that meet, or run beside each other, count as one [degree]
     angle_deg: float
-    same: float
+    same: float  # distance of what is one place [m]
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One place where something is wrong.
+    """One place where something is wrong."""
 
-    Attributes
-    ----------
-    kind : str
-        One of `KINDS`.
-    lines : tuple of int
-        Indices of the fractures, the one to be changed first.
-    place : (float, float)
-        Where [m].
-    size : float
-        The distance, length [m] or angle [degree] that is too small.
-    vertex : int
-        Of the first fracture, if it is about one.
-    """
-
-    kind: str
-    lines: tuple[int, ...]
-    place: tuple[float, float]
-    size: float
-    vertex: int = -1
+    kind: str  # one of `KINDS`
+    lines: tuple[int, ...]  # indices of the fractures, the one to be changed first
+    place: tuple[float, float]  # where [m]
+    size: float  # the distance, length [m] or angle [degree] that is too small
+    vertex: int = -1  # of the first fracture, if it is about one
 
 
 KINDS = {

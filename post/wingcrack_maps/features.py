@@ -16,20 +16,12 @@ Attributes: TypeAlias = dict[str, object]
 
 @dataclass
 class Line:
-    """A fracture.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Vertices from one end to the other [m].
-    source : str
-        Where the map says it, as ``row 7``.
-    """
+    """A fracture."""
 
     name: str
-    points: Points
+    points: Points  # (n, 2) vertices from one end to the other [m]
     attributes: Attributes = field(default_factory=dict)
-    source: str = ""
+    source: str = ""  # where the map says it, as ``row 7``
 
     @property
     def length(self) -> float:
@@ -39,37 +31,21 @@ class Line:
 
 @dataclass
 class Area:
-    """A polygon without holes: the body or a region.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Corners, the first one not repeated [m].
-    role : str
-        ``boundary``, ``region``, or nothing where the map does not say.
-    """
+    """A polygon without holes: the body or a region."""
 
     name: str
-    points: Points
-    role: str = ""
+    points: Points  # (n, 2) corners, the first one not repeated [m]
+    role: str = ""  # ``boundary``, ``region``, or nothing where the map does not say
     attributes: Attributes = field(default_factory=dict)
     source: str = ""
 
 
 @dataclass
 class Note:
-    """Something that was noticed, left out or changed on the way; nothing happens without one.
+    """Something that was noticed, left out or changed on the way; nothing happens without one."""
 
-    Attributes
-    ----------
-    kind : str
-        In one or two words, as ``attribute left out``.
-    what : str
-        The sentence.
-    """
-
-    kind: str
-    what: str
+    kind: str  # in one or two words, as ``attribute left out``
+    what: str  # the sentence
 
 
 @dataclass

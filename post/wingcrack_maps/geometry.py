@@ -20,17 +20,10 @@ def add_geometry(
 ) -> None:
     """Add a geometry with all its parts; what is neither line nor polygon becomes a note.
 
-    Parameters
-    ----------
-    attributes : dict
-        What the map says of it; ``kind`` is its role.
-    path, source : str
-        File, and place in it.
+    Raises `SceneError` if a coordinate is no number, or the role is unknown or does not fit.
 
-    Raises
-    ------
-    SceneError
-        If a coordinate is no number, or the role is unknown or does not fit.
+    `attributes`: what the map says of it; ``kind`` is its role. `path` and `source`: file, and
+    place in it.
     """
     role = _role(attributes, path, source)
     parts = list(_parts(geometry))

@@ -16,18 +16,12 @@ from wingcrack_maps.features import Area, Line, Map, Points
 
 @dataclass
 class Groups:
-    """Physical groups by name.
+    """Physical groups by name."""
 
-    Attributes
-    ----------
-    curves : dict
-        Edges of the curves of each group, (n, 2, 2): edge, end, coordinate. None has no length,
-        and none is there twice.
-    surfaces : dict
-        What the surfaces of each group cover.
-    """
-
+    # edges of the curves of each group, (n, 2, 2): edge, end, coordinate. None has no length, and
+    # none is there twice
     curves: dict[str, Points] = field(default_factory=dict)
+    # what the surfaces of each group cover
     surfaces: dict[str, BaseGeometry] = field(default_factory=dict)
 
 
@@ -36,12 +30,8 @@ def map_of_groups(groups: Groups, path: str) -> Map:
 
     Physical curves on the rim of all physical surfaces are sides of the body and left out with a
     note; the others are fractures. The outline of all physical surfaces is the body's, and each
-    surface a region where there are several.
-
-    Raises
-    ------
-    SceneError
-        If there is none, or the surfaces are no one piece.
+    surface a region where there are several. Raises `SceneError` if there is none, or the surfaces
+    are no one piece.
     """
     found = Map()
     rim = _add_areas(found, groups.surfaces, path)

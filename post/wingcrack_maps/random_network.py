@@ -26,17 +26,10 @@ _MOST = 20_000  # fractures
 
 @dataclass(frozen=True)
 class Set:
-    """Laws of one set of fractures.
+    """Laws of one set of fractures."""
 
-    Attributes
-    ----------
-    density : (str, float)
-        ``p20`` [1/m2] or ``p21`` [m/m2].
-    length, orientation : Law
-        Name and numbers, lengths in m, angles in degrees.
-    """
-
-    density: tuple[str, float]
+    density: tuple[str, float]  # ``p20`` [1/m2] or ``p21`` [m/m2]
+    # length, orientation: name and numbers, lengths in m, angles in degrees
     length: Law
     orientation: Law
 
@@ -44,12 +37,9 @@ class Set:
 def draw_lengths(law: Law, count: int, generator: np.random.Generator) -> Numbers:
     """Draw lengths [m].
 
-    Parameters
-    ----------
-    law : Law
-        ``constant`` L; ``power`` with exponent a of the density l^-a between two bounds;
-        ``lognormal`` with median and the standard deviation of ln l, ``exponential`` with its mean
-        before truncation, both perhaps with bounds.
+    `law`: ``constant`` L; ``power`` with exponent a of the density l^-a between two bounds;
+    ``lognormal`` with median and the standard deviation of ln l, ``exponential`` with its mean
+    before truncation, both perhaps with bounds.
     """
     name, numbers = law
     if name == "constant":
@@ -88,12 +78,9 @@ def _bounded(draw, bounds: tuple[float, ...], count: int) -> Numbers:  # type: i
 def draw_angles(law: Law, count: int, generator: np.random.Generator) -> Numbers:
     """Draw angles from the x axis, counter-clockwise [rad].
 
-    Parameters
-    ----------
-    law : Law
-        ``uniform`` on the half circle or between two angles, ``constant``, or ``vonmises``: the
-        doubled angle has the von Mises law, since fractures are axes without direction (Mardia and
-        Jupp 2000).
+    `law`: ``uniform`` on the half circle or between two angles, ``constant``, or ``vonmises``: the
+    doubled angle has the von Mises law, since fractures are axes without direction (Mardia and Jupp
+    2000).
     """
     name, numbers = law
     if name == "constant":
@@ -138,17 +125,10 @@ def random_network(
 ) -> Map:
     """Draw a network.
 
-    Parameters
-    ----------
-    box : (x_0, y_0, x_1, y_1)
-        Where the centres lie [m].
-    distance : float
-        Least distance of two fractures, or with crossings of ends from other fractures [m].
+    Raises `SceneError` if a fracture finds no place.
 
-    Raises
-    ------
-    SceneError
-        If a fracture finds no place.
+    `box` (x_0, y_0, x_1, y_1): where the centres lie [m]. `distance`: least distance of two
+    fractures, or with crossings of ends from other fractures [m].
     """
     generator = np.random.default_rng(seed)
     area = (box[2] - box[0]) * (box[3] - box[1])

@@ -7,11 +7,10 @@ from pathlib import Path
 from wingcrack.figures.text_files import read_text
 from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map
-from wingcrack_maps.read_csv import read_csv
+from wingcrack_maps.read_csv import read_csv, read_wkt
 from wingcrack_maps.read_geo import read_geo
 from wingcrack_maps.read_geojson import read_geojson
 from wingcrack_maps.read_msh import read_msh
-from wingcrack_maps.read_wkt import read_wkt
 from wingcrack_maps.units import could_be_degrees, scale
 
 ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
@@ -20,16 +19,10 @@ ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
 def read_map(path: Path, unit: str | None) -> Map:
     """Read a map in metres.
 
-    Parameters
-    ----------
-    unit : str, optional
-        That of the map's coordinates; without one they are metres, and a GeoJSON file that says no
-        coordinate system must have numbers that cannot be degrees.
+    Raises `SceneError` if the file cannot be read or understood; nothing is guessed.
 
-    Raises
-    ------
-    SceneError
-        If the file cannot be read or understood; nothing is guessed.
+    `unit`: that of the map's coordinates; without one they are metres, and a GeoJSON file that says
+    no coordinate system must have numbers that cannot be degrees.
     """
     ending = path.suffix.lower()
     if ending == ".msh":

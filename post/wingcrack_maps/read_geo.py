@@ -40,10 +40,8 @@ _MAY_HOLD = (
 def read_geo(text: str, path: str) -> Map:
     """Read the physical groups of a geometry.
 
-    Raises
-    ------
-    SceneError
-        With the line of what is no part of the grammar, is not there, or is there twice.
+    Raises `SceneError`: with the line of what is no part of the grammar, is not there, or is there
+    twice.
     """
     reader = _Reader(text, path)
     while not reader.at_end():

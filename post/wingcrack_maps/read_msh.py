@@ -41,10 +41,7 @@ _SHORT = "it ends too early"
 def read_msh(path: Path) -> Map:
     """Read the physical groups of a mesh.
 
-    Raises
-    ------
-    SceneError
-        With the line of what is not as the format says.
+    Raises `SceneError`: with the line of what is not as the format says.
     """
     try:
         return map_of_groups(_Mesh(path.read_bytes(), str(path)).groups(), str(path))

@@ -18,30 +18,14 @@ _PATIENCE = 25  # rounds after which a place is cut out, where moving goes round
 
 @dataclass(frozen=True)
 class Repair:
-    """One thing that was done.
+    """One thing that was done."""
 
-    Attributes
-    ----------
-    kind : str
-        The fault, as in `faults.KINDS`.
-    names : tuple of str
-        The fractures, the changed one first.
-    place : (float, float)
-        Where [m].
-    size : float
-        The distance or length [m] or angle [degree] that was too small.
-    what : str
-        What was done, in words.
-    length_change : float
-        Of all fractures together [m].
-    """
-
-    kind: str
-    names: tuple[str, ...]
-    place: tuple[float, float]
-    size: float
-    what: str
-    length_change: float
+    kind: str  # the fault, as in `faults.KINDS`
+    names: tuple[str, ...]  # the fractures, the changed one first
+    place: tuple[float, float]  # where [m]
+    size: float  # the distance or length [m] or angle [degree] that was too small
+    what: str  # what was done, in words
+    length_change: float  # of all fractures together [m]
 
 
 def repair(

@@ -22,10 +22,7 @@ _PROJECTED = (range(4087, 4089), range(4217, 4218), range(4399, 4464), range(448
 def refuse_degrees(path: str, system: str) -> None:
     """Refuse a coordinate system in degrees, by its name.
 
-    Parameters
-    ----------
-    system : str
-        As ``urn:ogc:def:crs:EPSG::4326``, ``EPSG:25832`` or ``CRS84``.
+    `system`: as ``urn:ogc:def:crs:EPSG::4326``, ``EPSG:25832`` or ``CRS84``.
     """
     if in_degrees(system):
         raise SceneError(
@@ -60,10 +57,7 @@ def could_be_degrees(content: Map) -> bool:
 def scale(content: Map, unit: str, path: str) -> None:
     """Turn all coordinates into metres.
 
-    Raises
-    ------
-    SceneError
-        If one is farther from the origin than the earth is wide.
+    Raises `SceneError` if one is farther from the origin than the earth is wide.
     """
     for item in content.features:
         item.points = item.points * METRES[unit]
@@ -77,10 +71,7 @@ def scale(content: Map, unit: str, path: str) -> None:
 def shift(content: Map, origin: str) -> None:
     """Make a place of the map the origin, and note which.
 
-    Parameters
-    ----------
-    origin : str
-        ``centre`` or ``corner`` of what the map covers, or ``X,Y`` in metres.
+    `origin`: ``centre`` or ``corner`` of what the map covers, or ``X,Y`` in metres.
     """
     places = np.vstack(_all_points(content))
     low, high = places.min(axis=0), places.max(axis=0)
@@ -93,8 +84,7 @@ def shift(content: Map, origin: str) -> None:
     for item in content.features:
         item.points = item.points - place
     content.note(
-        "shift",
-        f"({place[0]:.10g}, {place[1]:.10g}) m of the map is the origin of the scene",
+        "shift", f"({place[0]:.10g}, {place[1]:.10g}) m of the map is the origin of the scene"
     )
 
 

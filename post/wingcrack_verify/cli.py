@@ -6,7 +6,7 @@ import sys
 import time
 from types import SimpleNamespace
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack_verify.execute import Job, Outcome, Programs, Runner
 from wingcrack_verify.judge import RED
 from wingcrack_verify.report import Report, make_report

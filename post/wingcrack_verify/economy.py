@@ -1,4 +1,11 @@
-"""Error against the number of unknowns: observed rates, and comparison of methods."""
+"""Error against unknowns and work: rates, comparison of methods, place of the default setting.
+
+A setting applies to all quantities of its scene, so a setting that improves one of them and worsens
+another does not dominate it: all checks of a case with the front of the same runs count together.
+
+Work is unknowns times accepted states: it is proportional to the run time (within a third for the
+scenes of `verification/default_settings`), but is the same on every machine, however busy.
+"""
 
 from __future__ import annotations
 
@@ -7,32 +14,39 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+from pydantic import model_validator
 
 from wingcrack.figures.text_files import read_json
-from wingcrack.sweeps.errors import CaseError
-from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.fields import Entry, Positive, Text
 from wingcrack_verify.orders import Point
 
 
-@dataclass(frozen=True)
-class Economy:
+class Economy(Entry):
     """What is asked for.
 
     `method` has the error with at most the share `at_most` of the unknowns that `than` needs.
     """
 
-    method: str
-    than: str
-    error: float
-    at_most: float
+    method: Text
+    than: Text
+    error: Positive
+    at_most: Positive
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if self.method == self.than:
+            raise ValueError(f"'{self.method}' would be compared with itself")
+        if not self.at_most < 1.0:
+            raise ValueError("'at_most' must be less than 1")
+        return self
 
 
 @dataclass(frozen=True)
 class Saving:
-    """What was found; `share` is None where it cannot be told."""
+    """What was found; `share` is None where it is not known."""
 
     wanted: Economy
     unknowns: float | None
@@ -40,32 +54,6 @@ class Saving:
     share: float | None
     good: bool
     reason: str
-
-
-def read_economy(data: Any, place: str, methods: Sequence[str]) -> Economy:
-    """Read the table ``economy`` of a check.
-
-    Raises
-    ------
-    CaseError
-        If a name is missing or unknown, or a number out of range.
-    """
-    fields = Fields(data, f"{place}: economy")
-    economy = Economy(
-        fields.text("method"),
-        fields.text("than"),
-        fields.positive("error"),
-        fields.positive("at_most"),
-    )
-    fields.done()
-    for name in (economy.method, economy.than):
-        if name not in methods:
-            raise CaseError(f"{fields.place}: no measured run has the method '{name}'")
-    if economy.method == economy.than:
-        raise CaseError(f"{fields.place}: '{economy.method}' would be compared with itself")
-    if not economy.at_most < 1.0:
-        raise CaseError(f"{fields.place}: 'at_most' must be less than 1")
-    return economy
 
 
 def run_record(output: Path) -> Any:
@@ -146,3 +134,66 @@ def saving(wanted: Economy, points: Sequence[Point]) -> Saving:
     good = share <= wanted.at_most
     text = f"{what}: {need:.0f}/{need_than:.0f} = {share:.3g}"
     return Saving(wanted, need, need_than, share, good, f"{text}, at most {wanted.at_most:.3g}")
+
+
+@dataclass(frozen=True)
+class Front:
+    """Where the default setting lies; `rival` is the cheapest run that beats it, if one does."""
+
+    default: Point | None
+    rival: Point | None
+    share: float
+    reason: str
+
+    @property
+    def good(self) -> bool:
+        """Whether there is one default setting, and none beats it."""
+        return self.default is not None and self.rival is None
+
+
+def work_of(output: Path) -> float | None:
+    """Unknowns times states of a run; None where its run.json does not tell."""
+    unknowns = unknowns_of(output)
+    try:
+        record = run_record(output)
+        states = float(record["steps"]) + 1.0
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    if unknowns is None or not (math.isfinite(states) and states > 0.0):
+        return None
+    return unknowns * states
+
+
+def front(points: Sequence[Point], share: float, others: Sequence[Sequence[Point]] = ()) -> Front:
+    """Look for a run that has at most the default's errors with less than a share of its work.
+
+    `points`: runs that solve the same problem; one of them is the default. `share`: of the work,
+    from 0 to 1: savings that are smaller do not count. `others`: the errors of the same runs in
+    other quantities. A run of which one of them tells nothing does not count.
+    """
+    defaults = [point for point in points if point.default]
+    if len(defaults) != 1 or defaults[0].work is None:
+        return Front(None, None, share, "front: needs one default run that tells its work")
+    default = defaults[0]
+    cheaper = [
+        (point.work, point)
+        for point in points
+        if point.work is not None
+        and all(_is_as_good(point.run, default.run, quantity) for quantity in (points, *others))
+        and point.work < share * (default.work or 0.0)
+    ]
+    if not cheaper:
+        what = "its error" if not others else f"its {1 + len(others)} errors"
+        text = f"no other setting has {what} with less than {share:g} of its work"
+        return Front(default, None, share, f"{default.run}: {text}")
+    work, rival = min(cheaper, key=lambda item: item[0])
+    ratio = work / (default.work or math.inf)
+    errors = f"{rival.error:.3g} for {default.error:.3g}"
+    reason = f"{default.run} is off the front: {rival.run} has {ratio:.2f} of its work ({errors})"
+    return Front(default, rival, share, reason)
+
+
+def _is_as_good(run: str, default: str, points: Sequence[Point]) -> bool:
+    """Whether a run's error in a quantity is at most that of the default run."""
+    errors = {point.run: point.error for point in points}
+    return run in errors and default in errors and errors[run] <= errors[default]

@@ -6,11 +6,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.runner.outcome import Outcome
+from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.runner.pool import Pool
-from wingcrack.runner.task import Task, tables_of
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.runner.task import Outcome, Task, tables_of
 from wingcrack.sweeps.scene import scene_hash, scene_text
 from wingcrack_verify.contents import Run
 
@@ -56,7 +54,7 @@ class Runner:
     def run_all(
         self, jobs: Iterable[Job], progress: Callable[[Job, Outcome], None]
     ) -> dict[tuple[str, str], Outcome]:
-        """Outcome of each job by case and run; `progress` is told of each as it ends."""
+        """Outcome of each job by case and run; `progress` is called with each as it ends."""
         listed = list(jobs)
         outcomes = self._pool.run_all(
             range(len(listed)),

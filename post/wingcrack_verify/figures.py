@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -14,31 +15,28 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from wingcrack.figures.style import CYCLE, new_figure, styled
+from wingcrack.figures.maps import pressure_maps
+from wingcrack.figures.network import network_figure
+from wingcrack.figures.read import Run, read_run
+from wingcrack.figures.story_map import draw_map
+from wingcrack.figures.style import CYCLE, new_figure, outside_legend, styled
 from wingcrack_verify.economy import observed_rate
 from wingcrack_verify.judge import CheckReport, DrawnFigure, Measured
 from wingcrack_verify.orders import Point, pareto_front
-from wingcrack_verify.pictures import picture_of
 from wingcrack_verify.stability import MapReport
 
 WIDTH, HEIGHT = 4.3, 2.7  # [inch]: at this width the letters keep their size on a phone
 MARKERS = "osD^vP*X<>"
 MOST_PROFILES = 4  # in one figure
 RASTER_DPI = 160  # of fields, 200 in the size of the PDF
-LABEL_LETTERS = 36  # that stand beside an axis of this height
+LABEL_LETTERS = 36  # that fit along an axis of this height
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A finished figure.
+    """A finished figure."""
 
-    Attributes
-    ----------
-    title, caption : str
-        Said beside the figure.
-    svg : bytes
-    """
-
+    # title, caption: text with the figure
     title: str
     caption: str
     svg: bytes
@@ -73,8 +71,10 @@ def profile_drawing(report: CheckReport) -> Drawing | None:
             fillstyle="none",
             label=item.run.name,
         )
-    axes.set_xlabel(report.check.x_label or "value")
-    axes.set_ylabel(_wrapped(f"{report.check.quantity} [{report.check.unit}]"))
+    axes.set(
+        xlabel=report.check.abscissa or "value",
+        ylabel=_wrapped(f"{report.check.quantity} [{report.check.unit}]"),
+    )
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Result and reference.")
 
@@ -91,8 +91,10 @@ def _path_drawing(report: CheckReport, shown: Sequence[Measured]) -> Drawing:
             item.pair.x, item.pair.result, color=CYCLE[index], ls="--", lw=1.0, label=item.run.name
         )
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(report.check.x_label)
-    axes.set_ylabel(f"{report.check.result.columns[0]} [{report.check.unit}]")
+    axes.set(
+        xlabel=report.check.abscissa,
+        ylabel=f"{report.check.result.all_columns[0]} [{report.check.unit}]",
+    )
     _legend(figure, axes)
     return _finish(figure, report.check.quantity, "Path and reference.")
 
@@ -129,8 +131,7 @@ def order_drawing(report: CheckReport) -> Drawing | None:
     if not sizes:
         return None
     _plain_logs(axes)
-    axes.set_xlabel("size (cell size [m] or time step [s])")
-    axes.set_ylabel(f"error, {check.metric}")
+    axes.set(xlabel="size (cell size [m] or time step [s])", ylabel=f"error, {check.metric}")
     _legend(figure, axes)
     return _finish(
         figure, f"{check.quantity}: convergence", "Observed order of each method in the legend."
@@ -175,7 +176,7 @@ def _cost_drawing(
     costs: Sequence[tuple[float, Point]],
     tell_rates: bool = False,
 ) -> Drawing:
-    """Error against a cost, a line per method; with the Pareto front unless rates are told."""
+    """Error against a cost, a line per method; with the Pareto front unless rates are given."""
     figure, axes = _new()
     if not tell_rates:
         front = pareto_front([point for _, point in costs])
@@ -212,11 +213,9 @@ def _cost_drawing(
             fillstyle="none",
             label="default setting",
         )
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     _plain_logs(axes)
-    axes.set_xlabel(label)
-    axes.set_ylabel("error [% of the signal]")
+    axes.set(xlabel=label, ylabel="error [% of the signal]")
     _legend(figure, axes)
     return _finish(figure, title, caption)
 
@@ -239,8 +238,7 @@ def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
         else:
             look |= {"linestyle": ("-", "--", "-.")[index // len(CYCLE) % 3]}
         axes.plot(np.asarray(line.values.x), line.values.values, **look)
-    axes.set_xlabel(request.x_label)
-    axes.set_ylabel(request.y_label)
+    axes.set(xlabel=request.x_label, ylabel=request.y_label)
     if request.x_log:
         axes.set_xscale("log")
     if request.y_log:
@@ -282,8 +280,7 @@ def map_drawing(report: MapReport) -> Drawing:
     axes.grid(visible=False)
     axes.set_xticks(range(shape[1]), [f"{value:g}" for value in chart.x.values])
     axes.set_yticks(range(shape[0]), [f"{value:g}" for value in chart.y.values])
-    axes.set_xlabel(chart.x.label)
-    axes.set_ylabel(chart.y.label)
+    axes.set(xlabel=chart.x.label, ylabel=chart.y.label)
     figure.colorbar(image, ax=axes, label="Newton iterations per step, mean")
     done = sum(cell.newton_mean is not None for cell in report.cells)
     return _finish(
@@ -294,7 +291,7 @@ def map_drawing(report: MapReport) -> Drawing:
 
 
 def _wrapped(label: str) -> str:
-    """Label in lines that fit beside an axis."""
+    """Label in lines that fit along an axis."""
     return textwrap.fill(label, LABEL_LETTERS)
 
 
@@ -338,3 +335,31 @@ def check_drawings(report: CheckReport) -> Sequence[Drawing]:
     drawings = (profile_drawing(report), order_drawing(report))
     found = [drawing for drawing in drawings if drawing is not None]
     return [*found, *work_precision_drawings(report)]
+
+
+_STATE_SIZE = (4.3, 3.6)  # [inch]
+
+
+def _states(run: Run) -> Figure:
+    """The network at the end by contact state."""
+    figure = new_figure(*_STATE_SIZE)
+    assert run.fractures is not None
+    outside_legend(figure, draw_map(figure.add_subplot(), run, run.fractures), 3)
+    return figure
+
+
+def _pressure(run: Run) -> Figure:
+    """The pore pressure at the end, the fractures on top."""
+    return pressure_maps(run, (float(run.history.moments()[-1]),))
+
+
+_DRAW: dict[str, Callable[[Run], Figure]] = {
+    "network": network_figure,
+    "states": _states,
+    "pressure": _pressure,
+}
+
+
+def picture_of(picture: str, folder: Path) -> Figure:
+    """Draw the picture of a finished run that has written what it takes (`picture_files`)."""
+    return _DRAW[picture](read_run(folder))

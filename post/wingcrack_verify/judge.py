@@ -8,16 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array, evaluate
 from wingcrack.sweeps.selection import Selection, Values, interpolated, select
-from wingcrack_verify.contents import Case, Check, FigureRequest, Run
-from wingcrack_verify.economy import Saving, saving, unknowns_of
+from wingcrack_verify.contents import Case, Check, FigureRequest, Run, require_files
+from wingcrack_verify.economy import Front, Saving, front, saving, unknowns_of, work_of
 from wingcrack_verify.execute import Outcome
-from wingcrack_verify.front import Front, front, work_of
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
-from wingcrack_verify.picture_files import require_files
 
 PASSED, GAP, FAILED, ERROR = "passed", "known gap", "failed", "error"
 VERDICTS = (PASSED, GAP, FAILED, ERROR)  # from good to bad
@@ -274,7 +272,7 @@ def _pair(
 def _pair_of_runs(
     check: Check, case: Case, result: Values, outcomes: Mapping[str, Outcome]
 ) -> Pair:
-    """Result beside the same quantity of another run of the case."""
+    """Result and the same quantity of another run of the case."""
     assert check.reference.selection is not None
     other = next(run for run in case.runs if run.name == check.reference.other_run)
     if outcomes[other.name].status != "finished":
@@ -357,7 +355,7 @@ def _figure(case: Case, request: FigureRequest, outcomes: Mapping[str, Outcome])
             folder = Path(outcomes[line.run].folder) / "output"
             constants = runs[line.run].constants
         try:
-            values = select(line.selection, folder, constants, as_path=True)
+            values = select(line, folder, constants, as_path=True)
         except CaseError as reason:
             return DrawnFigure(request, (), f"{request.title}, {line.label}: {reason}")
         lines.append(DrawnLine(line.label, values, line.points))

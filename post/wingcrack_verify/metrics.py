@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.paths import path_distance
 
@@ -16,46 +16,27 @@ TENTH = 0.1  # a tolerance is at most this share of the signal
 
 @dataclass(frozen=True)
 class Pair:
-    """Result and reference at the same points.
+    """Result and reference at the same points."""
 
-    Attributes
-    ----------
-    result, reference : (n,) arrays
-        In the unit of the check.
-    x : (n,) array or None
-        Abscissa, increasing; of a path in the order of its points.
-    reference_x : (m,) array or None
-        Abscissa of a reference with points of its own (m of them), for paths only.
-    """
-
+    # result, reference: (n,) in the unit of the check
     result: Array
     reference: Array
-    x: Array | None
+    x: Array | None  # (n,) abscissa, increasing; of a path in the order of its points
+    # (m,) abscissa of a reference with points of its own (m of them), for paths only
     reference_x: Array | None = None
 
 
 @dataclass(frozen=True)
 class Metric:
-    """A measure of error.
+    """A measure of error."""
 
-    Attributes
-    ----------
-    error : callable
-        Error of a pair; the second argument says whether to divide by the range.
-    has_unit : bool
-        Whether the error has the unit of the quantity; otherwise it is relative.
-    one_value : bool
-        Whether it is for a single value only.
-    can_normalise : bool
-        Whether `normalise = "range"` makes sense.
-    is_path : bool
-        Whether result and reference are curves, each with its own points (x, y).
-    """
-
+    # error of a pair; the second argument says whether to divide by the range
     error: Callable[[Pair, bool], float]
+    # whether the error has the unit of the quantity; otherwise it is relative
     has_unit: bool = False
-    one_value: bool = False
-    can_normalise: bool = False
+    one_value: bool = False  # whether it is for a single value only
+    can_normalise: bool = False  # whether `normalise = "range"` makes sense
+    # whether result and reference are curves, each with its own points (x, y)
     is_path: bool = False
 
 
@@ -106,8 +87,7 @@ def _apart(pair: Pair, _by_range: bool) -> float:
     if pair.x is None or pair.reference_x is None:
         raise CaseError("the metric path needs x, and a reference with x")
     return path_distance(
-        np.column_stack((pair.x, pair.result)),
-        np.column_stack((pair.reference_x, pair.reference)),
+        np.column_stack((pair.x, pair.result)), np.column_stack((pair.reference_x, pair.reference))
     )
 
 
@@ -138,10 +118,8 @@ METRICS: dict[str, Metric] = {
 def measure(name: str, pair: Pair, by_range: bool) -> float:
     """Error of a pair in the named metric.
 
-    Raises
-    ------
-    CaseError
-        If result or reference hold a NaN or an infinity, or if there is nothing to compare with.
+    Raises `CaseError` if result or reference hold a NaN or an infinity, or if there is nothing to
+    compare with.
     """
     metric = METRICS[name]
     for what, values in (("result", pair.result), ("reference", pair.reference)):
@@ -157,11 +135,8 @@ def measure(name: str, pair: Pair, by_range: bool) -> float:
 def signal(name: str, pair: Pair, scale: float | None) -> float:
     """Size of what is measured, which a tolerance is compared with; 1 for relative metrics.
 
-    Raises
-    ------
-    CaseError
-        If the reference is 0 and no scale is given, or if one is given where it is not 0. Paths
-        need a scale: the length that their distance is small beside.
+    Raises `CaseError` if the reference is 0 and no scale is given, or if one is given where it is
+    not 0. Paths need a scale: the length with which their distance is compared.
     """
     if not METRICS[name].has_unit:
         if scale is not None:
@@ -169,7 +144,9 @@ def signal(name: str, pair: Pair, scale: float | None) -> float:
         return 1.0
     if METRICS[name].is_path:
         if scale is None:
-            raise CaseError("'scale' must say what length the paths are near beside")
+            raise CaseError(
+                "'scale' must be the length with which the distance of the paths is compared"
+            )
         return scale
     size = float(np.max(np.abs(pair.reference)))
     if size == 0.0:
@@ -184,10 +161,7 @@ def signal(name: str, pair: Pair, scale: float | None) -> float:
 def check_tolerance(tolerance: float, size: float) -> None:
     """Refuse a tolerance above a tenth of the signal.
 
-    Raises
-    ------
-    CaseError
-        If it is.
+    Raises `CaseError` if it is.
     """
     if not tolerance <= TENTH * size * (1.0 + 1.0e-12):
         raise CaseError(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 
 ROUND_OFF = 1.0e-13  # relative errors below this say nothing about discretization
 
@@ -25,16 +25,7 @@ class Fit:
 def observed_order(sizes: Sequence[float], errors: Sequence[float], signal: float) -> Fit:
     """Slope of log error over log size, by least squares.
 
-    Parameters
-    ----------
-    sizes : (n,) cell sizes or time steps, in any order, all different, n >= 2
-    errors : (n,) errors in one unit
-    signal : what the errors are compared with, in their unit
-
-    Raises
-    ------
-    CaseError
-        If there are too few runs, or if an error is at round-off or no number.
+    Raises `CaseError` if there are too few runs, or if an error is at round-off or no number.
     """
     size, error = np.array(sizes), np.array(errors)
     if size.size < 2 or np.unique(size).size != size.size:
@@ -52,30 +43,15 @@ def observed_order(sizes: Sequence[float], errors: Sequence[float], signal: floa
 
 @dataclass(frozen=True)
 class Point:
-    """A run in a work-precision diagram.
-
-    Attributes
-    ----------
-    run, method : str
-    cpu_s : float
-        CPU seconds.
-    error : float
-        Relative to the signal.
-    default : bool
-        Whether the run has the program's default settings.
-    unknowns : float or None
-        Unknowns of all kinds; None where the run does not tell.
-    work : float or None
-        Unknowns times states; None where the run does not tell.
-    """
+    """A run in a work-precision diagram."""
 
     run: str
     method: str
-    cpu_s: float
-    error: float
-    default: bool
-    unknowns: float | None = None
-    work: float | None = None
+    cpu_s: float  # CPU seconds
+    error: float  # relative to the signal
+    default: bool  # whether the run has the program's default settings
+    unknowns: float | None = None  # unknowns of all kinds; None where the run does not tell
+    work: float | None = None  # unknowns times states; None where the run does not tell
 
 
 @dataclass(frozen=True)

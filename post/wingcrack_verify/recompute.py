@@ -490,7 +490,7 @@ def check_limits(run: Run, limits: dict[str, Limit], findings: Findings) -> None
         is_told = any(warning.startswith(name) for warning in warnings)
         if value > limit.warning * (1.0 + 1e-6) and not is_told:
             findings.wrong.append(f"no warning of {name} {value:.3g}")
-        # The state that stopped a run is told of, but not in the files.
+        # The state that stopped a run is reported, but not in the files.
         if value < 0.99 * limit.warning and is_told and not stopped and "jump" not in name:
             findings.wrong.append(f"a warning of {name}, which is {value:.3g}")
         if value > limit.stop * (1.0 + 1e-6) and not stopped:

@@ -160,7 +160,7 @@ def crossings(one: Points, other: Points) -> list[Points]:
 def check_tips(files: GrowthFiles, findings: Findings) -> None:
     """No tip is left above the toughness, but where growth is unstable and is called so.
 
-    Growth of a state at constant time is told with it or, at the start, with the next one.
+    Growth of a state at constant time is reported with it or, at the start, with the next one.
     """
     tips, toughness = files.tips, files.scene["material"]["toughness"]
     if "keq_pa_sqrtm" not in tips:

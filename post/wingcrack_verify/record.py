@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from wingcrack_verify.contents import GROUPS, UNREADABLE
 from wingcrack_verify.economy import observed_rate
-from wingcrack_verify.judge import CaseReport, CheckReport, Measured
+from wingcrack_verify.judge import PASSED, VERDICTS, CaseReport, CheckReport, Measured, worst_of
 from wingcrack_verify.orders import Point
-from wingcrack_verify.overview import groups_of, nearest
 from wingcrack_verify.rows import Row, quantity_text, unit_of, worst_text
 from wingcrack_verify.stability import StabilityReport, TrialReport
 from wingcrack_verify.suite import JudgedSuite
@@ -53,14 +54,12 @@ def record_of(
     return cleaned
 
 
+_OF_ALL = ("name", "title", "group", "source", "verdict", "broken")
+
+
 def _case_record(case: CaseReport) -> dict[str, Any]:
     return {
-        "name": case.name,
-        "title": case.title,
-        "group": case.group,
-        "source": case.source,
-        "verdict": case.verdict,
-        "broken": case.broken,
+        **{name: getattr(case, name) for name in _OF_ALL},
         "cpu_s": sum(outcome.cpu_s for outcome in case.outcomes.values()),
         "wall_s": sum(outcome.wall_s for outcome in case.outcomes.values()),
         "checks": [_check_record(report) for report in case.checks],
@@ -81,7 +80,7 @@ def _check_record(report: CheckReport) -> dict[str, Any]:
         "known_gap": check.known_gap,
         "reasons": list(report.reasons),
         "runs": [_measured_record(report, item) for item in report.measured],
-        "order_expected": asdict(check.order) if check.order else None,
+        "order_expected": check.order.model_dump() if check.order else None,
         "orders": [
             {
                 "method": order.method,
@@ -146,10 +145,7 @@ def _settings(judged: JudgedSuite) -> list[dict[str, Any]]:
                     "quantity": report.check.quantity,
                     "default": _point_record(default),
                     "targets": [
-                        {
-                            "target": advice.target,
-                            "setting": _point_record(advice.point),
-                        }
+                        {"target": advice.target, "setting": _point_record(advice.point)}
                         for advice in report.advice
                     ],
                 }
@@ -167,12 +163,7 @@ def _point_record(point: Point | None) -> dict[str, Any] | None:
 def _stability_record(item: StabilityReport) -> dict[str, Any]:
     cells = [cell for chart in item.maps for cell in chart.cells]
     return {
-        "name": item.name,
-        "title": item.title,
-        "group": item.group,
-        "source": item.source,
-        "verdict": item.verdict,
-        "broken": item.broken,
+        **{name: getattr(item, name) for name in _OF_ALL},
         "cpu_s": sum(trial.cpu_s for trial in (*item.trials, *cells)),
         "estimates": any(trial.condition_estimate is not None for trial in item.trials),
         "trials": [_trial_record(trial) for trial in item.trials],
@@ -217,3 +208,72 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(item) for item in value]
     return value
+
+
+NEAREST = 10  # rows that passed and are nearest to their tolerances
+
+
+def groups_of(
+    judged: JudgedSuite, rows: Sequence[Row], cpu_s: Mapping[str, float]
+) -> list[dict[str, Any]]:
+    """The groups that have cases, in their order, each with its cases, counts and worst row.
+
+    Cases are in the order of their names, those with trials among those with checks.
+
+    `rows`: those of all cases. `cpu_s`: CPU seconds of all runs, by case.
+    """
+    items: list[CaseReport | StabilityReport] = [*judged.cases, *judged.stability]
+    items.sort(key=lambda item: item.name)
+    by_case: dict[str, list[Row]] = {item.name: [] for item in items}
+    for row in rows:
+        by_case[row.case].append(row)
+    groups = []
+    for name in (UNREADABLE, *GROUPS):
+        inside = [item for item in items if item.group == name]
+        if not inside:
+            continue
+        found = [row for item in inside for row in by_case[item.name]]
+        groups.append(
+            {
+                "name": name or "unreadable",
+                "title": GROUPS.get(name, "Files that cannot be used"),
+                "verdict": worst_of([item.verdict for item in inside]),
+                "counts": _counts(found),
+                "cpu_s": sum(cpu_s[item.name] for item in inside),
+                "worst": _asdict(_worst(found)),
+                "cases": [
+                    {
+                        "name": item.name,
+                        "title": item.title,
+                        "verdict": item.verdict,
+                        "counts": _counts(by_case[item.name]),
+                    }
+                    for item in inside
+                ],
+            }
+        )
+    return groups
+
+
+def nearest(rows: Sequence[Row]) -> list[Row]:
+    """Rows that passed with the largest shares of their tolerances, the largest first."""
+    passed = [row for row in rows if row.verdict == PASSED and row.share is not None]
+    return sorted(passed, key=lambda row: -(row.share or 0.0))[:NEAREST]
+
+
+def _worst(rows: Sequence[Row]) -> Row | None:
+    """The row with the largest share of its tolerance, whatever became of it."""
+    return max(
+        (row for row in rows if row.share is not None),
+        key=lambda row: row.share or 0.0,
+        default=None,
+    )
+
+
+def _counts(rows: Sequence[Row]) -> dict[str, int]:
+    found = Counter(row.verdict for row in rows)
+    return {verdict: found[verdict] for verdict in VERDICTS}
+
+
+def _asdict(row: Row | None) -> dict[str, Any] | None:
+    return None if row is None else asdict(row)

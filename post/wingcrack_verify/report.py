@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
+import subprocess
 from collections import Counter
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
+from wingcrack.figures.text_files import write_whole
 from wingcrack_verify import environment
-from wingcrack_verify.illustrate import illustrate
 from wingcrack_verify.judge import PASSED, VERDICTS
-from wingcrack_verify.page import page_text, shortened
-from wingcrack_verify.printing import print_page
+from wingcrack_verify.page import illustrate, page_text, shortened
 from wingcrack_verify.record import Context, record_of
 from wingcrack_verify.rows import Row, rows_of
 from wingcrack_verify.suite import JudgedSuite
@@ -51,7 +53,7 @@ class Report:
         return {verdict: found[verdict] for verdict in VERDICTS}
 
     def summary_lines(self) -> list[str]:
-        """What the terminal is told in the end: what is not in order, then the counts."""
+        """Lines for the terminal at the end: what did not pass, then the counts."""
         lines = [
             f"{row.verdict.upper()}  {row.case}: {row.quantity}: {reason}"
             for row in self.rows
@@ -83,9 +85,9 @@ def make_report(report: Report, folder: Path) -> tuple[Path, str]:
     )
     record = record_of(report.judged, report.rows, report.counts, context)
     pictures = illustrate(report.judged, report.jobs, passed=not report.quick)
-    _write(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
+    write_whole(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
-    _write(page, page_text(report.judged, record, pictures, folder).encode())
+    write_whole(page, page_text(report.judged, record, pictures, folder).encode())
     return page, print_page(page, folder / "report.pdf")
 
 
@@ -95,7 +97,43 @@ def _scope(report: Report) -> str:
     return f"{which}, figures of what did not pass" if report.quick else which
 
 
-def _write(path: Path, content: bytes) -> None:
-    aside = path.with_name(f".{path.name}.{os.getpid()}")
-    aside.write_bytes(content)
-    aside.replace(path)
+BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+_PATIENCE_S = 300.0
+
+
+def print_page(page: Path, target: Path) -> str:
+    """Print a page to a PDF, which appears whole; an earlier one goes.
+
+    Returns
+    -------
+    str
+        Why there is no PDF, as one sentence for the user; empty if there is one.
+    """
+    target.unlink(missing_ok=True)
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        return (
+            f"no {target.name} was written: printing it takes Chromium or Chrome"
+            " (Debian: apt install chromium)."
+        )
+    with TemporaryDirectory(dir=target.parent, prefix=".print.") as folder:
+        printed = Path(folder) / target.name
+        call = [
+            browser,
+            "--headless",
+            "--disable-gpu",
+            "--no-pdf-header-footer",
+            f"--user-data-dir={folder}/profile",
+            f"--print-to-pdf={printed}",
+            page.resolve().as_uri(),
+        ]
+        if os.geteuid() == 0:
+            call.insert(1, "--no-sandbox")  # root has none
+        try:
+            done = subprocess.run(call, capture_output=True, timeout=_PATIENCE_S, check=False)
+        except (OSError, subprocess.TimeoutExpired) as reason:
+            return f"no {target.name} was written: {browser} failed ({reason})."
+        if done.returncode != 0 or not printed.is_file():
+            return f"no {target.name} was written: {browser} ended with {done.returncode}."
+        printed.replace(target)
+    return ""

@@ -14,30 +14,17 @@ from wingcrack_verify.suite import JudgedSuite
 
 @dataclass(frozen=True)
 class Row:
-    """What one check, map or table of trials came to.
-
-    Attributes
-    ----------
-    case, quantity : str
-    error, tolerance : str
-        With their unit.
-    share : float or None
-        Error over tolerance, where both are numbers.
-    verdict : str
-    cpu_s : float or None
-        Of the run with this error, or of all trials [s].
-    reasons : tuple of str
-        Why it is no pass.
-    """
+    """What one check, map or table of trials came to."""
 
     case: str
     quantity: str
+    # error, tolerance: with their unit
     error: str
     tolerance: str
-    share: float | None
+    share: float | None  # error over tolerance, where both are numbers
     verdict: str
-    cpu_s: float | None
-    reasons: tuple[str, ...]
+    cpu_s: float | None  # of the run with this error, or of all trials [s]
+    reasons: tuple[str, ...]  # why it is no pass
 
 
 def rows_of(judged: JudgedSuite) -> Iterator[Row]:

@@ -7,19 +7,33 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Self
 
+import numpy as np
+from pydantic import Field, model_validator
+
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import is_file, read_json
-from wingcrack.sweeps.errors import CaseError
-from wingcrack.sweeps.fields import Fields, read_toml
+from wingcrack.sweeps.fields import (
+    Entry,
+    Numbers,
+    Positive,
+    Table,
+    Tables,
+    Text,
+    Texts,
+    Values,
+    choice,
+    read_entry,
+    read_toml,
+    whole,
+)
 from wingcrack.sweeps.likes import Likes, shared_likes
-from wingcrack.sweeps.selection import read_selection, select
+from wingcrack.sweeps.selection import Selection, select
 from wingcrack.sweeps.sweep import Defaults, read_tables
-from wingcrack_verify.case import refuse_doubles
-from wingcrack_verify.contents import Run
-from wingcrack_verify.draws import read_draw
+from wingcrack_verify.case import place_of, refuse_doubles
+from wingcrack_verify.contents import GROUPS, Run
 from wingcrack_verify.execute import Outcome
-from wingcrack_verify.groups import GROUPS
 from wingcrack_verify.judge import ERROR, FAILED, GAP, PASSED, worst_of
 
 TIME_LIMIT_S = 20.0  # unless the file says otherwise: some hundred times what a trial takes
@@ -35,26 +49,118 @@ class Trial:
     """A scene of the table, or a cell of a map."""
 
     run: Run
-    expect: str  # "converged", "refused", "stopped", or "settled": one of them
-    causes: tuple[str, ...]  # one of these is part of the reason; none: any reason will do
-    note: str
-    known_gap: str | None
+    expect: str = "converged"  # or "refused", "stopped", or "settled": one of them
+    causes: tuple[str, ...] = ()  # one of these is part of the reason; none: any reason will do
+    note: str = ""
+    known_gap: str | None = None
     quick: bool = True  # part of --quick, if the file is
 
 
-@dataclass(frozen=True)
-class Axis:
+class _TrialFile(Entry):
+    """One ``[[trial]]``."""
+
+    name: Text
+    set: Table = Field(default_factory=dict)
+    unset: Texts = ()
+    expect: Annotated[str, choice(EXPECTED)]
+    cause: Texts = ()
+    note: Text = ""
+    known_gap: Text | None = None
+    quick: bool = True
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if self.cause and self.expect == "converged":
+            raise ValueError("what converges has no cause")
+        return self
+
+
+class Axis(Entry):
     """Parameter of a map: all the names get each of the values, the others a multiple of it."""
 
-    label: str
-    names: tuple[str, ...]
-    values: tuple[float, ...]
-    multiples: dict[str, float]
+    label: Text
+    names: Texts
+    values: Numbers
+    multiples: dict[str, float] = Field(default_factory=dict)
 
     def changes(self, value: float) -> dict[str, float]:
         """Values of the scene at one place of the axis."""
         of_names = dict.fromkeys(self.names, value)
         return of_names | {name: value * factor for name, factor in self.multiples.items()}
+
+
+class _MapFile(Entry):
+    """One ``[[map]]``."""
+
+    title: Text
+    set: Table = Field(default_factory=dict)
+    unset: Texts = ()
+    known_gap: Text | None = None
+    x: Axis
+    y: Axis
+
+
+class _Range(Entry):
+    """Range of a draw: between two numbers, or of a list."""
+
+    first: Annotated[float | None, Field(alias="from")] = None
+    last: Annotated[float | None, Field(alias="to")] = None
+    log: bool = False
+    of: Values | None = None
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if (self.of is None) != (self.first is not None and self.last is not None):
+            raise ValueError("either 'from' and 'to', or 'of' is needed")
+        if self.log and not min(self.first or 0.0, self.last or 0.0) > 0.0:
+            raise ValueError("'log' needs numbers above 0")
+        return self
+
+    def places(self, shares: list[float]) -> list[Any]:
+        """Values at shares of the range."""
+        if self.of is not None:
+            return [self.of[int(share * len(self.of))] for share in shares]
+        first, last = self.first or 0.0, self.last or 0.0
+        if self.log:
+            return [first * math.exp(share * math.log(last / first)) for share in shares]
+        return [first + share * (last - first) for share in shares]
+
+
+class _DrawFile(Entry):
+    """One ``[[draw]]``; with `quick` that many of its trials are part of ``--quick``."""
+
+    count: Annotated[int, whole(1)]
+    seed: Annotated[int, whole(1)]
+    quick: Annotated[int | None, whole(1)] = None
+    ranges: Annotated[dict[str, _Range], Field(min_length=1)]
+    trial: Table
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if (self.quick or 0) > self.count:
+            raise ValueError(f"'quick' must be at most 'count', {self.count}")
+        return self
+
+
+class _StabilityFile(Entry):
+    """What the file says, before its trials are made."""
+
+    title: Text
+    source: Text
+    quick: bool = False
+    group: Annotated[str, choice(GROUPS)]
+    scene: Text
+    mass_error_limit: Positive
+    contact_residual_limit: Positive
+    time_limit_s: Positive = TIME_LIMIT_S
+    from_files: bool = False  # whether every state is judged again from the files
+    defaults: Table = Field(default_factory=dict)
+    trial: Tables = ()
+    draw: Tables = ()
+    map: Tables = ()
+
+
+_TRIAL_KEYS = {*_TrialFile.model_fields}
 
 
 @dataclass(frozen=True)
@@ -74,15 +180,14 @@ class Stability:
 
     name: str
     folder: Path
-    title: str
-    group: str
-    source: str
-    quick: bool
-    mass_error_limit: float
-    contact_residual_limit: float
-    from_files: bool  # whether every state is judged again from the files
+    said: _StabilityFile
     trials: tuple[Trial, ...]
     maps: tuple[Map, ...]
+
+    @property
+    def quick(self) -> bool:
+        """Whether anything of it is part of --quick."""
+        return self.said.quick
 
     @property
     def quick_part(self) -> Stability:
@@ -148,121 +253,78 @@ class StabilityReport:
 
 
 def read_stability(folder: Path) -> Stability:
-    """Read ``stability.toml``; a `CaseError` tells what is wrong with it."""
+    """Read ``stability.toml``; a `CaseError` states what is wrong with it."""
     data = read_toml(folder / "stability.toml")
-    fields = Fields(data, "stability.toml")
-    title, source, quick = fields.text("title"), fields.text("source"), fields.flag("quick")
-    group = fields.choice("group", tuple(GROUPS))
-    base = folder / fields.text("scene")
+    said = read_entry(_StabilityFile, data, "stability.toml")
+    base = folder / said.scene
     if not is_file(base):
         raise CaseError(f"stability.toml: there is no scene file {base.name}")
-    mass, contact = fields.positive("mass_error_limit"), fields.positive("contact_residual_limit")
-    limit_s, from_files = fields.positive("time_limit_s", TIME_LIMIT_S), fields.flag("from_files")
-    maker = _Maker(base, ALL_FIELDS if from_files else {}, limit_s)
-    defaults = Defaults(fields.mapping("defaults"), ("trial",))
+    values = ALL_FIELDS if said.from_files else {}
+
+    def run(name: str, changes: Table, unset: tuple[str, ...]) -> Run:
+        return Run(
+            name=name,
+            method="stability",
+            scene=base,
+            set={**values, **changes},
+            unset=unset,
+            time_limit_s=said.time_limit_s,
+        )
+
+    defaults = Defaults(said.defaults, ("trial",))
     likes = Likes(data, "stability.toml", shared_likes(folder.parent))
-    tables = read_tables(fields, "trial", defaults, likes)
+    tables = read_tables(said.trial, "trial", _TRIAL_KEYS, defaults, likes)
     defaults.done()
-    for index, item in enumerate(fields.tables("draw"), start=1):
-        tables += read_draw(item, f"draw {index}")
-    trials = tuple(maker.trial(item, place) for place, item in tables)
-    maps = tuple(
-        maker.map(item, f"map {index}") for index, item in enumerate(fields.tables("map"), start=1)
-    )
-    fields.done()
+    for index, item in enumerate(said.draw, start=1):
+        tables += _drawn(read_entry(_DrawFile, item, f"draw {index}"), f"draw {index}")
+    trials = []
+    for place, table in tables:
+        item = read_entry(_TrialFile, table, place_of(table, "trial", place))
+        made = run(item.name, item.set, item.unset)
+        trials.append(Trial(made, item.expect, item.cause, item.note, item.known_gap, item.quick))
+    maps = []
+    for index, table in enumerate(said.map, start=1):
+        chart = read_entry(_MapFile, table, f"map {index}")
+        cells = tuple(
+            Trial(
+                run(
+                    f"{chart.title}: {x:g}, {y:g}",
+                    chart.set | chart.x.changes(x) | chart.y.changes(y),
+                    chart.unset,
+                )
+            )
+            for y in chart.y.values
+            for x in chart.x.values
+        )
+        maps.append(Map(chart.title, chart.x, chart.y, cells, chart.known_gap))
     if not trials:
         raise CaseError("stability.toml: at least one [[trial]] is needed")
-    found = Stability(
-        folder.name, folder, title, group, source, quick, mass, contact, from_files, trials, maps
-    )
-    refuse_doubles([run.name for run in found.runs], "trial")
-    if quick and not any(trial.quick for trial in trials):
+    found = Stability(folder.name, folder, said, tuple(trials), tuple(maps))
+    refuse_doubles([one.name for one in found.runs], "trial")
+    if said.quick and not any(trial.quick for trial in trials):
         raise CaseError("stability.toml: at least one [[trial]] of a quick file must be quick")
     return found
 
 
-@dataclass(frozen=True)
-class _Maker:
-    """Makes trials and maps of tables; what they share."""
+def _drawn(draw: _DrawFile, place: str) -> list[tuple[str, Table]]:
+    """Tables of trials that a ``[[draw]]`` stands for, each with its place for errors.
 
-    base: Path
-    fields: Mapping[str, Any]  # values of all scenes
-    limit_s: float
-
-    def trial(self, data: Any, place: str) -> Trial:
-        """A trial of its table."""
-        fields = Fields(data, place)
-        name = fields.text("name")
-        fields.place = f"trial '{name}'"
-        changes, unset = fields.mapping("set"), fields.texts("unset", ())
-        expect = fields.choice("expect", EXPECTED)
-        causes = fields.texts("cause", ())
-        if causes and expect == "converged":
-            raise CaseError(f"{fields.place}: what converges has no cause")
-        trial = Trial(
-            self._run(name, changes, unset),
-            expect,
-            causes,
-            fields.text("note", ""),
-            fields.text("known_gap", None),
-            fields.flag("quick", True),
-        )
-        fields.done()
-        return trial
-
-    def map(self, data: Any, place: str) -> Map:
-        """A map of its table."""
-        fields = Fields(data, place)
-        title = fields.text("title")
-        fields.place = f"map '{title}'"
-        changes, unset = fields.mapping("set"), fields.texts("unset", ())
-        gap = fields.text("known_gap", None)
-        x, y = (_read_axis(fields.take(key), f"{fields.place}: {key}") for key in ("x", "y"))
-        fields.done()
-        trials = tuple(
-            Trial(
-                self._run(
-                    f"{title}: {x_value:g}, {y_value:g}",
-                    changes | x.changes(x_value) | y.changes(y_value),
-                    unset,
-                ),
-                "converged",
-                (),
-                "",
-                None,
-            )
-            for y_value in y.values
-            for x_value in x.values
-        )
-        return Map(title, x, y, trials, gap)
-
-    def _run(self, name: str, changes: Mapping[str, Any], unset: tuple[str, ...]) -> Run:
-        values = {**self.fields, **changes}
-        return Run(
-            name,
-            "stability",
-            None,
-            False,
-            self.base,
-            values,
-            unset,
-            None,
-            (),
-            {},
-            self.limit_s,
-        )
-
-
-def _read_axis(data: Any, place: str) -> Axis:
-    fields = Fields(data, place)
-    axis = Axis(
-        fields.text("label"),
-        fields.texts("names"),
-        fields.numbers("values"),
-        fields.constants("multiples"),
-    )
-    fields.done()
-    return axis
+    The names of its ranges are used in templates, as those of an ``over`` (`sweep`); `number` is
+    that of the trial, from 1. So that each range is covered evenly however few the trials, it is
+    cut into as many equal parts as there are trials, and each part is drawn from once (McKay,
+    Beckman and Conover 1979).
+    """
+    random = np.random.default_rng(draw.seed)
+    points: Table = {"number": list(range(1, draw.count + 1))}
+    for name, entry in draw.ranges.items():
+        shares = (random.permutation(draw.count) + random.random(draw.count)) / draw.count
+        points[name] = entry.places(shares.tolist())
+    tables = read_tables([{**draw.trial, "over": {"place": points}}], "trial", _TRIAL_KEYS)
+    quick = draw.count if draw.quick is None else draw.quick
+    return [
+        (place, {"quick": number <= quick, **table})
+        for number, (_, table) in enumerate(tables, start=1)
+    ]
 
 
 def judge_stability(found: Stability, outcomes: Mapping[str, Outcome]) -> StabilityReport:
@@ -278,13 +340,13 @@ def judge_stability(found: Stability, outcomes: Mapping[str, Outcome]) -> Stabil
         maps.append(MapReport(chart, cells, worst, reason))
     return StabilityReport(
         found.name,
-        found.title,
-        found.group,
-        found.source,
+        found.said.title,
+        found.said.group,
+        found.said.source,
         found.folder,
         tuple(judge_trial(found, item, outcomes[item.run.name]) for item in found.trials),
         tuple(maps),
-        (found.mass_error_limit, found.contact_residual_limit),
+        (found.said.mass_error_limit, found.said.contact_residual_limit),
     )
 
 
@@ -298,7 +360,7 @@ def judge_trial(found: Stability, trial: Trial, outcome: Outcome) -> TrialReport
     try:
         if outcome.status == "finished":
             numbers = _numbers(output)
-        if found.from_files and outcome.status in ("finished", "failed"):
+        if found.said.from_files and outcome.status in ("finished", "failed"):
             wrong = _wrong_in_files(output)
     except (CaseError, OSError, ValueError, KeyError) as broken:
         return _report(trial, outcome, ERROR, f"files that cannot be judged: {broken}", numbers)
@@ -342,8 +404,8 @@ def _complaint(
 
 def _beyond_limits(found: Stability, numbers: Mapping[str, float | None]) -> str:
     for name, limit in (
-        ("mass_error_relative", found.mass_error_limit),
-        ("contact_residual", found.contact_residual_limit),
+        ("mass_error_relative", found.said.mass_error_limit),
+        ("contact_residual", found.said.contact_residual_limit),
     ):
         value = numbers[name]
         if value is None:
@@ -363,8 +425,8 @@ def _numbers(output: Path) -> dict[str, float | None]:
     for name in ("condition_estimate", "forward_error_bound"):
         numbers[name] = _finite(record[name], name) if name in record else None
     for take in ("mean", "max"):
-        fields = Fields({"column": "newton_iterations", "take": take}, "history.csv")
-        values = select(read_selection(fields, "history.csv"), output, {})
+        wanted = Selection(file="history.csv", column="newton_iterations", take=take)
+        values = select(wanted, output, {})
         numbers[f"newton_{take}"] = float(values.values[0])
     return numbers
 
@@ -376,11 +438,7 @@ def _finite(value: object, name: str) -> float:
 
 
 def _report(
-    trial: Trial,
-    outcome: Outcome,
-    verdict: str,
-    reason: str,
-    numbers: Mapping[str, float | None],
+    trial: Trial, outcome: Outcome, verdict: str, reason: str, numbers: Mapping[str, float | None]
 ) -> TrialReport:
     status = _STATUS.get(outcome.status, outcome.status)
     return TrialReport(

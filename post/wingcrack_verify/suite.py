@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack_verify import case_folders
 from wingcrack_verify.case import read_case
-from wingcrack_verify.contents import Case, Run
+from wingcrack_verify.contents import UNREADABLE, Case, Run
 from wingcrack_verify.execute import Job, Outcome
-from wingcrack_verify.groups import UNREADABLE
 from wingcrack_verify.judge import CaseReport, judge_case, worst_of
-from wingcrack_verify.stability import (
-    Stability,
-    StabilityReport,
-    judge_stability,
-    read_stability,
-)
+from wingcrack_verify.stability import Stability, StabilityReport, judge_stability, read_stability
+
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True)
@@ -70,10 +67,7 @@ class JudgedSuite:
 def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
     """Read the named cases, all of which are there, or every one.
 
-    Raises
-    ------
-    CaseError
-        If nothing is left to run; a broken case is part of the suite, and red.
+    Raises `CaseError` if nothing is left to run; a broken case is part of the suite, and red.
     """
     folders = case_folders(top)
     cases: list[Case | BrokenCase] = []
@@ -81,9 +75,9 @@ def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
     for name in sorted(set(names) or folders):
         folder = folders[name]
         if (folder / "stability.toml").is_file():
-            stability.append(_read_stability(folder))
+            stability.append(_read(folder, read_stability))
         else:
-            cases.append(_read_case(folder))
+            cases.append(_read(folder, read_case))
     if quick:
         cases = [
             item if isinstance(item, BrokenCase) else item.quick_part
@@ -100,25 +94,13 @@ def read_suite(top: Path, names: Sequence[str], quick: bool) -> Suite:
     return Suite(tuple(cases), tuple(stability))
 
 
-def _read_case(folder: Path) -> Case | BrokenCase:
+def _read(folder: Path, read: Callable[[Path], Item]) -> Item | BrokenCase:
     try:
-        _require_readme(folder)
-        return read_case(folder)
+        if not (folder / "README.md").is_file():
+            raise CaseError("README.md is missing: a number without its problem says nothing")
+        return read(folder)
     except CaseError as reason:
         return BrokenCase(folder.name, folder, str(reason))
-
-
-def _read_stability(folder: Path) -> Stability | BrokenCase:
-    try:
-        _require_readme(folder)
-        return read_stability(folder)
-    except CaseError as reason:
-        return BrokenCase(folder.name, folder, str(reason))
-
-
-def _require_readme(folder: Path) -> None:
-    if not (folder / "README.md").is_file():
-        raise CaseError("README.md is missing: a number without its problem says nothing")
 
 
 def judge_suite(suite: Suite, outcomes: Mapping[tuple[str, str], Outcome]) -> JudgedSuite:

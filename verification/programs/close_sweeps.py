@@ -10,36 +10,20 @@ one of the program's own.
 
 from __future__ import annotations
 
-import argparse
-import collections
 import math
-import re
-import shutil
 import sys
-import tempfile
-from pathlib import Path
 
-import numpy as np
-from fluid_sweeps import SOLVER, Verdict, call_solver
-from well_sweeps import OWN_REASONS, Draw, group, read
+from well_sweeps import Draw, Sweep, group
 
 SEED = 3226
-RUN_LIMIT_S = 60.0
 KINDS = ("parallel", "en_echelon", "nearly_t", "in_line", "fan")
 
 Ends = tuple[float, float, float, float]  # x and y of the start, x and y of the end
 
 
-class CloseDraw(Draw):
-    """What chance gives a scene of close fractures."""
-
-    def __init__(self, number: int) -> None:
-        self._random = np.random.default_rng([SEED, number])
-
-
 def scene_text(number: int) -> str:
     """The scene of a seed."""
-    draw = CloseDraw(number)
+    draw = Draw(number, SEED)
     length = draw.power(-1.0, 1.0)
     half = length * draw.between(2.5, 6.0)
     syy = -draw.between(5e6, 60e6)
@@ -178,63 +162,8 @@ PLACES = {
 }
 
 
-def run_scene(folder: Path, text: str, solver: Path, limit_s: float) -> Verdict:
-    """Run a scene and judge how it ended."""
-    (folder / "scene.nml").write_text(text)
-    verdict, reason, seconds = call_solver(folder, solver, limit_s)
-    if verdict is not None:
-        return verdict
-    if reason:
-        return Verdict("WRONG" if OWN_REASONS.search(reason) else "stopped", reason, seconds)
-    return Verdict("right", f"{len(read(folder / 'out/history.csv')) - 1} steps", seconds)
-
-
-def what(reason: str) -> str:
-    """A reason without its numbers and names, for the tally."""
-    return re.sub(r"-?\d+\.?\d*(E[+-]?\d+)?|f\d", "#", reason.split("; ")[0])[-150:]
-
-
-def sweep(
-    folder: Path, numbers: list[int], solver: Path = SOLVER, limit_s: float = RUN_LIMIT_S
-) -> collections.Counter[str]:
-    """Run scenes, tell each verdict, and keep the files of those that are wrong."""
-    tally: collections.Counter[str] = collections.Counter()
-    reasons: collections.Counter[str] = collections.Counter()
-    for number in numbers:
-        place = folder / f"close_{number:03d}"
-        place.mkdir(parents=True, exist_ok=True)
-        verdict = run_scene(place, scene_text(number), solver, limit_s)
-        tally[verdict.word] += 1
-        if verdict.word in ("WRONG", "stopped"):
-            reasons[f"{verdict.word}: {what(verdict.detail)}"] += 1
-        kind = KINDS[number % len(KINDS)]
-        print(
-            f"{number} {kind}: {verdict.word} ({verdict.seconds:.1f} s) {verdict.detail}",
-            flush=True,
-        )
-        if verdict.word != "WRONG" and len(numbers) > 1:
-            shutil.rmtree(place)
-    for reason, count in reasons.most_common():
-        print(f"{count} {reason}")
-    return tally
-
-
-def main() -> int:
-    """Do what the command line asks for; 1 if a run is wrong."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--first", type=int, default=1, help="the first seed")
-    parser.add_argument("--last", type=int, default=100, help="the last seed")
-    parser.add_argument("--only", type=int, nargs="+", default=[], help="some seeds")
-    parser.add_argument("--solver", type=Path, default=SOLVER, help="another program")
-    parser.add_argument("--limit", type=float, default=RUN_LIMIT_S, help="seconds for each")
-    parser.add_argument("--folder", type=Path, help="where runs are kept that are wrong")
-    arguments = parser.parse_args()
-    folder = arguments.folder or Path(tempfile.mkdtemp(prefix="close"))
-    numbers = arguments.only or list(range(arguments.first, arguments.last + 1))
-    tally = sweep(folder, numbers, arguments.solver.resolve(), arguments.limit)
-    print(f"{sum(tally.values())} runs: {dict(tally)}; those that are wrong are in {folder}")
-    return 1 if tally["WRONG"] else 0
-
+CLOSE_SWEEP = Sweep("close", KINDS, scene_text, lambda out, text: [], last=100)
+sweep = CLOSE_SWEEP.run
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(CLOSE_SWEEP.main(__doc__))

@@ -18,6 +18,7 @@ import re
 import shutil
 import sys
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,8 +40,8 @@ OWN_REASONS = re.compile(
 class Draw:
     """What chance gives a scene."""
 
-    def __init__(self, number: int) -> None:
-        self._random = np.random.default_rng([SEED, number])
+    def __init__(self, number: int, seed: int = SEED) -> None:
+        self._random = np.random.default_rng([seed, number])
 
     def between(self, low: float, high: float) -> float:
         """A number between two."""
@@ -366,60 +367,78 @@ def faults(out: Path, text: str) -> list[str]:
     return found
 
 
-def run_scene(folder: Path, text: str, solver: Path, limit_s: float) -> Verdict:
-    """Run a scene and judge it."""
-    (folder / "scene.nml").write_text(text)
-    verdict, reason, seconds = call_solver(folder, solver, limit_s)
-    if verdict is not None:
-        return verdict
-    wrong = faults(folder / "out", text)
-    if wrong:
-        return Verdict("WRONG", f"{wrong[0]} ({len(wrong)} faults)", seconds)
-    if reason:
-        return Verdict("WRONG" if OWN_REASONS.search(reason) else "stopped", reason, seconds)
-    return Verdict("right", f"{len(read(folder / 'out/history.csv')) - 1} steps", seconds)
+@dataclass(frozen=True)
+class Sweep:
+    """Scenes by their seeds, of some kinds in turn; `faults` names what is wrong in the files."""
+
+    name: str
+    kinds: tuple[str, ...]
+    scene_text: Callable[[int], str]
+    faults: Callable[[Path, str], list[str]]
+    last: int  # seed of a whole sweep
+
+    def run(
+        self, folder: Path, numbers: list[int], solver: Path = SOLVER, limit_s: float = RUN_LIMIT_S
+    ) -> collections.Counter[str]:
+        """Run scenes, print each verdict, and keep the files of those that are wrong."""
+        tally: collections.Counter[str] = collections.Counter()
+        reasons: collections.Counter[str] = collections.Counter()
+        for number in numbers:
+            place = folder / f"{self.name}_{number:03d}"
+            place.mkdir(parents=True, exist_ok=True)
+            kind = self.kinds[number % len(self.kinds)]
+            verdict = self._run_scene(place, number, solver, limit_s)
+            tally[verdict.word] += 1
+            detail = verdict.detail if verdict.word in ("WRONG", "stopped") else ""
+            reasons[f"{kind}: {verdict.word} {without_numbers(detail)}"] += 1
+            print(
+                f"{number} {kind}: {verdict.word} ({verdict.seconds:.1f} s) {verdict.detail}",
+                flush=True,
+            )
+            if verdict.word != "WRONG" and len(numbers) > 1:
+                shutil.rmtree(place)
+        for reason, count in reasons.most_common():
+            print(f"{count} {reason}")
+        return tally
+
+    def _run_scene(self, folder: Path, number: int, solver: Path, limit_s: float) -> Verdict:
+        """Run a scene and judge it."""
+        text = self.scene_text(number)
+        (folder / "scene.nml").write_text(text)
+        verdict, reason, seconds = call_solver(folder, solver, limit_s)
+        if verdict is not None:
+            return verdict
+        wrong = self.faults(folder / "out", text)
+        if wrong:
+            return Verdict("WRONG", f"{wrong[0]} ({len(wrong)} faults)", seconds)
+        if reason:
+            return Verdict("WRONG" if OWN_REASONS.search(reason) else "stopped", reason, seconds)
+        return Verdict("right", f"{len(read(folder / 'out/history.csv')) - 1} steps", seconds)
+
+    def main(self, description: str) -> int:
+        """Do what the command line asks for; 1 if a run is wrong."""
+        parser = argparse.ArgumentParser(description=description.splitlines()[0])
+        parser.add_argument("--first", type=int, default=1, help="the first seed")
+        parser.add_argument("--last", type=int, default=self.last, help="the last seed")
+        parser.add_argument("--only", type=int, nargs="+", default=[], help="some seeds")
+        parser.add_argument("--solver", type=Path, default=SOLVER, help="another program")
+        parser.add_argument("--limit", type=float, default=RUN_LIMIT_S, help="seconds for each")
+        parser.add_argument("--folder", type=Path, help="where runs are kept that are wrong")
+        arguments = parser.parse_args()
+        folder = arguments.folder or Path(tempfile.mkdtemp(prefix=self.name))
+        numbers = arguments.only or list(range(arguments.first, arguments.last + 1))
+        tally = self.run(folder, numbers, arguments.solver.resolve(), arguments.limit)
+        print(f"{sum(tally.values())} runs: {dict(tally)}; those that are wrong are in {folder}")
+        return 1 if tally["WRONG"] else 0
 
 
-def sweep(
-    folder: Path, numbers: list[int], solver: Path = SOLVER, limit_s: float = RUN_LIMIT_S
-) -> collections.Counter[str]:
-    """Run scenes, tell each verdict, and keep the files of those that are wrong."""
-    tally: collections.Counter[str] = collections.Counter()
-    by_kind: collections.Counter[tuple[str, str]] = collections.Counter()
-    for number in numbers:
-        place = folder / f"well_{number:03d}"
-        place.mkdir(parents=True, exist_ok=True)
-        kind = KINDS[number % len(KINDS)]
-        verdict = run_scene(place, scene_text(number), solver, limit_s)
-        tally[verdict.word] += 1
-        by_kind[kind, verdict.word] += 1
-        print(
-            f"{number} {kind}: {verdict.word} ({verdict.seconds:.1f} s) {verdict.detail}",
-            flush=True,
-        )
-        if verdict.word != "WRONG" and len(numbers) > 1:
-            shutil.rmtree(place)
-    for (kind, word), count in sorted(by_kind.items()):
-        print(f"{kind}: {count} {word}")
-    return tally
+def without_numbers(reason: str) -> str:
+    """A reason without its numbers and names, for the tally."""
+    return re.sub(r"-?\d+\.?\d*(E[+-]?\d+)?|f\d", "#", reason.split("; ")[0])[-150:]
 
 
-def main() -> int:
-    """Do what the command line asks for; 1 if a run is wrong."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--first", type=int, default=1, help="the first seed")
-    parser.add_argument("--last", type=int, default=300, help="the last seed")
-    parser.add_argument("--only", type=int, nargs="+", default=[], help="some seeds")
-    parser.add_argument("--solver", type=Path, default=SOLVER, help="another program")
-    parser.add_argument("--limit", type=float, default=RUN_LIMIT_S, help="seconds for each")
-    parser.add_argument("--folder", type=Path, help="where runs are kept that are wrong")
-    arguments = parser.parse_args()
-    folder = arguments.folder or Path(tempfile.mkdtemp(prefix="wells"))
-    numbers = arguments.only or list(range(arguments.first, arguments.last + 1))
-    tally = sweep(folder, numbers, arguments.solver.resolve(), arguments.limit)
-    print(f"{sum(tally.values())} runs: {dict(tally)}; those that are wrong are in {folder}")
-    return 1 if tally["WRONG"] else 0
-
+WELL_SWEEP = Sweep("well", KINDS, scene_text, faults, last=300)
+sweep = WELL_SWEEP.run
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(WELL_SWEEP.main(__doc__))

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from wingcrack.command_line.declaring import Call, RefusedError, UsageError
-from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.errors import EnvironmentLacksError
 
 try:
     from wingcrack.command_line import with_click as way
@@ -31,8 +31,7 @@ example:
 """
 # Modules with the names of what is declared in them; each is imported when a command is named.
 _MODULES = {
-    "solver_commands": ("run", "check"),
-    "run_commands": ("plot", "view", "study"),
+    "run_commands": ("run", "check", "plot", "view", "study"),
     "scene_commands": ("new", "import", "network"),
     "developer_commands": ("verify", "bench", "test", "build", "format", "lint", "docs"),
 }
@@ -47,10 +46,7 @@ _PLACES = {
 def understand(words: Sequence[str]) -> Call | None:
     """Give what the words ask for, or None where that was help, which is printed.
 
-    Raises
-    ------
-    SystemExit
-        With status 2, after a sentence on stderr, if they cannot be understood.
+    Raises `SystemExit`: with status 2, after a sentence on stderr, if they cannot be understood.
     """
     name = words[0] if words else ""
     if not {"-h", "--help"}.isdisjoint(words[1:]):

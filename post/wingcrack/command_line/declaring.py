@@ -27,22 +27,14 @@ class RefusedError(Exception):
 
 @dataclass(frozen=True)
 class Parameter:
-    """An argument, or where its name begins with dashes an option.
-
-    Attributes
-    ----------
-    read : callable
-        Gives the value for a text, or raises ValueError.
-    many : bool
-        Whether there may be several: then the value is a list of them.
-    """
+    """An argument, or where its name begins with dashes an option."""
 
     name: str
     metavar: str = ""
     help: str = ""
-    read: Callable[[str], Any] = str
+    read: Callable[[str], Any] = str  # gives the value for a text, or raises ValueError
     default: Any = None
-    many: bool = False
+    many: bool = False  # whether there may be several: then the value is a list of them
     required: bool = False
     is_flag: bool = False
     choices: tuple[str, ...] = ()

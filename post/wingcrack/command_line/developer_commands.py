@@ -112,12 +112,12 @@ def bench(given: SimpleNamespace) -> None:
     flag("--serve", "show it to this machine's browsers until ctrl-C"),
     Parameter("--port", "N", "of --serve (default: 8000)", whole(1, 65535), 8000),
     flag("--no-fortran", "without the Fortran modules"),
-    flag("--pictures", "make gallery and pictures anew, no site"),
+    flag("--pictures", "make gallery and pictures again, no site"),
     Parameter("--out", "DIR", "where the site goes (default: build/site)", Path),
     about="""\
 The site is in build/site; it asks no other machine for anything. Pages of the Fortran modules are
 made by FORD, and made again only when a module has changed. docs/input.md, output.md and limits.md
-are first written anew from post/wingcrack/names.json.
+are first written again from post/wingcrack/names.json.
 
 --pictures runs the scenes of inputs/ and those of the tutorial (minutes; what has run is not run
 again) and writes docs/gallery.md and docs/pictures, which are kept with the sources.
@@ -186,7 +186,7 @@ def format_sources(given: SimpleNamespace) -> None:
     "lint",
     "",
     about="""\
-shellcheck, fprettify, the arrows between rooms, fortitude, clang-format, clang-tidy, ruff, mypy.
+shellcheck, fprettify, dependencies of components, fortitude, clang-format, clang-tidy, ruff, mypy.
 Changes nothing. One alone: ./wingcrack test mypy
 """,
     example="./wingcrack lint\n",

@@ -44,12 +44,8 @@ class _Output(io.TextIOWrapper):
 def program(words: Sequence[str] | None = None, *, only_understands: bool = False) -> int:
     """Do what the words ask for and return the exit status, 3 if a package lacks for it.
 
-    Parameters
-    ----------
-    words : sequence of str, optional
-        Those that Python was called with, unless they are given.
-    only_understands : bool
-        Refuse or print help, and do nothing else: that takes nothing but Python.
+    `words`: those that Python was called with, unless they are given. `only_understands`: refuse or
+    print help, and do nothing else: that takes nothing but Python.
     """
     for name in ("stdout", "stderr"):
         old = getattr(sys, name)

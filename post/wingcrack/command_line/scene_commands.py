@@ -56,7 +56,7 @@ _COMMON = (  # of what makes scenes of fractures
 
 @command(
     "new",
-    "wingcrack.scenes.cli:new",
+    "wingcrack.scenes.new:new",
     Parameter("kind", "[KIND]", default="injection"),
     Parameter("--out", "FILE", "the file to write (default: KIND.nml)", Path),
     _OVERWRITE,

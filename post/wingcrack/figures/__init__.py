@@ -7,7 +7,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from wingcrack.figures.errors import AbsentError, EnvironmentLacksError, RunError
+from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError
 
 if TYPE_CHECKING:
     from wingcrack.figures.read import Run, read_run

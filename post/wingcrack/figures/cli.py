@@ -9,10 +9,10 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
 
 if TYPE_CHECKING:
-    from wingcrack.figures.figures import Outcome
+    from wingcrack.figures.catalogue import Outcome
 
 
 def plot(given: SimpleNamespace) -> int:
@@ -26,7 +26,7 @@ def plot(given: SimpleNamespace) -> int:
 def _plot(directory: Path, given: SimpleNamespace) -> int:
     """Draw the chosen figures of one run and return its exit status."""
     # late, so that --help and mistakes in the call answer at once
-    from wingcrack.figures.figures import draw_figures
+    from wingcrack.figures.catalogue import draw_figures
 
     # what matplotlib says about fonts that this machine lacks helps nobody: it takes another
     logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)

@@ -6,7 +6,7 @@ import math
 import re
 from numbers import Real
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
 
 SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "d": 86400.0}
 
@@ -16,13 +16,10 @@ _TIME = re.compile(r"((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(s|min
 def parse_times(text: str) -> tuple[float, ...]:
     """Read a comma-separated list of times into seconds.
 
+    Raises `ValueError` if an entry is no number with an optional unit s, min, h or d.
+
     >>> parse_times("90, 2min, 1.5h")
     (90.0, 120.0, 5400.0)
-
-    Raises
-    ------
-    ValueError
-        If an entry is no number with an optional unit s, min, h or d.
     """
     times = []
     for entry in text.split(","):
@@ -37,10 +34,7 @@ def parse_times(text: str) -> tuple[float, ...]:
 def moment_of(given: object) -> float:
     """Give a time [s], or a load factor [-], that a program asks for.
 
-    Raises
-    ------
-    RunError
-        If it is no finite number.
+    Raises `RunError` if it is no finite number.
     """
     if not isinstance(given, Real) or not math.isfinite(given):
         raise RunError(f"{given!r} is no time: a number is needed, of seconds or a load factor")

@@ -25,9 +25,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from wingcrack.figures.errors import AbsentError
-from wingcrack.figures.proportional import FORCES
+from wingcrack.errors import AbsentError
 from wingcrack.figures.read import Run
+from wingcrack.figures.scene import FORCES
 from wingcrack.figures.table import BoolArray, FloatArray
 
 _LONGER = 1.0e-9  # share of the length beyond which growth is more than round-off
@@ -36,76 +36,43 @@ _LEAST_FALL = 0.01  # share of f0: twice what the solver lets K_eq of growing ti
 
 @dataclass(frozen=True)
 class Release:
-    """Unstable growth that a load fixed at `factor` would see.
+    """Unstable growth that a load fixed at `factor` would see."""
 
-    Attributes
-    ----------
-    first, last : int
-        States, from 0 in the path, between which it lies: it begins at the first and ends in the
-        interval that ends with the last.
-    factor : float
-        f0, at which the load stays [-].
-    share : float
-        Of the last interval, at which the path is back at f0 [-]; 1 where it does not come back.
-    arrests : bool
-        Whether it comes back.
-    length_m : float
-        Grown between [m].
-    energy_j_m : float or None
-        E set free, per metre of thickness [J/m]; None where the load is not in proportion to f and
-        the states are not at f0.
-    """
-
+    # first, last: states, from 0 in the path, between which it lies: it begins at the first and
+    # ends in the interval that ends with the last
     first: int
     last: int
-    factor: float
+    factor: float  # f0, at which the load stays [-]
+    # of the last interval, at which the path is back at f0 [-]; 1 where it does not come back
     share: float
-    arrests: bool
-    length_m: float
+    arrests: bool  # whether it comes back
+    length_m: float  # grown between [m]
+    # E set free, per metre of thickness [J/m]; None where the load is not in proportion to f and
+    # the states are not at f0
     energy_j_m: float | None
 
 
 @dataclass(frozen=True)
 class EquilibriumPath:
-    """States in which tips are at their toughness, in the order in which a run went through them.
+    """States in which tips are at their toughness, in the order of the run."""
 
-    Attributes
-    ----------
-    factor : (n,) array
-        Load factor f [-].
-    length_m : (n,) array
-        Length of all fractures [m].
-    opening_m : (n,) array
-        Mean opening of all fractures [m].
-    slip_m : (n,) array
-        Largest slip [m].
-    conjugate_j_m : (n,) array or None
-        q = 2 U/f [J/m]; None where the load is not in proportion to f.
-    under_forces : bool
-        Whether q is a displacement; else it is a force.
-    unstable : (n - 1,) array of bool
-        Whether the piece from each state to the next one is passed over by a load that stays.
-    releases : tuple of Release
-        What is unstable, in order; none of them overlap.
-    """
-
-    factor: FloatArray
-    length_m: FloatArray
-    opening_m: FloatArray
-    slip_m: FloatArray
+    factor: FloatArray  # (n,) load factor f [-]
+    length_m: FloatArray  # (n,) length of all fractures [m]
+    opening_m: FloatArray  # (n,) mean opening of all fractures [m]
+    slip_m: FloatArray  # (n,) largest slip [m]
+    # (n,) q = 2 U/f [J/m]; None where the load is not in proportion to f
     conjugate_j_m: FloatArray | None
-    under_forces: bool
+    under_forces: bool  # whether q is a displacement; else it is a force
+    # (n - 1,) of bool whether the piece from each state to the next one is passed over by a load
+    # that stays
     unstable: BoolArray
-    releases: tuple[Release, ...]
+    releases: tuple[Release, ...]  # what is unstable, in order; none of them overlap
 
 
 def equilibrium_path(run: Run) -> EquilibriumPath:
     """Find the path of a run in length control, with what is unstable on it.
 
-    Raises
-    ------
-    AbsentError
-        If the run is not one in length control, or nothing has grown.
+    Raises `AbsentError` if the run is not one in length control, or nothing has grown.
     """
     scene, history = run.scene, run.history
     if not history.has("load_factor") or scene is None or scene.control != "length":

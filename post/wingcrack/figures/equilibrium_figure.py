@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
 from wingcrack.figures.equilibrium import EquilibriumPath, Release, equilibrium_path
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import LOAD_LABEL
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
@@ -28,10 +28,7 @@ _SHEAR = 1.0e-3  # share of the slip below which opening says nothing
 def equilibrium_figure(run: Run) -> Figure:
     """Load factor against length, against opening, and against what is conjugate to it.
 
-    Raises
-    ------
-    AbsentError
-        If the run is not one in length control, or nothing has grown.
+    Raises `AbsentError` if the run is not one in length control, or nothing has grown.
     """
     path = equilibrium_path(run)
     shown = AGAINST if path.conjugate_j_m is not None else AGAINST[:2]
@@ -49,11 +46,8 @@ def equilibrium_figure(run: Run) -> Figure:
 def draw_equilibrium(axes: Axes, run: Run, against: str = "length") -> None:
     """Draw the path with its branches, and the energy where it is an area, into axes.
 
-    Raises
-    ------
-    AbsentError
-        If the run is not one in length control, nothing has grown, or 'conjugate' is wanted of a
-        load that is not in proportion to its factor.
+    Raises `AbsentError` if the run is not one in length control, nothing has grown, or 'conjugate'
+    is wanted of a load that is not in proportion to its factor.
     """
     path = equilibrium_path(run)
     if against == "conjugate" and path.conjugate_j_m is None:
@@ -77,9 +71,7 @@ def draw_equilibrium(axes: Axes, run: Run, against: str = "length") -> None:
         )
     if path.releases:
         axes.plot([], [], label="a load that stays", **_HELD)
-    axes.set_title(title)
-    axes.set_xlabel(label)
-    axes.set_ylabel(LOAD_LABEL)
+    axes.set(title=title, xlabel=label, ylabel=LOAD_LABEL)
 
 
 def _abscissa(run: Run, path: EquilibriumPath, against: str) -> tuple[FloatArray, str, str]:

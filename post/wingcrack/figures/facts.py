@@ -18,19 +18,14 @@ _MOST_WELLS = 4  # with a line of their own, those with the highest pressures
 
 @dataclass(frozen=True)
 class Facts:
-    """What a page says about a run.
+    """What a page says about a run."""
 
-    Attributes
-    ----------
-    title, status, ended : str
-        What the scene is called; 'finished', 'stopped', 'failed' or 'running'; how it ended.
-    results, errors, warnings, left_out, used : list of str
-        Lines of text.
-    """
-
+    # title, status, ended: what the scene is called; 'finished', 'stopped', 'failed' or 'running';
+    # how it ended
     title: str
     status: str
     ended: str
+    # results, errors, warnings, left_out, used: lines of text
     results: list[str]
     errors: list[str]
     warnings: list[str]

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from wingcrack.errors import RunError
 from wingcrack.figures.durations import moment_of
-from wingcrack.figures.errors import RunError
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.vtu import Grid, IntArray, read_vtu
 
@@ -32,40 +32,21 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class MatrixField:
-    """Rock at one time.
+    """Rock at one time."""
 
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes [m].
-    triangles : (m, 3) array
-        Nodes of each cell, from 0.
-    cell : dict of str to array
-        Cell data by name, first axis of length m.
-    nodal : dict of str to array
-        Point data by name, first axis of length n.
-    """
-
-    points: FloatArray
-    triangles: IntArray
-    cell: dict[str, FloatArray]
+    points: FloatArray  # (n, 2) nodes [m]
+    triangles: IntArray  # (m, 3) nodes of each cell, from 0
+    cell: dict[str, FloatArray]  # cell data by name, first axis of length m
+    # point data by name, first axis of length n
     nodal: dict[str, FloatArray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class FractureField:
-    """Fractures at one time.
+    """Fractures at one time."""
 
-    Attributes
-    ----------
-    segments : (m, 2, 2) array
-        Both ends of each fracture cell [m].
-    state : (m,) array
-        0 stick, 1 slip, 2 open.
-    """
-
-    segments: FloatArray
-    state: IntArray
+    segments: FloatArray  # (m, 2, 2) both ends of each fracture cell [m]
+    state: IntArray  # (m,) 0 stick, 1 slip, 2 open
 
 
 def read_series(path: Path) -> tuple[Snapshot, ...]:
@@ -110,10 +91,7 @@ def _told_by(path: Path) -> tuple[int | None, float | None]:
 def nearest(series: Sequence[Snapshot], time_s: float) -> Snapshot:
     """Give the snapshot written closest to a time.
 
-    Raises
-    ------
-    RunError
-        If the time is no finite number.
+    Raises `RunError` if the time is no finite number.
     """
     wanted = moment_of(time_s)
     return min(series, key=lambda snapshot: abs(snapshot.time_s - wanted))

@@ -11,8 +11,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Colormap, Normalize
 from matplotlib.tri import Triangulation
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.fields import (
     FractureField,
     MatrixField,
@@ -64,10 +64,7 @@ def read_frames(
 ) -> list[Frame]:
     """Read the states that maps show; `check` raises where a field has not what they need.
 
-    Raises
-    ------
-    AbsentError
-        If the run wrote no VTU files.
+    Raises `AbsentError` if the run wrote no VTU files.
     """
     written, rows = written_states(run)
     first = read_matrix(run.matrix[0].path)
@@ -83,10 +80,7 @@ def read_frames(
 def written_states(run: Run) -> tuple[list[float], list[int | None]]:
     """Moments of the written VTU files and their rows of history.csv, from 0, where known.
 
-    Raises
-    ------
-    AbsentError
-        If the run wrote none.
+    Raises `AbsentError` if the run wrote none.
     """
     if not run.matrix:
         raise AbsentError("the run has no matrix.pvd (VTU output off, or no step written yet)")
@@ -199,10 +193,7 @@ def draw_fractures(axes: Axes, fractures: FractureField | None, width: float, un
         return
     # a white casing keeps all three colours apart from light and dark parts of the map
     casing = LineCollection(
-        list(unit.of(fractures.segments)),
-        colors="white",
-        linewidths=width + 1.0,
-        capstyle="round",
+        list(unit.of(fractures.segments)), colors="white", linewidths=width + 1.0, capstyle="round"
     )
     axes.add_collection(casing, autolim=False)
     for number, state in enumerate(style.STATES):

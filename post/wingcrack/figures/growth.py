@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
+from wingcrack.figures.scene import Scene
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.vtu import IntArray
 
@@ -17,27 +18,17 @@ _SAME = 1.0e-9  # relative difference of arc lengths that are equal
 
 @dataclass(frozen=True)
 class Growth:
-    """A fracture, split into what was there and what has grown.
+    """A fracture, split into what was there and what has grown."""
 
-    Attributes
-    ----------
-    number : int
-        Of the fracture in the files.
-    name : str
-        Of the fracture in the scene.
-    initial : (n, 2) array
-        Vertices at the start of the run [m].
-    start, end : (m, 2) arrays
-        Wings at the polyline's start and end: the fracture's initial end, then outwards [m].
-    start_steps, end_steps : (m - 1,) arrays
-        Step of the network, from 0, in which each segment of the wings was there first.
-    """
-
-    number: int
-    name: str
-    initial: FloatArray
+    number: int  # of the fracture in the files
+    name: str  # of the fracture in the scene
+    initial: FloatArray  # (n, 2) vertices at the start of the run [m]
+    # start, end: (m, 2) wings at the polyline's start and end: the fracture's initial end, then
+    # outwards [m]
     start: FloatArray
     end: FloatArray
+    # start_steps, end_steps: (m - 1,) step of the network, from 0, in which each segment of the
+    # wings was there first
     start_steps: IntArray
     end_steps: IntArray
 
@@ -45,10 +36,7 @@ class Growth:
 def read_growth(network: Mapping[str, Any]) -> list[Growth]:
     """Growth of each fracture from the contents of ``network.json``.
 
-    Raises
-    ------
-    RunError
-        If the network has no steps or lacks what a fracture needs.
+    Raises `RunError` if the network has no steps or lacks what a fracture needs.
     """
     try:
         steps = network["steps"]
@@ -105,3 +93,26 @@ def _steps(counts: Sequence[int], wanted: int) -> IntArray:
         [next(step for step, count in enumerate(counts) if count > k) for k in range(wanted)],
         dtype=np.int64,
     )
+
+
+MOST = 12  # fractures that are named on a map, or get a figure each
+
+
+def foremost(growths: Sequence[Growth], scene: Scene | None) -> list[Growth]:
+    """Give the fractures in their order of interest, at most `MOST` of them.
+
+    First those that a well feeds, then those that have grown, and among equals the longest at the
+    end of the run.
+    """
+    fed = {well.fracture for well in scene.wells} if scene else set()
+
+    def rank(item: Growth) -> tuple[bool, bool, float]:
+        grown = len(item.start) > 1 or len(item.end) > 1
+        length = sum(_length(part) for part in (item.initial, item.start, item.end))
+        return item.name not in fed, not grown, -length
+
+    return sorted(growths, key=rank)[:MOST]
+
+
+def _length(points: FloatArray) -> float:
+    return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())

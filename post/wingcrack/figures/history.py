@@ -9,12 +9,11 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import STEP_LABEL, abscissa, has_load, tip_steps
 from wingcrack.figures.marks import mark_moments
 from wingcrack.figures.pressures import injected_and_produced, well_pressures
@@ -43,10 +42,7 @@ _EQUAL = 0.01  # tips whose curves differ by less, of the largest in the panel, 
 def intensities(run: Run) -> Figure:
     """Stress intensity factors of every tip by both methods, and K_IC if the scene tells it.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no tips.
+    Raises `AbsentError` if the run has no tips.
     """
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     if run.history.rows == 1:
@@ -73,16 +69,7 @@ def intensities(run: Run) -> Figure:
 def draw_intensity(axes: Axes, run: Run, quantity: str = "keq") -> list[Artist]:
     """Draw one stress intensity factor of every tip into axes and give the legend's entries.
 
-    Parameters
-    ----------
-    axes : Axes
-    run : Run
-    quantity : {'k1', 'k2', 'keq'}
-
-    Raises
-    ------
-    AbsentError
-        If the run has no tips.
+    Raises `AbsentError` if the run has no tips.
     """
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     mode = _MODES[INTENSITIES.index(quantity)]
@@ -231,10 +218,7 @@ def draw_states(axes: Axes, run: Run) -> None:
 def balance(run: Run) -> Figure:
     """Where the injected fluid went, and how well mass is conserved.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no fluid.
+    Raises `AbsentError` if the run has no fluid.
     """
     table = run.history
     if not table.has("injected_m2"):
@@ -321,14 +305,12 @@ def _tip_handles(
 ) -> list[Artist]:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     handles: list[Artist] = [
-        Line2D([], [], **style.line_look(index), label=_group_label(run, table, names))
+        style.handle(**style.line_look(index), label=_group_label(run, table, names))
         for index, (names, _) in enumerate(tips)
     ]
-    handles.append(Line2D([], [], color="#555555", label="lines: interaction integral"))
+    handles.append(style.handle(color="#555555", label="lines: interaction integral"))
     handles.append(
-        Line2D(
-            [],
-            [],
+        style.handle(
             color="#555555",
             linestyle="none",
             marker="o",
@@ -340,12 +322,10 @@ def _tip_handles(
         handles.append(Patch(facecolor="#555555", alpha=0.25, label="bands: estimated error"))
     if toughness is not None:
         handles.append(
-            Line2D([], [], color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")
+            style.handle(color="#555555", ls="--", lw=0.8, label=r"toughness $K_\mathrm{IC}$")
         )
     return handles
 
 
 def _finish(axes: Axes, title: str, label: str, below: str) -> None:
-    axes.set_title(title)
-    axes.set_ylabel(label)
-    axes.set_xlabel(below)
+    axes.set(title=title, ylabel=label, xlabel=below)

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.states import growth_start
@@ -57,10 +57,7 @@ def tip_steps(run: Run, table: Table) -> FloatArray:
 def load_figure(run: Run) -> Figure:
     """Load factor against the fractures' length, and both against the step.
 
-    Raises
-    ------
-    AbsentError
-        If no load factor drives the run, or nothing has grown.
+    Raises `AbsentError` if no load factor drives the run, or nothing has grown.
     """
     if not has_load(run):
         raise AbsentError("no load factor drives the run")
@@ -74,12 +71,10 @@ def load_figure(run: Run) -> Figure:
     against, rising, growing = figure.subplots(1, 3)
     draw_load(against, run)
     rising.plot(steps, load, color=style.CYCLE[0])
-    rising.set_title("load")
-    rising.set_ylabel(LOAD_LABEL)
+    rising.set(title="load", ylabel=LOAD_LABEL)
     rising.set_ylim(bottom=0.0 if load.min() >= 0.0 else None)
     growing.plot(steps, unit.of(length), color=style.CYCLE[1])
-    growing.set_title("growth")
-    growing.set_ylabel(f"total length [{unit.name}]")
+    growing.set(title="growth", ylabel=f"total length [{unit.name}]")
     for axes in (rising, growing):
         axes.set_xlabel(STEP_LABEL)
         axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
@@ -90,10 +85,7 @@ def load_figure(run: Run) -> Figure:
 def draw_load(axes: Axes, run: Run) -> None:
     """Draw the load factor against the fractures' length into axes.
 
-    Raises
-    ------
-    AbsentError
-        If no load factor drives the run.
+    Raises `AbsentError` if no load factor drives the run.
     """
     if not has_load(run):
         raise AbsentError("no load factor drives the run")
@@ -101,7 +93,5 @@ def draw_load(axes: Axes, run: Run) -> None:
     unit = run_length_unit(run)
     length = unit.of(run.history.number("fracture_length_m"))
     axes.plot(length, load, color=style.CYCLE[0], marker=".", markersize=2)
-    axes.set_title("load against length")
-    axes.set_xlabel(f"total length [{unit.name}]")
-    axes.set_ylabel(LOAD_LABEL)
+    axes.set(title="load against length", xlabel=f"total length [{unit.name}]", ylabel=LOAD_LABEL)
     axes.set_ylim(bottom=0.0 if load.min() >= 0.0 else None)

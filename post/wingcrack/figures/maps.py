@@ -1,25 +1,29 @@
-"""Pore-pressure maps of several states with the fractures on top, coloured by their state."""
+"""Maps of the rock in several states, the fractures on top by state: pore pressure, or stress."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.fields import MatrixField
 from wingcrack.figures.frames import (
+    Frame,
     Window,
     draw_field,
     draw_fractures,
     extent,
     read_frames,
     set_window,
+    usual_limit,
     value_scale,
     zoom_window,
 )
@@ -27,7 +31,8 @@ from wingcrack.figures.load import moment_label
 from wingcrack.figures.marks import well_mark
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
-from wingcrack.figures.units import MEGAPASCAL, Unit
+from wingcrack.figures.table import FloatArray
+from wingcrack.figures.units import MEGAPASCAL, Unit, stress_unit
 
 PANELS_PER_ROW = 3
 DEFAULT_COUNT = 6
@@ -37,20 +42,12 @@ DEFAULT_COUNT = 6
 def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     """Draw the pore pressure in chosen states on one colour scale.
 
-    Fractures that are small in the body get a second panel each, below the whole body.
+    Fractures that are small in the body get a second panel each, below the whole body. Raises
+    `AbsentError` if the run wrote no VTU files, or none with a pressure (mechanics only).
 
-    Parameters
-    ----------
-    run : Run
-    wanted_s : sequence of float
-        Times [s]; the nearest written ones are drawn. Default: see `select_states`.
-
-    Raises
-    ------
-    AbsentError
-        If the run wrote no VTU files, or none with a pressure (mechanics only).
+    `wanted_s`: times [s]; the nearest written ones are drawn. Default: see `select_states`.
     """
-    frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check)
+    frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_pressure)
     body = extent([frame.matrix for frame in frames])
     zoom = zoom_window(body, [frame.fractures for frame in frames])
     norm = value_scale([MEGAPASCAL.of(frame.matrix.cell["pressure"]) for frame in frames])
@@ -95,7 +92,7 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     return figure
 
 
-def _check(matrix: MatrixField) -> None:
+def _check_pressure(matrix: MatrixField) -> None:
     if "pressure" not in matrix.cell:
         raise AbsentError("the run has no pore pressure (mechanics only)")
 
@@ -130,3 +127,105 @@ def _mark(axes: Axes, zoom: Window, unit: Unit) -> None:
         path_effects=[withStroke(linewidth=1.5, foreground="black")],
     )
     axes.add_patch(frame)
+
+
+# Purple in compression, orange in tension: seen by the colour-blind. Lighter and lighter: in grey
+# print, where a map that is dark at both ends would not tell the signs apart, it can be read too.
+MEAN_COLOURS = LinearSegmentedColormap.from_list(
+    "mean_stress", ["#2D004B", "#6A51A3", "#A9A9B0", "#F0A94A", "#FFE680"]
+)
+_HEIGHT = 3.0  # [inch] of a panel at most
+
+
+@style.styled
+def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
+    """Draw the stress in chosen states, with the fractures coloured by their state.
+
+    Panels of the same quantity share a scale, so default states are those from the start of growth
+    on: earlier ones would be pale images of it. Raises `AbsentError` if the run wrote no VTU files,
+    or has a pore pressure (whose maps say more).
+
+    `wanted_s`: moments, in the unit of the tables; the nearest written ones are drawn. Default: see
+    `select_states`.
+    """
+    frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_stress, since_growth=True)
+    body = extent([frame.matrix for frame in frames])
+    view = zoom_window(body, [frame.fractures for frame in frames]) or body
+    unit = run_length_unit(run)
+    columns = min(PANELS_PER_ROW, len(frames))
+    bands = -(-len(frames) // columns)
+    width = {1: style.SINGLE_COLUMN + 0.7, 2: 5.6}.get(columns, style.DOUBLE_COLUMN)
+    height = min(_HEIGHT, (width - 1.6) / columns * view.ratio)
+    figure = style.new_figure(width, 2 * bands * (height + 0.3) + 0.85)
+    rows = figure.subplots(2 * bands, columns, squeeze=False, sharex=True, sharey=True)
+    quantities: tuple[tuple[str, Colormap | str, list[FloatArray]], ...] = (
+        ("mean stress", MEAN_COLOURS, [mean_stress(frame.matrix) for frame in frames]),
+        ("largest shear stress", style.FIELD_COLOURS, [_shear(frame.matrix) for frame in frames]),
+    )
+    lettered: list[Axes] = []
+    for half, (name, colours, fields) in enumerate(quantities):
+        panels = list(rows[half * bands : (half + 1) * bands].flat)
+        norm, scale = _stress_scale(frames, fields, view, signed=colours == MEAN_COLOURS)
+        for axes, frame, field in zip(panels, frames, fields, strict=False):
+            draw_field(axes, frame, scale.of(field), norm, colours, unit)
+            draw_fractures(axes, frame.fractures, 1.1, unit)
+            axes.set_title(moment_label(run, frame.moment, frame.row))
+        lettered += panels[: len(frames)]
+        bar = figure.colorbar(
+            ScalarMappable(norm, colours),
+            ax=panels,
+            extend="both" if colours == MEAN_COLOURS else "max",
+            aspect=20 * bands,
+            pad=0.02,
+        )
+        bar.set_label(f"{name} [{scale.name}]")
+    _label_outer([list(row) for row in rows], len(frames), unit)
+    set_window(rows[0][0], view, unit)
+    style.letter(lettered)
+    if any(frame.fractures is not None for frame in frames):
+        style.outside_legend(figure, style.state_handles(), len(style.STATES))
+    return figure
+
+
+def mean_stress(matrix: MatrixField) -> FloatArray:
+    """Mean of the normal stresses in the plane [Pa]."""
+    return np.asarray(matrix.cell["stress"][:, :2].mean(axis=1))
+
+
+def _shear(matrix: MatrixField) -> FloatArray:
+    """Largest shear stress in the plane [Pa]."""
+    xx, yy, _zz, xy = (matrix.cell["stress"][:, k] for k in range(4))
+    return np.asarray(np.hypot(0.5 * (xx - yy), xy))
+
+
+def _check_stress(matrix: MatrixField) -> None:
+    if "pressure" in matrix.cell:
+        raise AbsentError("the run has a pore pressure: see its maps")
+    if "stress" not in matrix.cell:
+        raise AbsentError("the run wrote no stress")
+
+
+def _stress_scale(
+    frames: Sequence[Frame], fields: Sequence[FloatArray], view: Window, *, signed: bool
+) -> tuple[Normalize, Unit]:
+    """One scale for all panels of a quantity: what most of the area in view keeps to."""
+    limits = (usual_limit(f.matrix, field, view) for f, field in zip(frames, fields, strict=True))
+    limit = max(limits) or 1.0
+    unit = stress_unit(limit)
+    top = float(unit.of(limit))
+    return Normalize(-top if signed else 0.0, top), unit
+
+
+def _label_outer(rows: Sequence[Sequence[Axes]], count: int, unit: Unit) -> None:
+    """Labels at the outer panels; places without a panel stay empty."""
+    columns = len(rows[0])
+    bands = len(rows) // 2
+    for number, row in enumerate(rows):
+        row[0].set_ylabel(f"$y$ [{unit.name}]")
+        for column, axes in enumerate(row):
+            place = number % bands * columns + column
+            if place >= count:
+                axes.set_visible(False)
+            elif number >= bands and place + columns >= count:
+                axes.set_xlabel(f"$x$ [{unit.name}]")
+                axes.xaxis.set_tick_params(labelbottom=True)

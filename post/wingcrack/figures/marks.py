@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from wingcrack.figures import style
 from wingcrack.figures.load import abscissa, has_load
 from wingcrack.figures.read import Run
 from wingcrack.figures.states import growth_start
@@ -38,7 +39,7 @@ def well_mark(run: Run, moment: float) -> str:
 def mark_moments(run: Run, panels: Sequence[Axes]) -> list[Line2D]:
     """Draw thin lines at first growth and where wells start and stop; gives their legend.
 
-    Names beside the lines would run into curves.
+    Names next to the lines would cross curves.
     """
     growth, wells = growth_start(run), [moment for moment, _ in well_marks(run)]
     handles = []
@@ -51,5 +52,5 @@ def mark_moments(run: Run, panels: Sequence[Axes]) -> list[Line2D]:
             for axes in panels:
                 axes.axvline(float(place), zorder=1, **look)
         if moments:
-            handles.append(Line2D([], [], label=name, **look))
+            handles.append(style.handle(label=name, **look))
     return handles

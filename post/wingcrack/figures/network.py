@@ -12,12 +12,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.growth import Growth, moment_of, read_growth
 from wingcrack.figures.read import Run
 from wingcrack.figures.regions import draw_regions
@@ -31,17 +30,14 @@ _MARGIN = 0.12  # around the network, as a share of its size
 _LARGE = 0.5  # share of the body from which on the whole body is shown
 _SIZE = (3.6, 5.0)  # [inch] of the axes at most
 _BESIDE = (1.75, 0.95)  # [inch] for labels and colour bar
-_ONLY_LABELS = 0.8  # [inch] beside the axes without a colour bar
+_ONLY_LABELS = 0.8  # [inch] next to the axes without a colour bar
 
 
 @style.styled
 def network_figure(run: Run) -> Figure:
     """Draw the network at the end of a run, with the outline of the body.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no network, or none with fractures.
+    Raises `AbsentError` if the run has no network, or none with fractures.
     """
     growths = grown_network(run)
     assert run.network is not None
@@ -60,10 +56,7 @@ def network_figure(run: Run) -> Figure:
 def grown_network(run: Run) -> list[Growth]:
     """Growth of all fractures.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no network, or none with fractures.
+    Raises `AbsentError` if the run has no network, or none with fractures.
     """
     if run.network is None:
         raise AbsentError("the run has no network.json")
@@ -87,16 +80,8 @@ def draw_network(
     Colours count the increments of growth; the load factor (in scenes with a fluid the time) at
     which each came stands beside the number.
 
-    Parameters
-    ----------
-    axes : Axes
-    growths : sequence of Growth
-    network : mapping
-        Contents of network.json.
-    history : Table
-        history.csv.
-    scene : Scene or None
-        For the outline of the body.
+    `network`: contents of network.json. `history`: history.csv. `scene`: for the outline of the
+    body.
     """
     box = network_box(growths, scene)
     # that of the body, as in all other maps, not of the part in view
@@ -131,10 +116,7 @@ def draw_network(
         axes.plot(*place, "o", mfc="white", mec="#D55E00", mew=0.9, ms=4, zorder=5)
     axes.set_xlim(*unit.of(np.array(box[:2])))
     axes.set_ylim(*unit.of(np.array(box[2:])))
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_xlabel(f"$x$ [{unit.name}]")
-    axes.set_ylabel(f"$y$ [{unit.name}]")
+    style.map_axes(axes, unit)
     axes.locator_params(nbins=5)
     if order:
         _colour_bar(axes, norm, order, growths, network, history)
@@ -208,13 +190,13 @@ def _constant_from(values: Mapping[int, float]) -> str:
 
 
 def _handles(regions: Sequence[Patch], *, has_growth: bool, has_joints: bool) -> list[Artist]:
-    handles: list[Artist] = [Line2D([], [], color=INITIAL, linewidth=THICK, label="at the start")]
+    handles: list[Artist] = [style.handle(color=INITIAL, linewidth=THICK, label="at the start")]
     if has_growth:
         colour = style.time_colours()(0.5)
-        handles.append(Line2D([], [], color=colour, linewidth=THIN, label="grown"))
+        handles.append(style.handle(color=colour, linewidth=THIN, label="grown"))
     if has_joints:
         look: dict[str, Any] = {"mfc": "white", "mec": "#D55E00", "mew": 0.9, "ms": 4}
-        handles.append(Line2D([], [], linestyle="none", marker="o", label="joint", **look))
+        handles.append(style.handle(linestyle="none", marker="o", label="joint", **look))
     return [*handles, *regions]
 
 

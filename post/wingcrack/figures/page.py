@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import os
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,7 +11,7 @@ from urllib.parse import quote
 
 from wingcrack.figures.facts import Facts, gather_facts
 from wingcrack.figures.read import Run
-from wingcrack.figures.text_files import read_json
+from wingcrack.figures.text_files import read_json, write_whole
 
 NAME = "index.html"
 _COSTS = (
@@ -53,15 +52,10 @@ $figures
 
 
 def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
-    """Write the page beside the figures that are there; it appears whole.
+    """Write the page into the folder of the figures; it appears whole.
 
-    Parameters
-    ----------
-    run : Run
-    folder : Path
-        Where the figures are.
-    order : sequence of str
-        Names of figures, or their beginnings, as they shall follow each other.
+    `folder`: where the figures are. `order`: names of figures, or their beginnings, as they shall
+    follow each other.
     """
     facts = gather_facts(run)
 
@@ -79,14 +73,7 @@ def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
         figures="\n".join(_figures(folder, pictures)),
     )
     folder.mkdir(parents=True, exist_ok=True)
-    target = folder / NAME
-    aside = folder / f".{NAME}.{os.getpid()}"
-    try:
-        aside.write_text(text, encoding="utf-8")
-        aside.replace(target)
-    finally:
-        aside.unlink(missing_ok=True)
-    return target
+    return write_whole(folder / NAME, text)
 
 
 def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:

@@ -9,8 +9,8 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import abscissa
 from wingcrack.figures.marks import mark_moments
 from wingcrack.figures.read import Run, needed
@@ -54,10 +54,7 @@ def probe_names(table: Table) -> list[str]:
 def probe_histories(run: Run) -> Figure:
     """Draw every quantity at every probe: colour tells the probe, dashes the component.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no probes.
+    Raises `AbsentError` if the run has no probes.
     """
     table = needed(run.probes, "probes.csv", "values at probe points")
     names = probe_names(table)
@@ -85,9 +82,7 @@ def probe_histories(run: Run) -> Figure:
                     **_look(index),
                     markevery=(index % 7, max(1, time.size // 7)),
                 )
-        axes.set_title(quantity.title)
-        axes.set_ylabel(f"{quantity.label} [{unit.name}]")
-        axes.set_xlabel(below)
+        axes.set(title=quantity.title, ylabel=f"{quantity.label} [{unit.name}]", xlabel=below)
     style.letter(panels)
     handles = [*_handles(names, quantities), *mark_moments(run, panels)]
     style.outside_legend(figure, handles, 6 if len(handles) <= 6 else 4)
@@ -121,11 +116,11 @@ def _values_table(table: Table, names: Sequence[str], quantities: Sequence[_Quan
 def _handles(names: list[str], quantities: list[_Quantity]) -> list[Line2D]:
     """Colours of the probes, then which component has which dashes."""
     handles = [
-        Line2D([], [], label=f"probe {name}", **_look(index)) for index, name in enumerate(names)
+        style.handle(label=f"probe {name}", **_look(index)) for index, name in enumerate(names)
     ]
     for part, dashes in enumerate(style.LINE_STYLES):
         symbols = [q.parts[part][1] for q in quantities if part < len(q.parts)]
         if symbols:
             label = ", ".join(symbols)
-            handles.append(Line2D([], [], color="#555555", linestyle=dashes, label=label))
+            handles.append(style.handle(color="#555555", linestyle=dashes, label=label))
     return handles

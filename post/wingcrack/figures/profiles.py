@@ -12,18 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
-from wingcrack.figures.foremost import MOST, foremost
-from wingcrack.figures.growth import read_growth
+from wingcrack.figures.growth import MOST, foremost, read_growth
 from wingcrack.figures.load import moment_label
 from wingcrack.figures.read import Run, needed
-from wingcrack.figures.scales import (
-    jump_scale,
-    run_length_unit,
-    traction_scale,
-    without_round_off,
-)
+from wingcrack.figures.scales import jump_scale, run_length_unit, traction_scale, without_round_off
 from wingcrack.figures.states import select_states
 from wingcrack.figures.table import BoolArray, FloatArray, Table
 from wingcrack.figures.units import Unit, displacement_unit, stress_unit
@@ -59,12 +53,8 @@ def fracture_profiles(
 ) -> Iterator[tuple[str, Figure]]:
     """Draw one figure per fracture; yields its label in the files and the figure.
 
-    Of many fractures only the foremost get one, unless `every` one shall.
-
-    Raises
-    ------
-    AbsentError
-        If the run has no fracture cells; at the end, if fractures were left out.
+    Of many fractures only the foremost get one, unless `every` one shall. Raises `AbsentError` if
+    the run has no fracture cells; at the end, if fractures were left out.
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     labels = table.text("fracture")
@@ -173,22 +163,10 @@ def draw_profile(
 ) -> list[Line2D]:
     """Draw a column of fractures.csv along one fracture into axes; gives the legend's entries.
 
-    Parameters
-    ----------
-    axes : Axes
-    run : Run
-    column : str
-        One of `profile_columns`.
-    label : str
-        The fracture in fractures.csv.
-    wanted_s : sequence of float
-        Moments, in the unit of the tables; the nearest written ones are drawn. Default: see
-        `select_states`.
+    Raises `AbsentError` if the run has no fracture cells.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no fracture cells.
+    `column`: one of `profile_columns`. `label`: the fracture in fractures.csv. `wanted_s`: moments,
+    in the unit of the tables; the nearest written ones are drawn. Default: see `select_states`.
     """
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     panel = next(panel for panel in _panels(table) if panel.column == column)
@@ -252,14 +230,13 @@ def _draw_panel(axis: Axes, lines: _Lines, panel: _Panel) -> None:
     for rows, colour in zip(lines.rows, lines.colours, strict=True):
         marker = style.lone_marker(rows.size)
         axis.plot(lines.place[rows], unit.of(values[rows]), color=colour, marker=marker)
-    axis.set_title(panel.title)
-    axis.set_ylabel(f"{panel.label} [{unit.name}]")
+    axis.set(title=panel.title, ylabel=f"{panel.label} [{unit.name}]")
     style.steady(axis, [unit.of(value) for value in shown])
     _mark_initial_ends(axis, lines.initial)
 
 
 def _draw_bound(axis: Axes, lines: _Lines) -> float | None:
-    """Draw the bound of friction beside the tangential traction; gives the coefficient."""
+    """Draw the bound of friction with the tangential traction; gives the coefficient."""
     friction = _friction(lines.run, lines.label)
     if friction is not None:
         values = lines.table.number("traction_t_pa")[lines.mine]
@@ -273,7 +250,7 @@ def _draw_bound(axis: Axes, lines: _Lines) -> float | None:
 
 
 def _jump_unit(panel: _Panel, axis: Axes, shown: Sequence[FloatArray]) -> Unit:
-    """Unit of a jump; apertures of new wings beside much wider ones get a logarithmic axis."""
+    """Unit of a jump; apertures that differ much (new wings) get a logarithmic axis."""
     values = np.concatenate(shown)
     smallest = float(np.nanmin(values))
     if panel.column != "aperture_m" or not 0.0 < _FAR * smallest < float(np.nanmax(values)):
@@ -313,10 +290,9 @@ def _time_handles(
     friction: float | None,
 ) -> list[Line2D]:
     handles = [
-        Line2D([], [], color=colour, label=name)
-        for name, colour in zip(names, colours, strict=True)
+        style.handle(color=colour, label=name) for name, colour in zip(names, colours, strict=True)
     ]
     if friction is not None:
         bound = rf"friction bound $\mu_s |f_n|$, $\mu_s$ = {friction:g}"
-        handles.append(Line2D([], [], color="#555555", label=bound, **_DASHED))
+        handles.append(style.handle(color="#555555", label=bound, **_DASHED))
     return handles

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from wingcrack.figures.errors import AbsentError, RunError
+from wingcrack.errors import AbsentError, RunError
 from wingcrack.figures.fields import Snapshot, read_series
 from wingcrack.figures.scene import Scene, read_scene
 from wingcrack.figures.table import Table, read_table
@@ -20,31 +20,21 @@ class Run:
 
     A file that the scene did not ask for, or that is not written yet, is None (or an empty
     series); only ``history.csv`` has to be there. All values are SI; units are in column names.
-
-    Attributes
-    ----------
-    directory : Path
-    history : Table
-        A row per accepted step.
-    tips, fractures, probes, wells, events, slip_events : Table or None
-    record, network : dict or None
-        The contents of ``run.json`` and ``network.json``.
-    scene : Scene or None
-    matrix, fracture_fields : tuple of Snapshot
-        The written VTU files with their times.
     """
 
     directory: Path
-    history: Table
+    history: Table  # a row per accepted step
     tips: Table | None
     fractures: Table | None
     probes: Table | None
     wells: Table | None
     events: Table | None
     slip_events: Table | None
+    # record, network: the contents of ``run.json`` and ``network.json``
     record: dict[str, Any] | None
     network: dict[str, Any] | None
     scene: Scene | None
+    # matrix, fracture_fields: the written VTU files with their times
     matrix: tuple[Snapshot, ...]
     fracture_fields: tuple[Snapshot, ...]
 
@@ -71,15 +61,9 @@ class Run:
 def read_run(directory: str | Path) -> Run:
     """Read the files of a run.
 
-    Parameters
-    ----------
-    directory : str or Path
-        What ``wingcrack run`` wrote, for instance ``out/wing_crack``.
+    Raises `RunError` if the directory or ``history.csv`` is missing, or a file is damaged.
 
-    Raises
-    ------
-    RunError
-        If the directory or ``history.csv`` is missing, or a file is damaged.
+    `directory`: what ``wingcrack run`` wrote, for instance ``out/wing_crack``.
     """
     root = Path(directory)
     if not root.is_dir():
@@ -111,10 +95,7 @@ def read_run(directory: str | Path) -> Run:
 def needed(table: Table | None, file: str, holds: str) -> Table:
     """Give a table with rows, or say what is absent.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no such file, or the file has no rows.
+    Raises `AbsentError` if the run has no such file, or the file has no rows.
     """
     if table is None:
         raise AbsentError(f"the run has no {file} ({holds})")
@@ -130,10 +111,7 @@ def _optional_table(path: Path) -> Table | None:
 def optional_json(path: Path) -> dict[str, Any] | None:
     """Give the object that a JSON file holds; None where there is no such file.
 
-    Raises
-    ------
-    RunError
-        If it is damaged.
+    Raises `RunError` if it is damaged.
     """
     if not path.exists():
         return None

@@ -23,20 +23,11 @@ _MOST_DECADES = 3.0
 
 @dataclass(frozen=True)
 class Region:
-    """A part of the rock.
-
-    Attributes
-    ----------
-    name : str
-    corners : (n, 2) array
-        Of its outline, which may reach beyond the body [m].
-    permeability_m2 : tuple of float
-        Components xx and yy [m2].
-    """
+    """A part of the rock."""
 
     name: str
-    corners: FloatArray
-    permeability_m2: tuple[float, float]
+    corners: FloatArray  # (n, 2) of its outline, which may reach beyond the body [m]
+    permeability_m2: tuple[float, float]  # components xx and yy [m2]
 
 
 def read_region(
@@ -131,7 +122,7 @@ def region_label(region: Region) -> str:
     along_x, along_y = region.permeability_m2
     if along_x == along_y:
         return f"{region.name}: $k$ = {_power(along_x)} m²"
-    # on two lines: one would be too long beside a map
+    # on two lines: one would be too long next to a map
     return f"{region.name}: $k_{{xx}}$ = {_power(along_x)} m²,\n$k_{{yy}}$ = {_power(along_y)} m²"
 
 

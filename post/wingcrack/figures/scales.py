@@ -39,7 +39,7 @@ def traction_scale(run: Run) -> float:
 
 
 def without_round_off(values: FloatArray, scale: float) -> FloatArray:
-    """Values with zero for what is round-off beside `scale` (same unit)."""
+    """Values with zero for what is round-off compared with `scale` (same unit)."""
     return np.where(np.abs(values) <= ROUND_OFF * scale, 0.0, values)
 
 

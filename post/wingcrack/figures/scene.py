@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from wingcrack.figures.errors import RunError
-from wingcrack.figures.proportional import control_of, drive_of
+from wingcrack.errors import RunError
 from wingcrack.figures.regions import Region, read_region
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.text_files import read_text
@@ -43,56 +43,33 @@ class Well:
 
 @dataclass(frozen=True)
 class Scene:
-    """What figures use of a scene.
-
-    Attributes
-    ----------
-    name, title : str
-    toughness_pa_sqrtm : float or None
-        K_IC [Pa m^1/2]; None if the scene has none.
-    fractures : tuple of FractureLaw
-        In the order of the file, which is the order of the numbers in the results.
-    outline : (n, 2) array or None
-        Closed line around the body [m]; None if the scene does not tell it.
-    young_pa : float or None
-        Young's modulus [Pa].
-    step_s : float or None
-        Regular time step [s]; None without a fluid, or where none is given.
-    chosen_steps : bool
-        Whether time steps follow from their error.
-    wells : tuple of Well
-        Injections.
-    load_pa, load_name : float or None, str
-        Stress that stands for the load, at load factor 1 [Pa], and how it is called; None where
-        the scene has no load of a kind for which there is one.
-    regions : tuple of Region
-        Parts of the rock with a permeability of their own, in the order in which they count.
-    permeability_m2 : tuple of float or None
-        Components xx and yy of the rock elsewhere [m2].
-    breadth_m : float
-        Assumed length of the fractures out of the plane [m].
-    control : str
-        How growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
-        without such growth.
-    drive : str
-        Whether 'forces' or 'grips' drive a body whose answer is in proportion to them, else ''.
-    """
+    """What figures use of a scene."""
 
     name: str
     title: str
-    toughness_pa_sqrtm: float | None
+    toughness_pa_sqrtm: float | None  # K_IC [Pa m^1/2]; None if the scene has none
+    # in the order of the file, which is the order of the numbers in the results
     fractures: tuple[FractureLaw, ...]
+    # (n, 2) closed line around the body [m]; None if the scene does not tell it
     outline: FloatArray | None = None
-    young_pa: float | None = None
+    young_pa: float | None = None  # Young's modulus [Pa]
+    # regular time step [s]; None without a fluid, or where none is given
     step_s: float | None = None
-    chosen_steps: bool = False
-    wells: tuple[Well, ...] = ()
+    chosen_steps: bool = False  # whether time steps follow from their error
+    wells: tuple[Well, ...] = ()  # injections
+    # load_pa, load_name: stress that stands for the load, at load factor 1 [Pa], and how it is
+    # called; None where the scene has no load of a kind for which there is one
     load_pa: float | None = None
     load_name: str = ""
+    # parts of the rock with a permeability of their own, in the order in which they count
     regions: tuple[Region, ...] = ()
+    # components xx and yy of the rock elsewhere [m2]
     permeability_m2: tuple[float, float] | None = None
-    breadth_m: float = 1.0
+    breadth_m: float = 1.0  # assumed length of the fractures out of the plane [m]
+    # how growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
+    # without such growth
     control: str = ""
+    # whether 'forces' or 'grips' drive a body whose answer is in proportion to them, else ''
     drive: str = ""
 
     def fracture(self, label: str) -> FractureLaw | None:
@@ -288,3 +265,74 @@ def _number(path: Path, group: str, values: dict[str, list[str]], key: str) -> f
         return float(raw.lower().replace("d", "e"))
     except ValueError:
         raise RunError(f"{path}: '{raw}' for {key} in &{group} is no number.") from None
+
+
+Groups = Sequence[tuple[str, dict[str, list[str]]]]
+
+FORCES = "forces"  # dead loads: tractions, point loads, pressure on faces
+GRIPS = "grips"  # displacements of sides and restraints, and slip that is given
+
+_FORCES = {
+    "side": ("x_traction", "y_traction", "normal_traction", "shear_traction"),
+    "point_load": ("x_force", "y_force"),
+    "fracture": ("face_pressure",),
+}
+_GRIPS = {
+    "side": ("x_displacement", "y_displacement"),
+    "restraint": ("x_displacement", "y_displacement"),
+    "fracture": ("slip",),
+}
+_CONSTANT = {
+    "in_situ": ("sxx", "syy", "sxy", "sxx_per_y", "syy_per_y"),
+    "gravity": ("x", "y"),
+    "fracture": ("friction", "cohesion", "normal_stiffness"),
+}
+
+
+def control_of(groups: Groups) -> str:
+    """How growth in equilibrium takes the load along, 'length' or 'dead'; '' where none does."""
+    names = {name for name, _ in groups}
+    growth = next((values for name, values in groups if name == "growth"), {})
+    if "fluid" in names or _word(growth, "law") == "paris":
+        return ""
+    if _word(growth, "enabled").strip(".").lower() not in ("true", "t"):
+        return ""
+    load = next((values for name, values in groups if name == "load"), {})
+    return _word(load, "control") or ("dead" if load.get("factors") else "length")
+
+
+def drive_of(groups: Groups) -> str:
+    """`FORCES` or `GRIPS` where these alone drive a body whose answer is in proportion to them.
+
+    '' where both do, where stress in situ, weight, friction, bonds or joints that close add what
+    does not scale with the factor, or where nothing drives the body.
+    """
+    if _any(groups, _CONSTANT):
+        return ""
+    forces, grips = _any(groups, _FORCES), _any(groups, _GRIPS)
+    if forces == grips:
+        return ""
+    return FORCES if forces else GRIPS
+
+
+def _any(groups: Groups, names: dict[str, tuple[str, ...]]) -> bool:
+    """Whether any of the named values is given and not zero."""
+    return any(
+        _is_not_zero(raw)
+        for group, values in groups
+        for name in names.get(group, ())
+        for raw in values.get(name, [])
+    )
+
+
+def _is_not_zero(raw: str) -> bool:
+    number = raw.rpartition("*")[2].lower().replace("d", "e")
+    try:
+        return float(number) != 0.0
+    except ValueError:
+        return True  # not a number: what it is worth is not known
+
+
+def _word(values: dict[str, list[str]], name: str) -> str:
+    """The word that is given for a name, without its quotes."""
+    return "".join(values.get(name, [])[:1]).strip("'\"")

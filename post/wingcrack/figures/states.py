@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from wingcrack.errors import RunError
 from wingcrack.figures.durations import moment_of
-from wingcrack.figures.errors import RunError
 from wingcrack.figures.pressures import well_pressures
 from wingcrack.figures.read import Run
 from wingcrack.figures.table import FloatArray

@@ -12,15 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import abscissa
-from wingcrack.figures.names import HALO
 from wingcrack.figures.pressures import highest_pressures, injected_and_produced, well_pressures
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.states import growth_start
-from wingcrack.figures.story_map import draw_map
+from wingcrack.figures.story_map import HALO, draw_map
 from wingcrack.figures.table import FloatArray, Table
 from wingcrack.figures.units import MEGAPASCAL, area_unit, rate_unit, time_unit
 from wingcrack.figures.wells import MOST_WELLS, well_rows
@@ -67,10 +66,8 @@ class Mark:
 def story(run: Run) -> Figure:
     """Map of the network with slip events; pressure, injectivity, fluid, lengths, moment.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no wells, no fractures, one state only, or is of an earlier version.
+    Raises `AbsentError` if the run has no wells, no fractures, one state only, or is of an earlier
+    version.
     """
     table = run.history
     if not table.has("injected_m2"):
@@ -169,8 +166,7 @@ def draw_pressure(axes: Axes, run: Run) -> None:
     time = abscissa(run, run.history.moments())[0]
     (pressure,) = well_pressures(run.history).values()
     axes.plot(time, MEGAPASCAL.of(pressure), color=style.CYCLE[0], label="pressure")
-    axes.set_ylabel("well pressure [MPa]")
-    axes.set_title("well pressure and rate")
+    axes.set(ylabel="well pressure [MPa]", title="well pressure and rate")
     rate = run.history.number("injection_rate_m2_s")
     beside = axes.twinx()
     unit = rate_unit(rate)
@@ -189,14 +185,12 @@ def _draw_pressures(axes: Axes, run: Run, wells: Table) -> None:
         time = abscissa(run, wells.moments()[rows])[0]
         colour = style.CYCLE[index % MOST_WELLS]
         axes.plot(time, MEGAPASCAL.of(wells.number("pressure_pa")[rows]), color=colour, label=name)
-    axes.set_ylabel("pressure at depth [MPa]")
-    axes.set_title("pressure of the wells")
+    axes.set(ylabel="pressure at depth [MPa]", title="pressure of the wells")
     axes.legend(loc="best", ncols=2)
 
 
 def _draw_injectivity(axes: Axes, run: Run) -> None:
-    axes.set_title("injectivity: rate over rise of pressure")
-    axes.set_ylabel("injectivity [m²/(s Pa)]")
+    axes.set(title="injectivity: rate over rise of pressure", ylabel="injectivity [m²/(s Pa)]")
     lows, highs = [], []
     for index, name, time, values in _injectivities(run):
         shown = np.where(values > 0.0, values, np.nan)
@@ -256,8 +250,7 @@ def _draw_fluid(axes: Axes, run: Run) -> None:
         "injected, less produced" if np.any(injected_and_produced(table)[1] > 0.0) else "injected"
     )
     axes.plot(time, unit.of(given), color="#000000", lw=1.0, label=label)
-    axes.set_title("where the fluid is")
-    axes.set_ylabel(f"volume per thickness [{unit.name}]")
+    axes.set(title="where the fluid is", ylabel=f"volume per thickness [{unit.name}]")
     axes.set_ylim(bottom=min(0.0, float(unit.of(below).min())))
     axes.legend(loc="upper left")
 
@@ -269,8 +262,7 @@ def draw_lengths(axes: Axes, run: Run) -> None:
     for name, column, colour, dashes in _LENGTHS:
         values = unit.of(run.history.number(column))
         axes.plot(time, values, dashes, color=colour, label=name)
-    axes.set_title("length: connected with a well, stimulated")
-    axes.set_ylabel(f"length [{unit.name}]")
+    axes.set(title="length: connected with a well, stimulated", ylabel=f"length [{unit.name}]")
     low, high = axes.get_ylim()
     axes.set_ylim(0.0, high + 0.35 * (high - min(low, 0.0)))  # room for the legend
     axes.legend(loc="upper left", ncols=2)
@@ -282,8 +274,7 @@ def _draw_moment(axes: Axes, run: Run) -> None:
     breadth = run.scene.breadth_m if run.scene else 1.0
     moment = run.history.number("seismic_moment_nm")
     axes.plot(time, breadth * (moment - moment[0]), color=style.CYCLE[1])
-    axes.set_title("seismic moment of all slip")
-    axes.set_ylabel("moment [N m]")
+    axes.set(title="seismic moment of all slip", ylabel="moment [N m]")
     axes.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
     axes.yaxis.get_offset_text().set_fontsize(6)
     axes.set_ylim(bottom=0.0)
@@ -291,8 +282,7 @@ def _draw_moment(axes: Axes, run: Run) -> None:
 
 def _draw_events(axes: Axes, run: Run) -> None:
     """Slip events from their beginning to their end, at their magnitude."""
-    axes.set_title("slip events")
-    axes.set_ylabel("moment magnitude [-]")
+    axes.set(title="slip events", ylabel="moment magnitude [-]")
     table = run.slip_events
     if table is None or table.rows == 0:
         axes.set_ylim(0.0, 1.0)

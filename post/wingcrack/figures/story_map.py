@@ -2,26 +2,136 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import matplotlib.patheffects as effects
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
+from matplotlib.path import Path
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox, IdentityTransform
 
+from wingcrack.errors import RunError
 from wingcrack.figures import style
-from wingcrack.figures.errors import RunError
-from wingcrack.figures.foremost import foremost
-from wingcrack.figures.growth import Growth, read_growth
-from wingcrack.figures.names import Names
+from wingcrack.figures.growth import Growth, foremost, read_growth
 from wingcrack.figures.network import network_box
 from wingcrack.figures.read import Run
 from wingcrack.figures.regions import draw_regions
 from wingcrack.figures.scene import Scene
 from wingcrack.figures.table import FloatArray, Table
 from wingcrack.figures.units import Unit, length_unit
+
+HALO = [effects.withStroke(linewidth=1.8, foreground="white")]
+_SIZE = 7  # [point]
+_ASIDE, _BACK = 7.0, 4.0  # [point] from an end: away from the line, and beyond its end
+_GAP = 1.0  # [point] around what must stay clear
+
+
+class Names(Artist):
+    """Names of lines without overlaps, in the order in which they are placed.
+
+    A name for which there is no space is omitted. The free space is known once the figure is laid
+    out, so places are found when it is drawn. `lines`: names and their lines, in the unit of the
+    axes. `others`: lines that names should not cross, where another place is free. `points` (n, 2):
+    marks that names must not cover.
+    """
+
+    def __init__(
+        self,
+        lines: Sequence[tuple[str, FloatArray]],
+        others: Sequence[FloatArray],
+        points: FloatArray,
+    ) -> None:
+        super().__init__()
+        self._lines = list(lines)
+        self._others = list(others)
+        self._points = points
+        self.placed: list[tuple[str, Bbox]] = []  # when it was drawn last [pixel]
+        self.set_zorder(7)
+        self.set_in_layout(False)
+
+    def draw(self, renderer: Any) -> None:
+        """Place the names and draw them."""
+        self.placed = []
+        if not self.get_visible() or self.axes is None:
+            return
+        scale = renderer.points_to_pixels(1.0)
+        transform = self.axes.transData
+        paths = [Path(transform.transform(line)) for line in self._others]
+        marks = [_around(point, 3.0 * scale) for point in transform.transform(self._points)]
+        for name, line in self._lines:
+            text = self._text(name)
+            size = text.get_window_extent(renderer)
+            size = size.translated(-0.5 * (size.x0 + size.x1), -0.5 * (size.y0 + size.y1))
+            place = self._place(transform.transform(line), size, (paths, marks), scale)
+            if place is None:
+                continue
+            text.set_position((float(place[0]), float(place[1])))
+            text.draw(renderer)
+            self.placed.append((name, size.translated(*place)))
+
+    def _text(self, name: str) -> Text:
+        text = Text(
+            0.0,
+            0.0,
+            name,
+            ha="center",
+            va="center",
+            fontsize=_SIZE,
+            path_effects=HALO,
+            transform=IdentityTransform(),
+        )
+        assert self.axes is not None
+        text.set_figure(self.axes.figure)
+        return text
+
+    def _place(
+        self,
+        line: FloatArray,
+        size: Bbox,
+        taken: tuple[Sequence[Path], Sequence[Bbox]],
+        scale: float,
+    ) -> FloatArray | None:
+        """Middle of the name: the first free place, better one that no line crosses."""
+        assert self.axes is not None
+        frame = self.axes.bbox
+        second = None
+        for place in _candidates(line, scale):
+            box = size.translated(*place).padded(_GAP * scale)
+            inside = frame.x0 <= box.x0 <= box.x1 <= frame.x1
+            if not (inside and frame.y0 <= box.y0 <= box.y1 <= frame.y1):
+                continue
+            if any(box.overlaps(other) for other in taken[1]):
+                continue
+            if any(box.overlaps(other) for _, other in self.placed):
+                continue
+            if not any(path.intersects_bbox(box, filled=False) for path in taken[0]):
+                return place
+            second = place if second is None else second
+        return second
+
+
+def _around(point: FloatArray, half: float) -> Bbox:
+    return Bbox([point - half, point + half])
+
+
+def _candidates(line: FloatArray, scale: float) -> Iterator[FloatArray]:
+    """Places next to the ends of a line and its middle, first those above it."""
+    along = line[0] - line[-1]
+    along = along / max(float(np.linalg.norm(along)), 1e-300)
+    above = np.array([-along[1], along[0]])
+    if above[1] < 0.0 or (above[1] == 0.0 and above[0] < 0.0):
+        above = -above
+    middle = line[len(line) // 2] if len(line) > 2 else 0.5 * (line[0] + line[-1])
+    for side in (above, -above):
+        yield line[0] + scale * (_ASIDE * side - _BACK * along)
+        yield line[-1] + scale * (_ASIDE * side + _BACK * along)
+        yield middle + scale * _ASIDE * side
+    yield line[0] + scale * 2.0 * _ASIDE * along
+    yield line[-1] - scale * 2.0 * _ASIDE * along
+
 
 # widths tell the states in grey print; what is open is hollow
 _WIDTHS = {"stick": 1.2, "slip": 2.6, "open": 3.0}
@@ -52,11 +162,11 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     begins = [points[0] for g in growths for points in (g.start, g.end) if len(points) > 1]
     if begins:
         axes.plot(*unit.of(np.array(begins)).T, "s", zorder=5, ls="none", **_WING)
-        handles.append(Line2D([], [], ls="none", marker="s", label="a wing begins", **_WING))
+        handles.append(style.handle(ls="none", marker="s", label="a wing begins", **_WING))
     joints = [(joint["x_m"], joint["y_m"]) for joint in network.get("joints", [])]
     if joints:
         axes.plot(*unit.of(np.array(joints)).T, "o", zorder=6, ls="none", **_JOINT)
-        handles.append(Line2D([], [], ls="none", marker="o", label="joint", **_JOINT))
+        handles.append(style.handle(ls="none", marker="o", label="joint", **_JOINT))
     handles += draw_wells(axes, run, unit)
     wells = well_places(scene, network)
     named = [(item.name, unit.of(item.initial)) for item in foremost(growths, scene)]
@@ -65,10 +175,7 @@ def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     handles += _draw_events(axes, run, unit)
     axes.set_xlim(*unit.of(np.array(box[:2])))
     axes.set_ylim(*unit.of(np.array(box[2:])))
-    axes.set_aspect("equal")
-    axes.grid(visible=False)
-    axes.set_xlabel(f"$x$ [{unit.name}]")
-    axes.set_ylabel(f"$y$ [{unit.name}]")
+    style.map_axes(axes, unit)
     return handles
 
 
@@ -116,7 +223,7 @@ def _draw_states(axes: Axes, network: Mapping[str, Any], cells: Table, unit: Uni
             _draw_piece(axes, unit.of(_between(points, arc, edges[first], edges[k])), name)
             first = k
     return [
-        Line2D([], [], label=name, path_effects=_effects(name), **_look(name))
+        style.handle(label=name, path_effects=_effects(name), **_look(name))
         for name in style.STATES
         if name in found
     ]
@@ -156,7 +263,7 @@ def draw_wells(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
         return []
     whole = any(well.place_m is None for well in wells)
     label = "well, along its fracture" if whole else "well"
-    return [Line2D([], [], ls="none", marker="v", label=label, **_WELL)]
+    return [style.handle(ls="none", marker="v", label=label, **_WELL)]
 
 
 def well_places(scene: Scene | None, network: Mapping[str, Any]) -> list[tuple[float, float]]:
@@ -200,9 +307,7 @@ def _draw_events(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
         place = unit.of(np.array([table.number("x_m")[k], table.number("y_m")[k]]))
         axes.plot(*place, "o", zorder=5, ms=float(width[k]), **_EVENT)
     return [
-        Line2D(
-            [],
-            [],
+        style.handle(
             ls="none",
             marker="o",
             ms=7,

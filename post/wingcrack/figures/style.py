@@ -16,6 +16,8 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from wingcrack.figures.units import Unit
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -24,7 +26,7 @@ DOUBLE_COLUMN = 7.1  # [inch]
 
 # Okabe and Ito (2008), "Color universal design"; yellow is left out: too light on paper
 CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
-MARKERS = ("", "o", "s", "^", "v", "D", "x")  # beside the colours, for grey print
+MARKERS = ("", "o", "s", "^", "v", "D", "x")  # in addition to the colours, for grey print
 LINE_STYLES: tuple[Literal["-", "--", "-.", ":"], ...] = ("-", "--", "-.", ":")
 
 STATES = ("stick", "slip", "open")  # in the order of their numbers in the VTU files
@@ -93,10 +95,7 @@ def line_look(index: int) -> dict[str, Any]:
 
     Neighbours differ in both, so that a line on top of another one lets it be seen.
     """
-    return {
-        "color": CYCLE[index % len(CYCLE)],
-        "linestyle": LINE_STYLES[index % len(LINE_STYLES)],
-    }
+    return {"color": CYCLE[index % len(CYCLE)], "linestyle": LINE_STYLES[index % len(LINE_STYLES)]}
 
 
 def ordered_colours(count: int) -> list[tuple[float, float, float, float]]:
@@ -140,9 +139,19 @@ def steady(axes: Axes, values: Sequence[npt.ArrayLike]) -> None:
 def state_handles(line_width: float = 2.0) -> list[Line2D]:
     """Entries of the legend that tells stick, slip and open."""
     return [
-        Line2D([], [], color=STATE_COLOURS[state], linewidth=line_width, label=state)
-        for state in STATES
+        handle(color=STATE_COLOURS[state], linewidth=line_width, label=state) for state in STATES
     ]
+
+
+def handle(**look: Any) -> Line2D:
+    """Entry of a legend that stands for lines or marks of a look."""
+    return Line2D([], [], **look)
+
+
+def map_axes(axes: Axes, unit: Unit) -> None:
+    """Axes of a map: both of one scale, in this unit, without a grid."""
+    axes.set(aspect="equal", xlabel=f"$x$ [{unit.name}]", ylabel=f"$y$ [{unit.name}]")
+    axes.grid(visible=False)
 
 
 def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:

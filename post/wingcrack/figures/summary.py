@@ -19,13 +19,7 @@ from wingcrack.figures.history import draw_jumps, draw_length, draw_pressure, dr
 from wingcrack.figures.load import STEP_LABEL, abscissa, draw_load, has_load, tip_steps
 from wingcrack.figures.read import Run
 from wingcrack.figures.states import growth_start
-from wingcrack.figures.story import (
-    COLUMNS,
-    Mark,
-    draw_lengths,
-    draw_marks,
-    find_marks,
-)
+from wingcrack.figures.story import COLUMNS, Mark, draw_lengths, draw_marks, find_marks
 from wingcrack.figures.story import draw_pressure as draw_pressure_and_rate
 from wingcrack.figures.story_map import draw_map
 
@@ -124,8 +118,7 @@ def _draw_length(axes: Axes, run: Run) -> None:
         draw_jumps(axes, run)  # the load stands over the length already
     elif run.history.has(*COLUMNS):
         draw_lengths(axes, run)
-        axes.set_title("length")
-        axes.set_xlabel(abscissa(run, run.history.moments())[1])
+        axes.set(title="length", xlabel=abscissa(run, run.history.moments())[1])
     else:
         draw_length(axes, run)
 
@@ -148,8 +141,7 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
     np.maximum.at(largest, groups, ratio)
     axes.plot(moments, largest, color=style.CYCLE[0], marker=style.lone_marker(moments.size))
     axes.axhline(1.0, color=_GREY, linewidth=0.8, linestyle="--")
-    axes.set_ylabel("ratio [-]")
-    axes.set_xlabel(below)
+    axes.set(ylabel="ratio [-]", xlabel=below)
     axes.set_ylim(min(0.0, float(largest.min())), 1.08 * max(1.0, float(largest.max())))
 
 

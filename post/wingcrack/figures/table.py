@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
 from wingcrack.figures.text_files import csv_rows, read_text
 
 FloatArray = npt.NDArray[np.float64]
@@ -22,21 +22,11 @@ Shared = TypeVar("Shared", bound=npt.NDArray[Any])
 
 @dataclass(frozen=True)
 class Table:
-    """A CSV file by columns.
+    """A CSV file by columns."""
 
-    Attributes
-    ----------
-    path : Path
-        The file, for error messages.
-    cells : dict of str to sequence of str
-        The text of every column, in the order of the rows.
-    rows : int
-        Number of rows below the header.
-    """
-
-    path: Path
-    cells: dict[str, Sequence[str]]
-    rows: int
+    path: Path  # the file, for error messages
+    cells: dict[str, Sequence[str]]  # the text of every column, in the order of the rows
+    rows: int  # number of rows below the header
     _texts: dict[str, TextArray] = field(default_factory=dict, init=False, repr=False)
     _numbers: dict[str, FloatArray] = field(default_factory=dict, init=False, repr=False)
 
@@ -92,13 +82,8 @@ def read_table(path: Path) -> Table:
     """Read a CSV file with one header line.
 
     A last line that is cut off (no line end, too few values) belongs to a run that is still being
-    written and is left out.
-
-    Raises
-    ------
-    RunError
-        If the file is missing, not text, without header, or if a line has the wrong number of
-        values.
+    written and is left out. Raises `RunError` if the file is missing, not text, without header, or
+    if a line has the wrong number of values.
     """
     try:
         content = read_text(path)

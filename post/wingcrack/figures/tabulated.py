@@ -61,9 +61,7 @@ def intensities_table(run: Run) -> Figure:
     head = ["tip", r"$K_\mathrm{I}$", r"$K_\mathrm{II}$", r"$K_\mathrm{I}$ (DC)"]
     head += [r"$K_\mathrm{II}$ (DC)", r"$K_\mathrm{eq}$"]
     parts = [unit.of(value) for value in values.values()]
-    remarks = [
-        f"$K$ in {unit.name}, by the interaction integral; DC: by displacement correlation",
-    ]
+    remarks = [f"$K$ in {unit.name}, by the interaction integral; DC: by displacement correlation"]
     norm, remark = _load_intensity(run)
     if norm is not None:
         head += [r"$K_\mathrm{I}/K_0$", r"$K_\mathrm{II}/K_0$"]

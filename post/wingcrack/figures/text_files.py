@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import re
 import sys
 import tomllib
@@ -42,6 +43,16 @@ def read_text(path: Path) -> str:
     except UnicodeDecodeError as reason:
         line = reason.object.count(b"\n", 0, reason.start) + 1
         raise ValueError(f"it is not UTF-8 text (line {line}); save it as UTF-8") from None
+
+
+def write_whole(path: Path, content: str | bytes) -> Path:
+    """Write a file that appears whole: under another name first, which is then changed."""
+    aside = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        aside.write_bytes(content.encode() if isinstance(content, str) else content)
+        return aside.replace(path)
+    finally:
+        aside.unlink(missing_ok=True)
 
 
 def read_json(path: Path) -> Any:

@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from wingcrack.figures.text_files import json_value, read_json
+from wingcrack.figures.text_files import json_value, read_json, write_whole
 
 RECORD = ".drawn.json"
 _LARGEST = 2**28  # [byte] of fields that are read to see whether they changed
@@ -28,10 +27,7 @@ MEASURED = ("timers_s", "cpu_s", "wall_s", "peak_memory_mb")
 class Drawn:
     """The record of a run's figures.
 
-    Parameters
-    ----------
-    folder : Path
-        Where the figures are.
+    `folder`: where the figures are.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -84,13 +80,8 @@ class Drawn:
         return {self._path.parent / file for file in files} if isinstance(files, dict) else set()
 
     def _write(self) -> None:
-        aside = self._path.with_name(f"{RECORD}.{os.getpid()}")
-        try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            aside.write_text(json.dumps(self._entries, indent=1) + "\n", encoding="utf-8")
-            aside.replace(self._path)
-        finally:
-            aside.unlink(missing_ok=True)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(self._path, json.dumps(self._entries, indent=1) + "\n")
 
 
 def fingerprint_of(parts: Iterable[bytes | str]) -> str:

@@ -12,8 +12,8 @@ from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
+from wingcrack.errors import RunError
 from wingcrack.figures import style
-from wingcrack.figures.errors import RunError
 from wingcrack.figures.fields import FractureField, MatrixField, nearest
 from wingcrack.figures.frames import (
     Frame,
@@ -27,9 +27,9 @@ from wingcrack.figures.frames import (
     zoom_window,
 )
 from wingcrack.figures.load import moment_label
+from wingcrack.figures.maps import MEAN_COLOURS, mean_stress
 from wingcrack.figures.read import Run
 from wingcrack.figures.states import last_settled
-from wingcrack.figures.stress import MEAN_COLOURS, mean_stress
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.units import MEGAPASCAL, METRE, stress_unit
 
@@ -39,21 +39,12 @@ _MARGIN = 0.04  # of the body's size around it
 
 @style.styled
 def view(run: Run, wanted: Sequence[float] = ()) -> Figure:
-    """Draw the deformed body, and beside it (where fractures are small) what is near them.
+    """Draw the deformed body and, where fractures are small, their surroundings.
 
-    Parameters
-    ----------
-    run : Run
-    wanted : sequence of float
-        Moments, in the unit of the tables; the written state nearest to the last of them is drawn.
-        Default: the last one that is in no short step after growth.
+    Raises `AbsentError` if the run wrote no VTU files, `RunError` if a VTU file is damaged.
 
-    Raises
-    ------
-    AbsentError
-        If the run wrote no VTU files.
-    RunError
-        If a VTU file is damaged.
+    `wanted`: moments, in the unit of the tables; the written state nearest to the last of them is
+    drawn. Default: the last one that is in no short step after growth.
     """
     written, rows = written_states(run)
     if wanted:

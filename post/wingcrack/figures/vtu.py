@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import RunError
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -28,23 +28,12 @@ _SIZE_BYTES = 8  # of the UInt64 before an array
 
 @dataclass(frozen=True)
 class Grid:
-    """An unstructured grid.
+    """An unstructured grid."""
 
-    Attributes
-    ----------
-    points : (n, 3) array
-        Nodes [m].
-    connectivity : (k,) array
-        Nodes of all cells one after another, from 0.
-    kinds : (m,) array
-        VTK's cell type of each cell.
-    cell, point : dict of str to array
-        Data by name; the first axis is that of the cells or of the points.
-    """
-
-    points: FloatArray
-    connectivity: IntArray
-    kinds: IntArray
+    points: FloatArray  # (n, 3) nodes [m]
+    connectivity: IntArray  # (k,) nodes of all cells one after another, from 0
+    kinds: IntArray  # (m,) VTK's cell type of each cell
+    # cell, point: data by name; the first axis is that of the cells or of the points
     cell: dict[str, FloatArray]
     point: dict[str, FloatArray]
 
@@ -52,10 +41,7 @@ class Grid:
 def read_vtu(path: Path) -> Grid:
     """Read a file.
 
-    Raises
-    ------
-    RunError
-        If it is missing, cut off, or not as a run writes it.
+    Raises `RunError` if it is missing, cut off, or not as a run writes it.
     """
     try:
         content = path.read_bytes()

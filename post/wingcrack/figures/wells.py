@@ -8,10 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
+from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.errors import AbsentError
 from wingcrack.figures.load import abscissa
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.table import FloatArray, Table
@@ -34,10 +33,7 @@ def well_rows(table: Table) -> Iterator[tuple[int, str, Rows]]:
 def well_histories(run: Run) -> Figure:
     """Pressure at depth and at the head, flow, volume and injectivity of each well.
 
-    Raises
-    ------
-    AbsentError
-        If the run has no wells, or one state only.
+    Raises `AbsentError` if the run has no wells, or one state only.
     """
     table = needed(run.wells, "wells.csv", "what each well did")
     if run.history.rows == 1:
@@ -62,18 +58,17 @@ def well_histories(run: Run) -> Figure:
         (volume, "volume so far", f"volume per thickness [{unit.name}]"),
         (injectivity, "injectivity: flow over rise of pressure", "injectivity [m²/(s Pa)]"),
     ):
-        axes.set_title(title)
-        axes.set_ylabel(label)
+        axes.set(title=title, ylabel=label)
     for axes in panels[2:]:
         axes.set_xlabel(below)
     style.letter(panels)
     handles = [
-        Line2D([], [], color=style.CYCLE[index % MOST_WELLS], label=name)
+        style.handle(color=style.CYCLE[index % MOST_WELLS], label=name)
         for index, name, _ in well_rows(table)
     ]
     handles += [
-        Line2D([], [], color=_GREY, linestyle="-", label="at depth; out of the well"),
-        Line2D([], [], color=_GREY, linestyle=":", label="at the head"),
+        style.handle(color=_GREY, linestyle="-", label="at depth; out of the well"),
+        style.handle(color=_GREY, linestyle=":", label="at the head"),
     ]
     style.outside_legend(figure, handles, 4)
     return figure

@@ -9,8 +9,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from typing import Generic, TypeVar
 
-from wingcrack.runner.outcome import Outcome
-from wingcrack.runner.task import Task, run_task
+from wingcrack.runner.task import Outcome, Task, run_task
 
 Name = TypeVar("Name")
 
@@ -30,7 +29,7 @@ class Pool(Generic[Name]):
         run: Callable[[Name], Outcome],
         progress: Callable[[Name, Outcome], None],
     ) -> dict[Name, Outcome]:
-        """Outcome by name; `progress` is told of each as it ends.
+        """Outcome by name; `progress` is called with each as it ends.
 
         `run` must be able to work in a thread; it runs its task by `run_task` of this pool.
         """

@@ -3,20 +3,87 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-from wingcrack.runner.outcome import Outcome, judge_end, read_outcome, write_outcome
+from wingcrack.figures.text_files import read_json, write_whole
+
+RECORD = "outcome.json"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended."""
+
+    folder: str  # where its files are
+    # "finished", "failed" (exit status 1), "refused" (exit status 2), "crashed" (a signal, the time
+    # limit), or "invalid" where the caller does not say rightly what to run
+    status: str
+    reason: str  # last line on stderr or the reason in run.json, where it did not finish
+    # cpu_s, wall_s: from run.json, and measured around the call; 0 where unknown
+    cpu_s: float
+    wall_s: float
+    reused: bool = False  # whether the run is one of an earlier call
+
+
+def judge_end(folder: Path, status: int, late: bool, limit_s: float, wall_s: float) -> Outcome:
+    """Outcome of a call that ended with an exit status, or was ended as it was too `late`."""
+    place = str(folder)
+    said = (folder / "stderr.txt").read_text(encoding="utf-8", errors="replace").split("\n")
+    last = next((line.strip() for line in reversed(said) if line.strip()), "")
+    if late:
+        return Outcome(place, "crashed", f"not done after {limit_s:g} s", 0.0, wall_s)
+    record = _run_record(folder / "output" / "run.json")
+    cpu_s = record.get("cpu_s")
+    cpu_s = float(cpu_s) if isinstance(cpu_s, int | float) else 0.0
+    if status < 0:
+        name = signal.Signals(-status).name
+        return Outcome(place, "crashed", f"ended by {name} {last}".strip(), cpu_s, wall_s)
+    if status == 2:
+        return Outcome(place, "refused", last, cpu_s, wall_s)
+    if status != 0:
+        return Outcome(place, "failed", last or f"exit status {status}", cpu_s, wall_s)
+    if record.get("status") != "finished":
+        reason = f"run.json says {record.get('status', 'nothing')!r}: {record.get('reason', '')}"
+        return Outcome(place, "failed", reason, cpu_s, wall_s)
+    if not cpu_s > 0.0:
+        return Outcome(place, "failed", "run.json has no cpu_s above 0", 0.0, wall_s)
+    return Outcome(place, "finished", "", cpu_s, wall_s)
+
+
+def write_outcome(folder: Path, outcome: Outcome) -> None:
+    """Leave the outcome in the run's folder, for later calls; it appears whole."""
+    write_whole(folder / RECORD, json.dumps(asdict(outcome), indent=1))
+
+
+def read_outcome(folder: Path) -> Outcome | None:
+    """Outcome that an earlier call left, or None."""
+    try:
+        found = read_json(folder / RECORD)
+        return Outcome(**(found | {"folder": str(folder), "reused": True}))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
+def _run_record(path: Path) -> dict[str, Any]:
+    try:
+        found = read_json(path)
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
 
 # One thread each: what runs at a time is counted in runs, and CPU times mean something.
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -29,36 +96,16 @@ Ender: TypeAlias = "Callable[[subprocess.Popen[bytes]], None]"
 
 @dataclass(frozen=True)
 class Task:
-    """What to run, and where its files go.
+    """What to run, and where its files go."""
 
-    Attributes
-    ----------
-    label : str
-        Name of the run, unique among those of `parent`.
-    parent : Path
-        Folder in which the run gets its own.
-    program : Path
-        The executable.
-    text : str or None
-        The scene, for the solver; None for a program with arguments.
-    args : tuple of str
-        Arguments of a program.
-    tables : tuple of Path
-        Files that the scene names, to be put beside it.
-    time_limit_s : float
-        A run that takes longer is ended, and has crashed [s].
-    code : str
-        Hash of the modules that decided what is run.
-    """
-
-    label: str
-    parent: Path
-    program: Path
-    text: str | None
-    args: tuple[str, ...]
-    tables: tuple[Path, ...]
-    time_limit_s: float
-    code: str = ""
+    label: str  # name of the run, unique among those of `parent`
+    parent: Path  # folder in which the run gets its own
+    program: Path  # the executable
+    text: str | None  # the scene, for the solver; None for a program with arguments
+    args: tuple[str, ...]  # arguments of a program
+    tables: tuple[Path, ...]  # files that the scene names, to be put next to it
+    time_limit_s: float  # a run that takes longer is ended, and has crashed [s]
+    code: str = ""  # hash of the modules that decided what is run
 
     @cached_property
     def folder(self) -> Path:
@@ -71,22 +118,20 @@ class Task:
 
 
 def tables_of(scene: Path, text: str) -> tuple[Path, ...]:
-    """CSV files that the text of a scene names: they lie beside its file."""
+    """CSV files that the text of a scene names: in the folder of its file."""
     names = re.findall(r"^\s*schedule\s*=\s*'([^']+)'", text, re.MULTILINE)
     return tuple(scene.parent / name for name in names)
 
 
 def copy_tables(task: Task, folder: Path) -> None:
-    """Put the files that the scene names beside it; one that is missing is the solver's to tell."""
+    """Put the files that the scene names next to it; the solver reports one that is missing."""
     for table in task.tables:
         if table.is_file():
             shutil.copy(table, folder)
 
 
 def run_task(
-    task: Task,
-    started: Starter = lambda start: start(),
-    ended: Ender = lambda child: None,
+    task: Task, started: Starter = lambda start: start(), ended: Ender = lambda child: None
 ) -> Outcome:
     """Run a task, or find what an earlier call left.
 
@@ -111,7 +156,7 @@ def run_task(
 
 
 def slug(name: str) -> str:
-    """Name of a folder for a label: readable, and no two alike."""
+    """Name of a folder for a label: readable and unique."""
     readable = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:40]
     return f"{readable}-{hash_of(name.encode())[:6]}"
 

@@ -11,7 +11,7 @@ from matplotlib.colors import Colormap, Normalize
 from wingcrack.figures import style
 from wingcrack.figures.fields import MatrixField
 from wingcrack.figures.frames import extent, usual_limit, value_scale
-from wingcrack.figures.stress import MEAN_COLOURS
+from wingcrack.figures.maps import MEAN_COLOURS
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.units import MEGAPASCAL, Unit, displacement_unit, stress_unit
 from wingcrack.runs.fields import Fields
@@ -44,10 +44,7 @@ def default_field(found: Fields) -> str:
 def values_of(found: Fields, field: str) -> FloatArray:
     """Values of the cells [SI]; ``stress.mean`` is the mean of the normal stresses in the plane.
 
-    Raises
-    ------
-    AbsentError
-        If the state has no such field.
+    Raises `AbsentError` if the state has no such field.
     """
     if field == MEAN:
         return np.asarray(0.5 * (found.of_rock("stress.xx") + found.of_rock("stress.yy")))

@@ -144,9 +144,11 @@ def plot_map(run: Results, field: str, time: float | None, ax: Axes | None, *, c
     draw_field(axes, frame, values, look.norm, look.colours, unit)
     draw_fractures(axes, fractures, 2.2 if close or zoom is None else 1.0, unit)
     set_window(axes, zoom if close and zoom is not None else body, unit)
-    axes.set_title(moment_label(run.files, found.moment, found.history_row))
-    axes.set_xlabel(f"$x$ [{unit.name}]")
-    axes.set_ylabel(f"$y$ [{unit.name}]")
+    axes.set(
+        title=moment_label(run.files, found.moment, found.history_row),
+        xlabel=f"$x$ [{unit.name}]",
+        ylabel=f"$y$ [{unit.name}]",
+    )
     bar = axes.figure.colorbar(
         ScalarMappable(look.norm, look.colours), ax=axes, aspect=30, pad=0.03
     )
@@ -188,8 +190,7 @@ def plot_wells(run: Results, quantity: str, ax: Axes | None) -> Axes:
         before = len(axes.lines)
         draw(axes, table, rows, time, style.CYCLE[index % MOST_WELLS])
         axes.lines[before].set_label(name)
-    axes.set_xlabel(below)
-    axes.set_ylabel(label)
+    axes.set(xlabel=below, ylabel=label)
     axes.legend()
     return axes
 

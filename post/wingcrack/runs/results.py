@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import difflib
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
 import numpy.typing as npt
 
-from wingcrack.errors import AbsentError, RunError, SceneError
+from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError, SceneError
 from wingcrack.figures.fields import Snapshot, read_series
 from wingcrack.figures.table import FloatArray, Table, read_table
 from wingcrack.runs.fields import Fields, read_fields
 from wingcrack.runs.scene_files import SceneFile
-from wingcrack.runs.tables import column, frame
+from wingcrack.runs.units import column_unit
 
 if TYPE_CHECKING:
     import pandas
@@ -254,3 +256,51 @@ class Results:
             return str(SceneFile.read(self._scene_file)["scene.name"])
         except (AbsentError, SceneError):
             return self.directory.resolve().name
+
+
+TEXTS = frozenset({"state", "kind", "detail", "ended_by", "well", "control"})
+LABELS = frozenset({"fracture", "tip"})  # numbers, or names in files of earlier versions
+
+
+def column(table: Table, name: str) -> npt.NDArray[Any]:
+    """Give a column: whole numbers, numbers in the unit of its name, or text.
+
+    Raises
+    ------
+    RunError
+        If there is no such column, or it holds what is no number.
+    """
+    if name not in table.cells:
+        near = difflib.get_close_matches(name, table.cells, n=1)
+        hint = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(table.cells)}"
+        raise RunError(f"{table.path}: there is no column '{name}'; {hint}")
+    text = table.text(name)
+    if name in TEXTS:
+        return text.copy()
+    if text.size and np.all(np.char.isdecimal(text)) and np.char.str_len(text).max() < 19:
+        return text.astype(np.int64)
+    if name in LABELS and text.size:
+        return text.copy()
+    return table.number(name).copy()  # the user's own
+
+
+def frame(table: Table) -> pandas.DataFrame:
+    """Give a table as a pandas frame; ``frame.attrs["units"]`` tells the unit of each column.
+
+    Raises
+    ------
+    EnvironmentLacksError
+        If pandas is not installed.
+    RunError
+        If a column holds what is no number.
+    """
+    try:
+        import pandas
+    except ImportError as reason:
+        raise EnvironmentLacksError(
+            f"tables as frames need pandas ({reason}); run.column gives numpy arrays"
+        ) from None
+    found = pandas.DataFrame({name: column(table, name) for name in table.cells})
+    found.attrs["units"] = {name: column_unit(name) for name in table.cells}
+    found.attrs["file"] = str(table.path)
+    return found

@@ -84,7 +84,7 @@ class Run(Results):
         `only` names groups of them, or ``all``; default: those in which something happens.
         Those that are there and still true are not drawn again.
         """
-        from wingcrack.figures.figures import draw_figures
+        from wingcrack.figures.catalogue import draw_figures
 
         outcomes = draw_figures(self.directory, tuple(only), tuple(formats))
         return [file for outcome in outcomes for file in outcome.files]
@@ -99,7 +99,7 @@ class Run(Results):
         RunError
             If there is no figure of that name.
         """
-        from wingcrack.figures.figures import figure_of
+        from wingcrack.figures.catalogue import figure_of
 
         return figure_of(self.files, name)
 
@@ -228,7 +228,7 @@ class Run(Results):
         progress : bool
             Whether a bar on stderr shows how far it is.
         """
-        from wingcrack.runs.movies import write_movie
+        from wingcrack.runs.pictures import write_movie
 
         return write_movie(self, Path(path), field, frames_per_second, size, progress=progress)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -14,7 +13,7 @@ import f90nml
 import numpy as np
 
 from wingcrack.errors import SceneError
-from wingcrack.figures.text_files import namelist_groups, read_text
+from wingcrack.figures.text_files import namelist_groups, read_text, write_whole
 from wingcrack.runs.parameter_table import Parameter, parameter, solver
 
 _Groups: TypeAlias = dict[str, list[Any]]
@@ -136,16 +135,10 @@ class SceneFile:
 
     def write(self, path: str | Path) -> Path:
         """Write the scene file, whole or not at all."""
-        target = Path(path)
-        aside = target.with_name(f".{target.name}.{os.getpid()}")
         try:
-            aside.write_text(self.text(), encoding="utf-8")
-            aside.replace(target)
+            return write_whole(Path(path), self.text())
         except OSError as reason:
-            raise SceneError(f"{target} cannot be written ({reason})") from None
-        finally:
-            aside.unlink(missing_ok=True)
-        return target
+            raise SceneError(f"{path} cannot be written ({reason})") from None
 
     def check(self) -> str:
         """Let the solver judge the scene; gives its description.

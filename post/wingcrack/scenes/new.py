@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 from wingcrack.runs.parameter_table import Parameter
 from wingcrack.scenes.errors import SceneError
@@ -21,12 +23,7 @@ def annotated(text: str) -> str:
     """Add comments to a scene whose entries have a line each.
 
     The first time that a group stands there, its meaning, the meaning of its names and the names
-    that it does not use are told.
-
-    Raises
-    ------
-    SceneError
-        If the table has no such group or name.
+    that it does not use are told. Raises `SceneError` if the table has no such group or name.
     """
     table = groups()
     told: set[str] = set()
@@ -93,14 +90,26 @@ def _comment(text: str, indent: str) -> list[str]:
 def new_scene(kind: str, name: str) -> str:
     """Text of a new scene.
 
-    Parameters
-    ----------
-    kind : str
-        One of the files in the folder ``kinds``.
-    name : str
-        What the scene is called, after its file.
+    `kind`: one of the files in the folder ``kinds``. `name`: what the scene is called, after its
+    file.
     """
     text = (KINDS / f"{kind}.nml").read_text(encoding="utf-8")
     head, _, rest = text.partition("&scene\n")
     rest = rest.replace(f"  name = '{kind}'\n", f"  name = '{name}'\n", 1)
     return head + annotated(f"&scene\n{rest}").lstrip("\n")
+
+
+def new(given: SimpleNamespace) -> int:
+    """Write the scene; give the exit status: 0 done, 2 bad input, 3 lacking solver."""
+    try:
+        text = new_scene(given.kind, given.out.stem)
+        given.out.write_text(text, encoding="utf-8")
+    except OSError as reason:
+        said = f"{given.out}: it cannot be written: {reason.strerror}"
+        print(f"wingcrack new: {said}", file=sys.stderr)
+        return 2
+    except SceneError as reason:
+        print(f"wingcrack new: {reason}", file=sys.stderr)
+        return 2
+    print(f"{given.out} is written; ./wingcrack run {given.out} runs it.")
+    return 0

@@ -6,7 +6,7 @@ import os
 import subprocess
 from pathlib import Path
 
-from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.errors import EnvironmentLacksError
 
 SOLVER = (
     Path(__file__).resolve().parents[3] / "build" / "release" / "fortran" / "app"
@@ -16,10 +16,7 @@ SOLVER = (
 def call(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     """Run the solver to its end.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If it is not there or cannot be started.
+    Raises `EnvironmentLacksError` if it is not there or cannot be started.
     """
     threads = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     try:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import importlib
 import logging
-from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
+from pydantic import Field
+
+from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.figures.choices import CLUSTERS
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.sweeps.errors import CaseError
-from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.fields import Entry, Table, choice, whole
 
 # Module and class of each kind, and what must be installed for it.
 _CLASSES = {
@@ -23,52 +22,22 @@ _CLASSES = {
 }
 
 
-@dataclass(frozen=True)
-class Cluster:
-    """``[cluster]`` of a study.
+class Cluster(Entry):
+    """``[cluster]`` of a study, with a table for the class of each kind."""
 
-    Attributes
-    ----------
-    kind : str
-        "none" for processes of this call, or one of Dask's classes.
-    workers : int or None
-        How many runs at a time; None for the cores at hand.
-    arguments : mapping of str to mapping
-        What is handed to the class of each kind.
-    """
-
-    kind: str
-    workers: int | None
-    arguments: Mapping[str, Mapping[str, Any]]
-
-
-def read_cluster(data: Mapping[str, Any], place: str) -> Cluster:
-    """Read ``[cluster]`` with ``[cluster.slurm]`` and so on, so that one file serves everywhere.
-
-    Raises
-    ------
-    CaseError
-        If a kind is unknown or the number of workers is none.
-    """
-    fields = Fields(data, place)
-    kind = fields.choice("kind", CLUSTERS, "none")
-    workers = fields.take("workers", None)
-    arguments = {name: fields.mapping(name) for name in _CLASSES}
-    fields.done()
-    if workers is not None and (
-        isinstance(workers, bool) or not isinstance(workers, int) or workers < 1
-    ):
-        raise CaseError(f"{place}: 'workers' must be a whole number from 1 on")
-    return Cluster(kind, workers, arguments)
+    kind: Annotated[str, choice(CLUSTERS)] = "none"  # "none" for processes of this call
+    workers: Annotated[int | None, whole(1)] = None  # runs at a time; None for the cores at hand
+    local: Table = Field(default_factory=dict)
+    slurm: Table = Field(default_factory=dict)
+    pbs: Table = Field(default_factory=dict)
+    ssh: Table = Field(default_factory=dict)
 
 
 def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
     """Start a cluster and give a client of it; leaving the stack closes both.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If what the kind takes is not installed, or the cluster cannot be started.
+    Raises `EnvironmentLacksError` if what the kind takes is not installed, or the cluster cannot be
+    started.
     """
     module, name, needs = _CLASSES[cluster.kind]
     try:
@@ -80,13 +49,13 @@ def connect(cluster: Cluster, workers: int, stack: ExitStack) -> Any:
             f"a cluster of kind '{cluster.kind}' takes the Python package {needs}, "
             f"which is not in .venv (.venv/bin/python -m pip install {needs})"
         ) from None
-    given = dict(cluster.arguments[cluster.kind])
+    given = dict(getattr(cluster, cluster.kind))
     if cluster.kind == "local":
         given = {
             "n_workers": workers,
             "threads_per_worker": 1,
             "dashboard_address": None,
-            "silence_logs": logging.CRITICAL,  # a worker that is lost is told by the study
+            "silence_logs": logging.CRITICAL,  # the study reports a lost worker
             **given,
         }
     elif cluster.kind == "ssh" and "hosts" not in given:

@@ -4,64 +4,60 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import Array
-from wingcrack.sweeps.fields import Fields
-from wingcrack.sweeps.sweep import Table
+from wingcrack.sweeps.fields import Entry, Numbers, Table, Values, choice, read_entry, whole
 
 KINDS = ("uniform", "log_uniform", "normal", "lognormal", "integers", "of")
 METHODS = ("latin_hypercube", "random")
 SAMPLE = "sample"  # the parameter that numbers the draws, from 1
 
 
+class _Draw(Entry):
+    """``[draw]`` of a study."""
+
+    count: Annotated[int, whole(1)]
+    seed: Annotated[int, whole(0)]
+    method: Annotated[str, choice(METHODS)] = METHODS[0]
+    parameters: Annotated[Table, Field(min_length=1)]  # a distribution for each name
+
+
+class _Distribution(Entry):
+    """One distribution, perhaps cut off at bounds."""
+
+    uniform: Numbers | None = None
+    log_uniform: Numbers | None = None
+    normal: Numbers | None = None
+    lognormal: Numbers | None = None
+    integers: Numbers | None = None
+    of: Values | None = None
+    min: float = -math.inf
+    max: float = math.inf
+
+
 def read_draws(data: Any, place: str, most: int, count: int | None = None) -> Table:
     """Lists of equal length, one per drawn parameter, and the numbers of the samples.
 
-    Parameters
-    ----------
-    data : table
-        ``count``, ``seed``, ``method`` and ``parameters``: a distribution for each name.
-    place : str
-        For errors.
-    most : int
-        How many samples there may be.
-    count : int, optional
-        Instead of that of the table.
-
-    Raises
-    ------
-    CaseError
-        If there are too many, or a distribution is unknown, impossible, or has no probability
-        within its bounds.
+    There may be at most `most` samples; `count` replaces that of the table. Raises `CaseError` if
+    there are too many, or a distribution is unknown, impossible, or has no probability within its
+    bounds.
     """
-    fields = Fields(data, place)
-    given, seed = _whole(fields, "count", 1), _whole(fields, "seed", 0)
-    method = fields.choice("method", METHODS, METHODS[0])
-    parameters = fields.mapping("parameters")
-    fields.done()
-    if not parameters:
-        raise CaseError(f"{place}: 'parameters' is missing: which entries are drawn?")
-    count = given if count is None else count
+    draw = read_entry(_Draw, data, place)
+    count = draw.count if count is None else count
     if count > most:
         raise CaseError(f"{place}: {count} runs are more than {most}")
-    shares = _shares(count, len(parameters), seed, method)
+    shares = _shares(count, len(draw.parameters), draw.seed, draw.method)
     points: Table = {SAMPLE: list(range(1, count + 1))}
-    for (name, entry), column in zip(parameters.items(), shares.T, strict=True):
+    for (name, entry), column in zip(draw.parameters.items(), shares.T, strict=True):
         if name == SAMPLE:
             raise CaseError(f"{place}: '{SAMPLE}' numbers the draws; give the parameter a name")
         points[name] = _values(entry, column, f"{place}: parameters.{name}")
     return points
-
-
-def _whole(fields: Fields, key: str, least: int) -> int:
-    value = fields.take(key)
-    if isinstance(value, bool) or not isinstance(value, int) or value < least:
-        raise CaseError(f"{fields.place}: '{key}' must be a whole number from {least} on")
-    return value
 
 
 def _shares(count: int, dimension: int, seed: int, method: str) -> Array:
@@ -78,33 +74,22 @@ def _values(data: Any, shares: Array, place: str) -> list[Any]:
     """Values of a distribution at shares of its probability, within its bounds."""
     if not isinstance(data, Mapping):
         raise CaseError(f"{place} must be a table with one of: {', '.join(KINDS)}")
-    fields = Fields(data, place)
-    kinds = [kind for kind in KINDS if fields.has(kind)]
+    kinds = [kind for kind in KINDS if kind in data]
     if len(kinds) != 1:
         raise CaseError(f"{place} must have exactly one of: {', '.join(KINDS)}")
-    kind = kinds[0]
-    if kind == "of":
-        values = fields.take("of")
-        fields.done()
-        if not isinstance(values, list) or not values:
-            raise CaseError(f"{place}: 'of' must be a list of at least one value")
-        return [values[min(int(share * len(values)), len(values) - 1)] for share in shares]
-    first, second = _pair(fields, kind)
-    lower, upper = fields.number("min", -math.inf), fields.number("max", math.inf)
-    fields.done()
-    if not lower < upper:
+    law, kind = read_entry(_Distribution, data, place), kinds[0]
+    if law.of is not None:
+        return [law.of[min(int(share * len(law.of)), len(law.of) - 1)] for share in shares]
+    numbers = getattr(law, kind)
+    if len(numbers) != 2:
+        raise CaseError(f"{place}: '{kind}' takes two numbers")
+    first, second = numbers
+    if not law.min < law.max:
         raise CaseError(f"{place}: 'min' must be less than 'max'")
     _refuse_impossible(kind, first, second, place)
     if kind == "integers":
-        return _integers(first, second, lower, upper, shares, place)
-    return _within(kind, first, second, (lower, upper), shares, place)
-
-
-def _pair(fields: Fields, kind: str) -> tuple[float, float]:
-    numbers = fields.numbers(kind)
-    if len(numbers) != 2:
-        raise CaseError(f"{fields.place}: '{kind}' takes two numbers")
-    return numbers[0], numbers[1]
+        return _integers(first, second, law.min, law.max, shares, place)
+    return _within(kind, first, second, (law.min, law.max), shares, place)
 
 
 def _refuse_impossible(kind: str, first: float, second: float, place: str) -> None:
@@ -133,12 +118,7 @@ def _integers(
 
 
 def _within(
-    kind: str,
-    first: float,
-    second: float,
-    bounds: tuple[float, float],
-    shares: Array,
-    place: str,
+    kind: str, first: float, second: float, bounds: tuple[float, float], shares: Array, place: str
 ) -> list[Any]:
     """Quantiles of the distribution cut off at the bounds (no heap of values at them)."""
     from scipy import stats

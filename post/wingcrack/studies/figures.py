@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from wingcrack.errors import CaseError
 from wingcrack.figures import style
 from wingcrack.studies.outputs import select_in_run
 from wingcrack.studies.plots import Plot
@@ -19,7 +20,6 @@ from wingcrack.studies.quantities import Quantity
 from wingcrack.studies.study import Parameter, Study, StudyRun
 from wingcrack.studies.table import StudyTable
 from wingcrack.studies.units import NONE, axis_label, pretty_number, pretty_unit, spoken
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.selection import Values
 
@@ -41,10 +41,7 @@ def draw(
 ) -> tuple[list[Path], list[str]]:
     """Draw a figure into ``figures/``; give its files, and what could not be drawn, run by run.
 
-    Raises
-    ------
-    CaseError
-        If there is nothing to draw.
+    Raises `CaseError` if there is nothing to draw.
     """
     if plot.selection is not None:
         curves, missing = _curves(study, plot, table, out)
@@ -102,7 +99,7 @@ def _lines(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
 def _looks(curves: Sequence[_Curve], names: Sequence[str]) -> list[dict[str, Any]]:
     """Colours by the first of the names and dashes by the others, if there are enough of both.
 
-    Else every line has a look of its own. Lines that nothing tells apart look alike.
+    Otherwise every line has its own look. Lines that no parameter distinguishes look the same.
     """
     if not names:
         return [{"color": style.CYCLE[0]} for _ in curves]
@@ -257,7 +254,7 @@ def _column(study: Study, name: str) -> tuple[str, str]:
     named: tuple[Quantity | Parameter, ...] = (*study.quantities, *study.parameters)
     for item in named:
         if item.name == name:
-            return item.column, axis_label(item.name, item.unit)
+            return item.heading, axis_label(item.name, item.unit)
     raise CaseError(f"there is no quantity or parameter '{name}'")
 
 

@@ -7,11 +7,10 @@ from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import CaseError, RunError
 from wingcrack.figures.table import read_table
 from wingcrack.figures.text_files import read_json
 from wingcrack.names import columns
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.paths import COLUMNS, NETWORK
 from wingcrack.sweeps.selection import Selection, Values, names_of, select
 
@@ -31,25 +30,20 @@ def names_of_output() -> Mapping[str, Mapping[str, str]]:
     return files
 
 
-def judge_selection(selection: Selection, constants: Collection[str], has_fluid: bool) -> None:
+def judge_selection(
+    selection: Selection, place: str, constants: Collection[str], has_fluid: bool
+) -> None:
     """Refuse a selection of what no run writes, before there is one.
 
-    Parameters
-    ----------
-    constants : collection of str
-        Names that expressions can use beside those of the file.
-    has_fluid : bool
-        Whether any run of the study has a fluid.
+    Raises `CaseError`: with what would be right.
 
-    Raises
-    ------
-    CaseError
-        With what would be right.
+    `constants`: names that expressions can use in addition to those of the file. `has_fluid`:
+    whether any run of the study has a fluid.
     """
     files = names_of_output()
     if selection.file not in files:
         raise CaseError(
-            f"{selection.place}: '{selection.file}' is no file of a run"
+            f"{place}: '{selection.file}' is no file of a run"
             f" that can be read; there are: {', '.join(files)}"
         )
     known = files[selection.file]
@@ -63,24 +57,21 @@ def judge_selection(selection: Selection, constants: Collection[str], has_fluid:
         near = difflib.get_close_matches(name, known, n=1)
         hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
         raise CaseError(
-            f"{selection.place}: {selection.file} has no {kind} '{name}' (docs/output.md); {hint}"
+            f"{place}: {selection.file} has no {kind} '{name}' (docs/output.md); {hint}"
         )
     for name in sorted(names_of(selection)):
         runs = known.get(name, "")
         if runs.startswith("without a fluid" if has_fluid else "with a fluid"):
             raise CaseError(
-                f"{selection.place}: {selection.file} has the {kind} '{name}' only {runs}, and"
+                f"{place}: {selection.file} has the {kind} '{name}' only {runs}, and"
                 f" the scenes of this study have {'one' if has_fluid else 'none'}"
             )
 
 
-def judge_run(selection: Selection, output: Path, constants: Collection[str]) -> None:
+def judge_run(selection: Selection, place: str, output: Path, constants: Collection[str]) -> None:
     """Refuse a selection of what a finished run has not written.
 
-    Raises
-    ------
-    UnreadableError
-        If the file, a column or a key is missing.
+    Raises `UnreadableError` if the file, a column or a key is missing.
     """
     path = _within(output, selection.file)
     try:
@@ -90,11 +81,11 @@ def judge_run(selection: Selection, output: Path, constants: Collection[str]) ->
         elif selection.file != NETWORK:
             known = set(read_table(path).cells)
     except FileNotFoundError:
-        raise UnreadableError(f"{selection.place}: the run has no {selection.file}") from None
+        raise UnreadableError(f"{place}: the run has no {selection.file}") from None
     except (OSError, ValueError, RunError) as reason:
-        raise UnreadableError(f"{selection.place}: {reason}") from None
+        raise UnreadableError(f"{place}: {reason}") from None
     if strange := sorted(names_of(selection, known.__contains__) - set(constants)):
-        raise UnreadableError(f"{selection.place}: {selection.file} of the run has no {strange[0]}")
+        raise UnreadableError(f"{place}: {selection.file} of the run has no {strange[0]}")
 
 
 def _keys(content: Any, stem: str = "") -> Iterable[str]:
@@ -109,10 +100,7 @@ def select_in_run(
 ) -> Values:
     """As `select`, of a file that lies in the folder of a run, not where a link leads.
 
-    Raises
-    ------
-    CaseError
-        As `select`, and if the file lies elsewhere.
+    Raises `CaseError`: as `select`, and if the file lies elsewhere.
     """
     _within(output, selection.file)
     return select(selection, output, constants, as_path)

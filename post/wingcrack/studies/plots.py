@@ -1,90 +1,64 @@
-"""Which figures a study asks for."""
+"""Figures of a study, as its file asks for them."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any, Self
 
-from wingcrack.sweeps.errors import CaseError
-from wingcrack.sweeps.fields import Fields
-from wingcrack.sweeps.selection import Selection, read_selection
+from pydantic import model_validator
 
-KINDS = ("lines", "over", "band", "histogram")
+from wingcrack.sweeps.fields import Entry, Text, Texts, choice
+from wingcrack.sweeps.selection import Selection
 
-
-@dataclass(frozen=True)
-class Plot:
-    """One ``[[figure]]``.
-
-    Attributes
-    ----------
-    kind : str
-        "lines" of all runs, a quantity "over" a parameter, the "band" of quantiles of lines, or
-        the "histogram" of a quantity.
-    name : str
-        Stem of its files.
-    title, x_label, y_label : str
-    by : tuple of str
-        Parameters that tell lines apart; empty for all that differ.
-    x_log, y_log, equal_axes : bool
-    selection : Selection or None
-        For lines and bands: what is read from each run.
-    quantity, over : str or None
-        For the others: the quantity, and the parameter or quantity that it is drawn over.
-    """
-
-    kind: str
-    name: str
-    title: str
-    x_label: str
-    y_label: str
-    by: tuple[str, ...]
-    x_log: bool
-    y_log: bool
-    equal_axes: bool
-    selection: Selection | None = None
-    quantity: str | None = None
-    over: str | None = None
+# Kinds with the keys that each needs: lines of all runs, a quantity over a parameter, the band of
+# quantiles of lines, the histogram of a quantity.
+_NEEDS = {
+    "lines": ("x_label", "y_label"),
+    "over": ("quantity", "over"),
+    "band": ("x_label", "y_label"),
+    "histogram": ("quantity",),
+}
+_ONLY = {"by": ("lines", "over"), "over": ("over",), "quantity": ("over", "histogram")}
 
 
-def read_plot(data: Any, place: str) -> Plot:
-    """Read one ``[[figure]]``.
+class Plot(Entry):
+    """One ``[[figure]]``."""
 
-    Raises
-    ------
-    CaseError
-        If a key is missing, unknown or not for this kind.
-    """
-    fields = Fields(data, place)
-    name = fields.text("name")
-    if not re.fullmatch(r"[A-Za-z0-9_-]+", name):
-        raise CaseError(f"{place}: '{name}' must be letters, digits, _ and -: it names a file")
-    fields.place = f"{place} ('{name}')"
-    kind = fields.choice("kind", KINDS)
-    lines = kind in ("lines", "band")
-    selection = quantity = over = None
-    if not lines:
-        quantity = fields.text("quantity")
-        over = fields.text("over") if kind == "over" else None
-    plot = Plot(
-        kind=kind,
-        name=name,
-        title=fields.text("title", ""),
-        x_label=fields.text("x_label") if lines else fields.text("x_label", ""),
-        y_label=fields.text("y_label") if lines else fields.text("y_label", ""),
-        by=fields.texts("by", ()) if kind in ("lines", "over") else (),
-        x_log=fields.flag("x_log"),
-        y_log=fields.flag("y_log"),
-        equal_axes=fields.flag("equal_axes"),
-        selection=selection,
-        quantity=quantity,
-        over=over,
-    )
-    if lines:
-        selection = read_selection(fields, fields.text("file"))
-        if selection.x is None:
-            raise CaseError(f"{fields.place}: 'x' is missing: lines need a column for it")
-        plot = Plot(**{**vars(plot), "selection": selection})
-    fields.done()
-    return plot
+    name: Text  # stem of its files
+    kind: Annotated[str, choice(_NEEDS)]
+    title: Text = ""
+    x_label: Text = ""
+    y_label: Text = ""
+    by: Texts = ()  # parameters that tell lines apart; empty for all that differ
+    x_log: bool = False
+    y_log: bool = False
+    equal_axes: bool = False
+    selection: Selection | None = None  # what lines and bands read of each run
+    quantity: Text | None = None
+    over: Text | None = None  # the parameter or quantity that `quantity` is drawn over
+
+    @model_validator(mode="before")
+    @classmethod
+    def _select(cls, data: Any) -> Any:
+        """Put the keys of lines and bands that select in a table of their own."""
+        if "selection" in data:
+            raise ValueError("'selection' is unknown")
+        if data.get("kind") not in ("lines", "band"):
+            return data
+        keys = data.keys() & Selection.model_fields.keys()
+        rest = {key: value for key, value in data.items() if key not in keys}
+        return {**rest, "selection": {key: data[key] for key in keys}}
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if not re.fullmatch(r"[A-Za-z0-9_-]+", self.name):
+            raise ValueError(f"'{self.name}' must be letters, digits, _ and -: it names a file")
+        for key in _NEEDS[self.kind]:
+            if not getattr(self, key):
+                raise ValueError(f"'{key}' is missing")
+        for key, kinds in _ONLY.items():
+            if getattr(self, key) and self.kind not in kinds:
+                raise ValueError(f"'{key}' is unknown in figures of the kind {self.kind}")
+        if self.selection is not None and self.selection.x_column is None:
+            raise ValueError("'x' is missing: lines need a column for it")
+        return self

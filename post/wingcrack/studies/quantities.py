@@ -3,60 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Self
 
+from pydantic import model_validator
+
+from wingcrack.errors import CaseError
 from wingcrack.studies.outputs import select_in_run
 from wingcrack.studies.units import column_name
-from wingcrack.sweeps.errors import CaseError
-from wingcrack.sweeps.fields import Fields
-from wingcrack.sweeps.selection import Selection, read_selection
+from wingcrack.sweeps.fields import Text
+from wingcrack.sweeps.selection import Selection
 
 
-@dataclass(frozen=True)
-class Quantity:
-    """One number per run.
+class Quantity(Selection):
+    """One number per run, and where it stands in the files of a run."""
 
-    Attributes
-    ----------
-    name, unit : str
-        As figures and the table have it.
-    selection : Selection
-        Where it stands in the files of a run.
-    may_be_absent : bool
-        Whether it is no fault if no row or file is there: wings that have not grown have no onset.
-    """
+    name: Text
+    unit: Text
+    # no fault if no row or file is there: wings that have not grown have no onset
+    may_be_absent: bool = False
 
-    name: str
-    unit: str
-    selection: Selection
-    may_be_absent: bool
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        one = self.take or self.interpolate or self.at or self.key
+        if not one or len(self.columns) > 1:
+            raise ValueError("one value is needed: 'take', 'at', 'interpolate', 'key'")
+        return self
 
     @property
-    def column(self) -> str:
+    def heading(self) -> str:
         """Its column in the table."""
         return column_name(self.name, self.unit)
-
-
-def read_quantity(data: Any, place: str) -> Quantity:
-    """Read one ``[[quantity]]``.
-
-    Raises
-    ------
-    CaseError
-        If it selects a whole profile, or is wrong in another way.
-    """
-    fields = Fields(data, place)
-    name = fields.text("name")
-    fields.place = f"{place} ('{name}')"
-    unit, absent = fields.text("unit"), fields.flag("may_be_absent")
-    selection = read_selection(fields, fields.text("file"))
-    fields.done()
-    one = selection.take or selection.interpolate or selection.single_row or selection.key
-    if not one or len(selection.columns) > 1:
-        raise CaseError(f"{fields.place}: one value is needed: 'take', 'at', 'interpolate', 'key'")
-    return Quantity(name, unit, selection, absent)
 
 
 def measure(
@@ -64,7 +41,7 @@ def measure(
 ) -> tuple[float | None, str]:
     """Value of a quantity of a run, or None with the reason why there is none."""
     try:
-        found = select_in_run(quantity.selection, output, constants)
+        found = select_in_run(quantity, output, constants)
     except CaseError as reason:
         absent = (": no row where" in str(reason)) or (": the file is missing" in str(reason))
         if quantity.may_be_absent and absent:

@@ -16,14 +16,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.runner.outcome import Outcome, read_outcome
+from wingcrack.errors import CaseError, EnvironmentLacksError
 from wingcrack.runner.pool import Pool
-from wingcrack.runner.task import ONE_THREAD, Task, copy_tables, tables_of
+from wingcrack.runner.task import ONE_THREAD, Outcome, Task, copy_tables, read_outcome, tables_of
 from wingcrack.studies import TOP, remote
 from wingcrack.studies.cluster import Cluster, connect
 from wingcrack.studies.study import Study, StudyRun
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.scene import scene_hash
 
 SOLVER = Path("fortran") / "app" / "wingcrack-solver"
@@ -35,10 +33,7 @@ _SILENCE_S = 10.0
 def tasks_of(study: Study, build: Path, out: Path) -> dict[int, Task]:
     """What is to be run, by the runs' numbers.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If the solver is not built.
+    Raises `EnvironmentLacksError` if the solver is not built.
     """
     solver = build / SOLVER
     if not solver.is_file():
@@ -63,10 +58,7 @@ def done_before(tasks: Mapping[int, Task]) -> dict[int, Outcome]:
 def check_scenes(runs: Sequence[StudyRun], tasks: Mapping[int, Task], parallel: int) -> None:
     """Let the solver read and judge the scenes; nothing is run.
 
-    Raises
-    ------
-    CaseError
-        With the solver's reason for the first scene that it refuses.
+    Raises `CaseError`: with the solver's reason for the first scene that it refuses.
     """
     with tempfile.TemporaryDirectory(prefix="wingcrack-study-") as name:
         place = Path(name)
@@ -117,12 +109,9 @@ def run_tasks(
     workers: int,
     progress: Callable[[int, Outcome], None],
 ) -> None:
-    """Run all tasks; `progress` is told of each as it ends, and keeps it.
+    """Run all tasks; `progress` is called with each as it ends, and keeps it.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If the cluster cannot be started.
+    Raises `EnvironmentLacksError` if the cluster cannot be started.
     """
     if cluster.kind == "none":
         pool: Pool[int] = Pool(workers)

@@ -7,28 +7,38 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Self
 
+from pydantic import Field, model_validator
+
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import is_file
-from wingcrack.studies.cluster import Cluster, read_cluster
+from wingcrack.studies.cluster import Cluster
 from wingcrack.studies.distributions import SAMPLE, read_draws
 from wingcrack.studies.outputs import judge_selection
-from wingcrack.studies.plots import Plot, read_plot
-from wingcrack.studies.quantities import Quantity, read_quantity
+from wingcrack.studies.plots import Plot
+from wingcrack.studies.quantities import Quantity
 from wingcrack.studies.units import NONE, column_name, spoken, unit_of_path
-from wingcrack.sweeps.errors import CaseError
-from wingcrack.sweeps.fields import TIME_LIMIT_S, Fields, read_toml
+from wingcrack.sweeps.fields import (
+    TIME_LIMIT_S,
+    Entry,
+    Numbers,
+    Positive,
+    Table,
+    Text,
+    Texts,
+    read_entry,
+    read_toml,
+    whole,
+)
 from wingcrack.sweeps.scene import scene_text
 from wingcrack.sweeps.selection import Selection
-from wingcrack.sweeps.sweep import Table, filled, grid_points
+from wingcrack.sweeps.sweep import filled, grid_points
 
 MOST_RUNS = 10_000
 
-# Columns that the table of every study has, beside those of its own.
+# Columns that the table of every study has, in addition to its own.
 FIXED_COLUMNS = ("run", "label", "status", "reason", "cpu_s", "wall_s", "folder")
-
-# Keys that [quick] may give otherwise.
-_QUICK = ("over", "set", "count")
 
 
 @dataclass(frozen=True)
@@ -39,7 +49,7 @@ class Parameter:
     unit: str
 
     @property
-    def column(self) -> str:
+    def heading(self) -> str:
         """Its column in the table."""
         return column_name(self.name, self.unit)
 
@@ -83,104 +93,91 @@ class Study:
 
     @property
     def names(self) -> set[str]:
-        """Names that expressions can use beside those of columns."""
+        """Names that expressions can use in addition to columns."""
         return {*self.constants, *(name for run in self.runs for name in run.constants)}
 
     @property
-    def selections(self) -> list[Selection]:
-        """All that is read of a run."""
-        drawn = [plot.selection for plot in self.plots if plot.selection]
-        return [*(quantity.selection for quantity in self.quantities), *drawn]
+    def selections(self) -> list[tuple[str, Selection]]:
+        """All that is read of a run, with its place for errors."""
+        drawn = [(f"figure '{one.name}'", one.selection) for one in self.plots if one.selection]
+        return [*((f"quantity '{one.name}'", one) for one in self.quantities), *drawn]
+
+
+class _Quick(Entry):
+    """``[quick]``: what the short form has otherwise."""
+
+    over: Table = Field(default_factory=dict)
+    set: Table = Field(default_factory=dict)
+    count: Annotated[int | None, whole(1)] = None
+
+
+class _StudyFile(Entry):
+    """The file of a study."""
+
+    title: Text
+    about: Text = ""
+    scene: Text
+    quick: _Quick | None = None
+    set: Table = Field(default_factory=dict)
+    unset: Texts = ()
+    over: Table = Field(default_factory=dict)
+    draw: Table | None = None
+    units: dict[str, Text] = Field(default_factory=dict)
+    time_limit_s: Positive = TIME_LIMIT_S
+    constants: dict[str, float] = Field(default_factory=dict)
+    quantity: Annotated[tuple[Quantity, ...], Field(strict=False)] = ()
+    figure: Annotated[tuple[Plot, ...], Field(strict=False)] = ()
+    quantiles: Numbers | None = None
+    cluster: Cluster = Cluster()
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if self.quick and self.quick.count and self.draw is None:
+            raise ValueError("quick: 'count' is for a study with [draw]")
+        shares = self.quantiles or ()
+        if any(not 0.0 <= one <= 1.0 for one in shares) or sorted(set(shares)) != list(shares):
+            raise ValueError("'quantiles' must be numbers from 0 to 1 that increase")
+        return self
 
 
 def read_study(path: Path, quick: bool = False) -> Study:
     """Read a study's file and make the scene of each of its runs.
 
-    Parameters
-    ----------
-    path : Path
-        The TOML file; the scene is named relative to it.
-    quick : bool
-        Whether to take the short form that ``[quick]`` tells.
+    Raises `CaseError` if anything in it is missing, unknown or contradicts itself.
 
-    Raises
-    ------
-    CaseError
-        If anything in it is missing, unknown or contradicts itself.
+    `path`: the TOML file; the scene is named relative to it. `quick`: whether to take the short
+    form that ``[quick]`` tells.
     """
-    fields = Fields(read_toml(path), path.name)
-    title = fields.text("title")
-    fields.text("about", "")
-    scene = path.parent / fields.text("scene")
+    said = read_entry(_StudyFile, read_toml(path), path.name)
+    scene = path.parent / said.scene
     if not is_file(scene):
         raise CaseError(f"{path.name}: there is no scene file {scene}")
-    given = fields.mapping("quick")
-    if "count" in given and not fields.has("draw"):
-        raise CaseError(f"{path.name}: quick: 'count' is for a study with [draw]")
-    quickly = _quick(given, quick, path.name)
-    changes = fields.mapping("set") | quickly.get("set", {})
-    unset = fields.texts("unset", ())
-    over = fields.mapping("over") | quickly.get("over", {})
-    drawn = fields.has("draw")
-    if drawn:
-        draws = read_draws(
-            fields.take("draw"), f"{path.name}: draw", MOST_RUNS, quickly.get("count")
-        )
-        over[SAMPLE] = draws
-    units = fields.mapping("units")
-    limit = fields.positive("time_limit_s", TIME_LIMIT_S)
-    constants = fields.constants("constants")
-    runs = _runs(scene, over, changes, unset, path.name)
-    parameters = _parameters(runs, changes, units, path.name)
-    quantities = tuple(
-        read_quantity(item, f"{path.name}: quantity {index}")
-        for index, item in enumerate(fields.tables("quantity"), start=1)
-    )
-    plots = tuple(
-        read_plot(item, f"{path.name}: figure {index}")
-        for index, item in enumerate(fields.tables("figure"), start=1)
-    )
+    if quick and said.quick is None:
+        raise CaseError(f"{path.name}: there is no [quick] in it, so it has no short form")
+    short = said.quick if quick and said.quick else _Quick()
+    changes, over = said.set | short.set, said.over | short.over
+    if said.draw is not None:
+        over[SAMPLE] = read_draws(said.draw, f"{path.name}: draw", MOST_RUNS, short.count)
+    runs = _runs(scene, over, changes, said.unset, path.name)
     study = Study(
-        title=title,
+        title=said.title,
         scene=scene,
-        parameters=parameters,
+        parameters=_parameters(runs, changes, said.units, path.name),
         runs=runs,
-        drawn=drawn,
-        time_limit_s=limit,
-        constants=constants,
-        quantities=quantities,
-        quantiles=_quantiles(fields, drawn),
-        plots=plots,
-        cluster=read_cluster(fields.mapping("cluster"), f"{path.name}: cluster"),
+        drawn=said.draw is not None,
+        time_limit_s=said.time_limit_s,
+        constants=said.constants,
+        quantities=said.quantity,
+        quantiles=said.quantiles or ((0.1, 0.5, 0.9) if said.draw is not None else ()),
+        plots=said.figure,
+        cluster=said.cluster,
     )
-    fields.done()
     _check_columns(study, path.name)
     _check_plots(study, path.name)
     has_fluid = any(re.search(r"^\s*&fluid\b", run.text, re.MULTILINE) for run in runs)
-    for selection in study.selections:
-        judge_selection(selection, study.names, has_fluid)
+    for place, selection in study.selections:
+        judge_selection(selection, f"{path.name}: {place}", study.names, has_fluid)
     return study
-
-
-def _quick(data: Mapping[str, Any], wanted: bool, place: str) -> dict[str, Any]:
-    fields = Fields(data, f"{place}: quick")
-    found: dict[str, Any] = {key: fields.mapping(key) for key in ("over", "set")}
-    count = fields.take("count", None)
-    fields.done()
-    if count is not None:
-        if isinstance(count, bool) or not isinstance(count, int) or count < 1:
-            raise CaseError(f"{place}: quick: 'count' must be a whole number from 1 on")
-        found["count"] = count
-    if wanted and not data:
-        raise CaseError(f"{place}: there is no [quick] in it, so it has no short form")
-    return found if wanted else {}
-
-
-def _quantiles(fields: Fields, drawn: bool) -> tuple[float, ...]:
-    given: tuple[float, ...] = fields.numbers("quantiles", (0.1, 0.5, 0.9) if drawn else ())
-    if any(not 0.0 <= share <= 1.0 for share in given) or sorted(set(given)) != list(given):
-        raise CaseError(f"{fields.place}: 'quantiles' must be numbers from 0 to 1 that increase")
-    return given
 
 
 def _runs(
@@ -236,11 +233,9 @@ def _parameters(
     runs: Sequence[StudyRun], changes: Table, units: Table, place: str
 ) -> tuple[Parameter, ...]:
     names = dict.fromkeys(itertools.chain.from_iterable(run.values for run in runs))
-    for name, unit in units.items():
+    for name in units:
         if name not in names:
             raise CaseError(f"{place}: units: there is no parameter '{name}'")
-        if not isinstance(unit, str) or not unit:
-            raise CaseError(f"{place}: units: '{name}' must be a text, '{NONE}' for none")
     return tuple(
         Parameter(name, units.get(name) or _unit(name, runs, changes, place)) for name in names
     )
@@ -262,8 +257,8 @@ def _unit(name: str, runs: Sequence[StudyRun], changes: Table, place: str) -> st
 
 def _check_columns(study: Study, place: str) -> None:
     columns = list(FIXED_COLUMNS)
-    columns += [parameter.column for parameter in study.parameters]
-    columns += [quantity.column for quantity in study.quantities]
+    columns += [parameter.heading for parameter in study.parameters]
+    columns += [quantity.heading for quantity in study.quantities]
     for name in columns:
         if columns.count(name) > 1:
             raise CaseError(f"{place}: the table would have two columns '{name}'")

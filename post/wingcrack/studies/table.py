@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from wingcrack.runner.outcome import Outcome
+from wingcrack.figures.text_files import write_whole
+from wingcrack.runner.task import Outcome
 from wingcrack.studies.quantities import measure
 from wingcrack.studies.study import Study, StudyRun
 from wingcrack.studies.units import spoken
@@ -36,11 +37,11 @@ class StudyTable:
 
 def make_table(study: Study, outcomes: Mapping[int, Outcome], out: Path) -> StudyTable:
     """Read the quantities of all runs that finished, and put a row together for each run."""
-    parameters = [parameter.column for parameter in study.parameters]
-    quantities = [quantity.column for quantity in study.quantities]
+    parameters = [parameter.heading for parameter in study.parameters]
+    quantities = [quantity.heading for quantity in study.quantities]
     columns = ("run", "label", *parameters, "status", "reason", "cpu_s", "wall_s")
-    units = {parameter.column: parameter.unit for parameter in study.parameters}
-    units |= {quantity.column: quantity.unit for quantity in study.quantities}
+    units = {parameter.heading: parameter.unit for parameter in study.parameters}
+    units |= {quantity.heading: quantity.unit for quantity in study.quantities}
     rows = tuple(_row(study, run, outcomes.get(run.number, NOT_RUN), out) for run in study.runs)
     return StudyTable(
         (*columns, *quantities, "folder"), units | {"cpu_s": "s", "wall_s": "s"}, rows
@@ -50,14 +51,14 @@ def make_table(study: Study, outcomes: Mapping[int, Outcome], out: Path) -> Stud
 def _row(study: Study, run: StudyRun, outcome: Outcome, out: Path) -> Row:
     reasons = [outcome.reason] if outcome.reason else []
     row: Row = {"run": run.number, "label": run.label}
-    row |= {item.column: run.values.get(item.name) for item in study.parameters}
+    row |= {item.heading: run.values.get(item.name) for item in study.parameters}
     numbers: Row = {}
     for quantity in study.quantities:
         value, reason = None, ""
         if outcome.status == "finished":
             constants = {**study.constants, **run.constants}
             value, reason = measure(quantity, Path(outcome.folder) / "output", constants)
-        numbers[quantity.column] = value
+        numbers[quantity.heading] = value
         reasons += [reason] if reason else []
     row |= {"status": outcome.status, "reason": "; ".join(reasons)}
     row |= {"cpu_s": outcome.cpu_s, "wall_s": round(outcome.wall_s, 3)}
@@ -89,7 +90,9 @@ def write_parquet(table: StudyTable, csv_file: Path, path: Path) -> None:
         pa.field(name, types[name], metadata=_metadata(table.units.get(name)))
         for name in table.columns
     ]
-    _whole(path, lambda aside: parquet.write_table(found.cast(pa.schema(fields)), aside))
+    content = io.BytesIO()
+    parquet.write_table(found.cast(pa.schema(fields)), content)
+    write_whole(path, content.getvalue())
 
 
 def write_statistics(study: Study, table: StudyTable, path: Path) -> None:
@@ -98,10 +101,10 @@ def write_statistics(study: Study, table: StudyTable, path: Path) -> None:
     header = ("quantity", "runs", "absent", "mean", "standard_deviation", "min", *names, "max")
     rows = []
     for quantity in study.quantities:
-        values = table.numbers(quantity.column)
+        values = table.numbers(quantity.heading)
         finished = sum(row["status"] == "finished" for row in table.rows)
         values = values[np.isfinite(values)]
-        cells: list[Any] = [quantity.column, values.size, finished - values.size]
+        cells: list[Any] = [quantity.heading, values.size, finished - values.size]
         if values.size:
             spread = float(np.std(values, ddof=1)) if values.size > 1 else None
             quantiles = [float(value) for value in np.quantile(values, study.quantiles)]
@@ -117,18 +120,7 @@ def write_rows(path: Path, header: Sequence[str], rows: Sequence[Sequence[str]])
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(header)
     writer.writerows(rows)
-    write_text(path, text.getvalue())
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file that appears whole."""
-    _whole(path, lambda aside: aside.write_text(text, encoding="utf-8"))
-
-
-def _whole(path: Path, write: Callable[[Path], object]) -> None:
-    aside = path.with_name(f".{path.name}.aside")
-    write(aside)
-    aside.replace(path)
+    write_whole(path, text.getvalue())
 
 
 def _cell(value: Any) -> str:

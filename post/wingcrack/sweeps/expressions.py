@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 
 Array = npt.NDArray[np.float64]
 
@@ -55,10 +55,7 @@ def names_in(text: str) -> set[str]:
 def evaluate(text: str, values: Mapping[str, Array | float]) -> Array:
     """Value of an expression; what is no number (1/0, sqrt(-1)) comes out as nan or inf.
 
-    Raises
-    ------
-    CaseError
-        If the text is no arithmetic, or if a name is unknown.
+    Raises `CaseError` if the text is no arithmetic, or if a name is unknown.
     """
     tree = _parse(text).body
     try:

@@ -1,125 +1,165 @@
-"""Strict reading of TOML tables: every key is known, of the right kind, and used."""
+"""Tables of TOML files as pydantic models: each key is declared once, with its kind."""
 
 from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, TypeVar
 
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    ValidationError,
+    ValidationInfo,
+)
+
+from wingcrack.errors import CaseError
 from wingcrack.figures import text_files
-from wingcrack.sweeps.errors import CaseError
 
 TIME_LIMIT_S = 3600.0  # of a run that gives no limit of its own
-REQUIRED: Any = object()
 
 
-class Fields:
-    """A TOML table whose keys are taken one by one; `done` refuses those left over."""
+class Entry(BaseModel):
+    """A table: every key is known and of the right kind, every number finite."""
 
-    def __init__(self, data: Any, place: str) -> None:
-        if not isinstance(data, Mapping):
-            raise CaseError(f"{place} must be a table")
-        self.place = place
-        self._left = dict(data)
-        self._known: list[str] = []
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
-    def has(self, key: str) -> bool:
-        """Whether the key is given and not yet taken."""
-        return key in self._left
 
-    def take(self, key: str, default: Any = REQUIRED) -> Any:
-        """Value of any kind."""
-        self._known.append(key)
-        if key not in self._left:
-            if default is REQUIRED:
-                raise CaseError(f"{self.place}: '{key}' is missing")
-            return default
-        return self._left.pop(key)
+class ValueOfKeyError(ValueError):
+    """What is wrong with a value; the sentence names its key."""
 
-    def text(self, key: str, default: Any = REQUIRED) -> Any:
-        """Text that is not empty."""
-        return self._of_kind(key, default, str, "a text")
 
-    def flag(self, key: str, default: bool = False) -> bool:
-        """Truth value."""
-        return bool(self._of_kind(key, default, bool, "true or false"))
+Kind = TypeVar("Kind", bound=Entry)
+Table = dict[str, Any]
+Text = Annotated[str, Field(min_length=1)]
+Positive = Annotated[float, Field(gt=0.0)]
 
-    def number(self, key: str, default: Any = REQUIRED) -> Any:
-        """Finite number, as float."""
-        value = self.take(key, default)
-        return value if value is default else as_number(value, f"{self.place}: '{key}'")
 
-    def positive(self, key: str, default: Any = REQUIRED) -> Any:
-        """Finite number above 0."""
-        value = self.number(key, default)
-        if value is not default and not value > 0.0:
-            raise CaseError(f"{self.place}: '{key}' must be positive, not {value}")
-        return value
+def is_number(value: Any) -> bool:
+    """Whether a value is a finite number."""
+    is_one = isinstance(value, int | float) and not isinstance(value, bool)
+    return is_one and math.isfinite(value)
 
-    def choice(self, key: str, choices: Sequence[str], default: Any = REQUIRED) -> Any:
-        """One of a fixed set of words."""
-        value = self.text(key, default)
-        if value is not default and value not in choices:
-            raise CaseError(f"{self.place}: '{value}' is no {key}; there are: {', '.join(choices)}")
-        return value
 
-    def texts(self, key: str, default: Any = REQUIRED) -> Any:
-        """List of texts, as a tuple."""
-        value = self.take(key, default)
-        if value is default:
-            return value
-        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            raise CaseError(f"{self.place}: '{key}' must be a list of texts")
+def as_number(value: Any, place: str) -> float:
+    """Finite number as float, or an error that names the place."""
+    if not is_number(value):
+        raise CaseError(f"{place} must be a finite number, not {value!r}")
+    return float(value)
+
+
+def _list_of(what: str, is_one: Callable[[Any], bool], least: int = 0) -> BeforeValidator:
+    def judge(value: Any, info: ValidationInfo) -> Any:
+        if value is None:
+            return None
+        if not isinstance(value, list | tuple) or len(value) < least or not all(map(is_one, value)):
+            raise ValueOfKeyError(f"'{info.field_name}' must be a list of {what}")
         return tuple(value)
 
-    def numbers(self, key: str, default: Any = REQUIRED) -> Any:
-        """List of finite numbers, as a tuple."""
-        value = self.take(key, default)
-        if value is default:
+    return BeforeValidator(judge)
+
+
+def _numbers(value: Any, info: ValidationInfo) -> Any:
+    if value is None:
+        return None
+    if not isinstance(value, list | tuple) or not value:
+        raise ValueOfKeyError(f"'{info.field_name}' must be a list of numbers")
+    try:
+        return tuple(as_number(item, f"'{info.field_name}'") for item in value)
+    except CaseError as reason:
+        raise ValueOfKeyError(str(reason)) from None
+
+
+Texts = Annotated[tuple[str, ...], _list_of("texts", lambda item: isinstance(item, str))]
+Numbers = Annotated[tuple[float, ...], BeforeValidator(_numbers)]
+Values = Annotated[tuple[Any, ...], _list_of("at least one value", lambda _: True, 1)]
+Tables = Annotated[tuple[Any, ...], _list_of("tables", lambda item: isinstance(item, Mapping))]
+
+
+def read_by(read: Callable[[Any], Any], *, names_key: bool = True) -> PlainValidator:
+    """What a function makes of a value; its `CaseError`, which may name the key, is the error."""
+
+    def judge(value: Any) -> Any:
+        try:
+            return read(value)
+        except CaseError as reason:
+            kind = ValueOfKeyError if names_key else ValueError
+            raise kind(str(reason)) from None
+
+    return PlainValidator(judge)
+
+
+def choice(words: Iterable[str]) -> AfterValidator:
+    """One of some words."""
+    known = tuple(words)
+
+    def judge(value: str | None, info: ValidationInfo) -> str | None:
+        if value is None or value in known:
             return value
-        if not isinstance(value, list) or not value:
-            raise CaseError(f"{self.place}: '{key}' must be a list of numbers")
-        return tuple(as_number(item, f"{self.place}: '{key}'") for item in value)
+        there = ", ".join(known)
+        raise ValueOfKeyError(f"'{value}' is no {info.field_name}; there are: {there}")
 
-    def mapping(self, key: str) -> dict[str, Any]:
-        """Table with free keys; empty if not given."""
-        value = self.take(key, {})
-        if not isinstance(value, Mapping):
-            raise CaseError(f"{self.place}: '{key}' must be a table")
-        return dict(value)
+    return AfterValidator(judge)
 
-    def constants(self, key: str) -> dict[str, float]:
-        """Table of names and numbers; empty if not given."""
-        place = f"{self.place}: '{key}'"
-        return {name: as_number(value, place) for name, value in self.mapping(key).items()}
 
-    def tables(self, key: str) -> list[Any]:
-        """List of tables; empty if not given."""
-        value = self.take(key, [])
-        if not isinstance(value, list):
-            raise CaseError(f"{self.place}: '{key}' must be a list of tables")
-        return value
+def whole(least: int) -> BeforeValidator:
+    """Whole number from a least one on."""
 
-    def done(self) -> None:
-        """Refuse the keys that nobody took, and say what was perhaps meant."""
-        for key in self._left:
-            near = difflib.get_close_matches(key, self._known, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
-            raise CaseError(f"{self.place}: '{key}' is unknown{hint}")
-
-    def _of_kind(self, key: str, default: Any, kind: type, name: str) -> Any:
-        value = self.take(key, default)
-        if value is default:
+    def judge(value: Any, info: ValidationInfo) -> Any:
+        if value is None or (type(value) is int and value >= least):
             return value
-        if not isinstance(value, kind) or value == "":
-            raise CaseError(f"{self.place}: '{key}' must be {name}")
-        return value
+        raise ValueOfKeyError(f"'{info.field_name}' must be a whole number from {least} on")
+
+    return BeforeValidator(judge)
 
 
-def read_toml(path: Path) -> dict[str, Any]:
-    """Read a TOML file; a `CaseError` tells what is wrong with it."""
+def read_entry(kind: type[Kind], data: Any, place: str) -> Kind:
+    """Table as a model; a `CaseError` names the place, the key and what would be right."""
+    try:
+        return kind.model_validate(data)
+    except ValidationError as wrong:
+        error = wrong.errors()[0]
+        raise CaseError(_sentence(error, kind, place)) from None
+
+
+def _sentence(error: Any, kind: type[Entry], place: str) -> str:
+    name, value = error["type"], error["input"]
+    parts = [str(part + 1 if isinstance(part, int) else part) for part in error["loc"]]
+    reason = error.get("ctx", {}).get("error")
+    if isinstance(reason, ValueOfKeyError):
+        parts = parts[:-1]
+    if reason is not None or not parts:
+        said = str(reason) if reason is not None else "it must be a table"
+        return f"{': '.join([place, *parts])}: {said}"
+    where, key = ": ".join([place, *parts[:-1]]), parts[-1]
+    if name == "missing":
+        return f"{where}: '{key}' is missing"
+    if name == "extra_forbidden":
+        near = difflib.get_close_matches(key, kind.model_fields, n=1) if len(parts) == 1 else []
+        return f"{where}: '{key}' is unknown" + (f"; did you mean '{near[0]}'?" if near else "")
+    limits = error.get("ctx", {})
+    wanted = {
+        "greater_than": f"positive, not {value}",
+        "less_than": f"less than {limits.get('lt')}, not {value}",
+        "float_type": f"a finite number, not {value!r}",
+        "finite_number": f"a finite number, not {value!r}",
+        "bool_type": "true or false",
+        "dict_type": "a table",
+        "model_type": "a table",
+        "tuple_type": "a list of tables",
+        "too_short": "a table that is not empty",
+    }
+    return f"{where}: '{key}' must be {wanted.get(name, 'a text')}"
+
+
+def read_toml(path: Path) -> Table:
+    """Read a TOML file; a `CaseError` states what is wrong with it."""
     try:
         return text_files.read_toml(path)
     except FileNotFoundError:
@@ -128,8 +168,13 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise CaseError(f"{path.name}: {reason}") from None
 
 
-def as_number(value: Any, place: str) -> float:
-    """Finite number as float, or an error that tells the place."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-        raise CaseError(f"{place} must be a finite number, not {value!r}")
-    return float(value)
+def as_tables(data: Any, kinds: Iterable[str], place: str) -> dict[str, Table]:
+    """Tables by kind, empty where not given; no other kinds."""
+    if not isinstance(data, Mapping):
+        raise CaseError(f"'{place}' must be a table")
+    for kind, table in data.items():
+        if kind not in kinds:
+            raise CaseError(f"{place}: '{kind}' is unknown; there are: {', '.join(kinds)}")
+        if not isinstance(table, Mapping):
+            raise CaseError(f"{place}: '{kind}' must be a table")
+    return {kind: dict(data.get(kind, {})) for kind in kinds}

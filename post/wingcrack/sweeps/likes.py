@@ -5,23 +5,16 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
+from wingcrack.errors import CaseError
 from wingcrack.figures import text_files
-from wingcrack.sweeps.errors import CaseError
-
-Table: TypeAlias = dict[str, Any]
+from wingcrack.sweeps.fields import Table
 
 SHARED = "like.toml"  # beside the cases: entries that several of them are like
 
 # Key that names an entry, by kind.
-NAMED_BY = {
-    "run": "name",
-    "sweep": "name",
-    "check": "quantity",
-    "figure": "title",
-    "trial": "name",
-}
+NAMED_BY = {"run": "name", "sweep": "name", "check": "quantity", "figure": "title", "trial": "name"}
 _OWN = ("like", "known_gap", "default")  # said of one entry, never of those that are like it
 
 
@@ -38,10 +31,8 @@ class Likes:
     def complete(self, entry: Mapping[str, Any], kind: str, place: str) -> Table:
         """Entry with what it does not say itself, tables joined item by item.
 
-        Raises
-        ------
-        CaseError
-            If it is like one that is not there, or there twice, or, in the end, like itself.
+        Raises `CaseError` if it is like one that is not there, or there twice, or, in the end, like
+        itself.
         """
         return self._whole(entry, kind, f"{self._files[0]}: {place}: like", [])
 
@@ -84,10 +75,7 @@ class Likes:
 def shared_likes(top: Path) -> Likes:
     """Entries of ``like.toml`` in a folder of cases; none where there is no such file.
 
-    Raises
-    ------
-    CaseError
-        If it is no TOML file, or has anything else than entries with a name.
+    Raises `CaseError` if it is no TOML file, or has anything else than entries with a name.
     """
     try:
         data = text_files.read_toml(top / SHARED)

@@ -7,11 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import CaseError, RunError
 from wingcrack.figures.growth import read_growth
 from wingcrack.figures.table import Table
 from wingcrack.figures.text_files import read_json
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.expressions import Array
 
 NETWORK = "network.json"  # the file that is read as a table of vertices
@@ -24,17 +23,10 @@ def path_distance(first: Array, second: Array) -> float:
     Both begin at the same place of a crack, so each is cut off at an arc length from its first
     point. Of every point of one path the distance to the nearest place of the other counts (the
     Hausdorff distance of polylines, whose maximum is taken at vertices where the paths are nearly
-    parallel; segments are halved until they are short beside the distance found).
+    parallel; segments are halved until they are short compared with the distance found). Raises
+    `CaseError` if a path has no length.
 
-    Parameters
-    ----------
-    first, second : (n, 2), (m, 2) arrays
-        Points of the polylines [m].
-
-    Raises
-    ------
-    CaseError
-        If a path has no length.
+    `first` and `second` (n, 2), (m, 2): points of the polylines [m].
     """
     length = min(_length(first), _length(second))
     if not length > 0.0:
@@ -48,12 +40,7 @@ def network_table(path: Path) -> Table:
 
     The wings `start` and `end` begin with the initial end of the fracture and lead outwards; `s_m`
     is the arc length from there. Of the initial part it is that from its first vertex. A wing that
-    has not grown has no rows.
-
-    Raises
-    ------
-    CaseError
-        If the file is missing, or not what it should be.
+    has not grown has no rows. Raises `CaseError` if the file is missing, or not what it should be.
     """
     try:
         content: Any = read_json(path)

@@ -10,9 +10,9 @@ from typing import Any, TypeAlias
 
 import f90nml
 
+from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import namelist_groups, read_text
 from wingcrack.runner.task import hash_of
-from wingcrack.sweeps.errors import CaseError
 
 _Groups: TypeAlias = dict[str, list[Any]]
 
@@ -23,20 +23,11 @@ DEFAULTS: dict[str, Any] = {"output.vtu": False}
 def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> str:
     """Text of a scene file after the changes.
 
-    Parameters
-    ----------
-    path : Path
-        The scene file.
-    changes : mapping
-        New values by ``group.name`` or, in repeated groups, ``group.item.name``; an item is its
-        number from 1 or its name.
-    unset : sequence of str
-        Names, items or groups that are taken away first.
+    Raises `CaseError` if the file cannot be read or an address leads nowhere.
 
-    Raises
-    ------
-    CaseError
-        If the file cannot be read or an address leads nowhere.
+    `path`: the scene file. `changes`: new values by ``group.name`` or, in repeated groups,
+    ``group.item.name``; an item is its number from 1 or its name. `unset`: names, items or groups
+    that are taken away first.
     """
     try:
         groups = _groups(namelist_groups(read_text(path)))
@@ -55,7 +46,7 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
 
 @lru_cache(maxsize=1)
 def scene_hash() -> str:
-    """Hash of this module, which changes scenes; judging is always done anew."""
+    """Hash of this module, which changes scenes; results are always judged again."""
     return hash_of(Path(__file__).read_bytes())
 
 

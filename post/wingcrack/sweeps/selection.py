@@ -7,22 +7,30 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeAlias, TypeVar
+from typing import Annotated, Any, Self, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import Field, model_validator
 
-from wingcrack.figures.errors import RunError
+from wingcrack.errors import CaseError, RunError
 from wingcrack.figures.table import Table, read_table
 from wingcrack.figures.text_files import read_json
-from wingcrack.sweeps.errors import CaseError
 from wingcrack.sweeps.expressions import FUNCTIONS, Array, evaluate, names_in
-from wingcrack.sweeps.fields import Fields, as_number
+from wingcrack.sweeps.fields import (
+    Entry,
+    Text,
+    Texts,
+    as_number,
+    choice,
+    is_number,
+    read_by,
+    read_entry,
+)
 from wingcrack.sweeps.paths import NETWORK, network_table
 
 T = TypeVar("T")
 Mask = npt.NDArray[np.bool_]
-Wanted: TypeAlias = "float | str | Limits"
 
 TAKES: dict[str, Callable[[Array], float]] = {
     "first": lambda values: float(values[0]),
@@ -44,75 +52,91 @@ CLOCKS = ("time_s", "load_factor")  # what stands for the time of a row
 EQUAL = 1.0e-9  # relative difference up to which a number in a file is the one asked for
 
 
-@dataclass(frozen=True)
-class Limits:
+class Limits(Entry):
     """Both included; an open side is infinite."""
 
-    lower: float
-    upper: float
+    min: float = -np.inf
+    max: float = np.inf
 
 
-@dataclass(frozen=True)
-class Selection:
+Wanted: TypeAlias = Limits | float | str
+
+
+def _condition(value: Any) -> Wanted:
+    if isinstance(value, Mapping):
+        return read_entry(Limits, value, "limits")
+    return value if isinstance(value, str) else as_number(value, "it")
+
+
+def _abscissa(value: Any) -> str | tuple[float, ...] | None:
+    if isinstance(value, str) and value:
+        return value
+    if not isinstance(value, list) or not value or not all(map(is_number, value)):
+        raise CaseError("'x' must be a text, or a list of finite numbers")
+    return tuple(map(float, value))
+
+
+Conditions: TypeAlias = dict[str, Annotated[Wanted, read_by(_condition, names_key=False)]]
+
+
+class Selection(Entry):
     """What to read from a file; see docs/verification.md for each key."""
 
-    place: str
-    file: str
-    columns: tuple[str, ...]
-    where: tuple[tuple[str, Wanted], ...]
-    single_row: bool
-    take: str | None
-    interpolate: tuple[str, float] | None
-    x: str | None
-    x_values: tuple[float, ...] | None
-    key: str | None
+    file: Text
+    column: Text | None = None
+    columns: Texts = ()
+    where: Conditions = Field(default_factory=dict)
+    at: Conditions = Field(default_factory=dict)
+    take: Annotated[str | None, choice(TAKES)] = None
+    interpolate: dict[str, float] = Field(default_factory=dict)
+    x: Annotated[str | tuple[float, ...] | None, read_by(_abscissa)] = None
+    key: Text | None = None
+
+    @model_validator(mode="after")
+    def _judge(self) -> Self:
+        if self.key is not None:
+            if self.model_fields_set & {*Selection.model_fields} - {"file", "key"}:
+                raise ValueError("'key' excludes the other keys of a selection")
+            return self
+        several = bool(self.columns)
+        if several == (self.column is not None):
+            raise ValueError("either 'column' or 'columns' is needed")
+        if len(self.interpolate) > 1:
+            raise ValueError("'interpolate' takes one column")
+        along = isinstance(self.x, str)
+        if sum(map(bool, (self.at, self.take, self.interpolate, along))) > 1:
+            raise ValueError("'at', 'take', 'interpolate' and 'x' exclude each other")
+        if several and not self.at:
+            raise ValueError("'columns' needs 'at': one row")
+        if (along and several) or (self.x is not None and not along and not several):
+            raise ValueError("'x' is a column, or of 'columns' a list of numbers")
+        if isinstance(self.x, tuple) and len(self.x) != len(self.columns):
+            raise ValueError(f"{len(self.x)} values of x for {len(self.columns)} columns")
+        return self
+
+    @property
+    def all_columns(self) -> tuple[str, ...]:
+        """The columns that are read."""
+        return self.columns or ((self.column,) if self.column else ())
+
+    @property
+    def x_column(self) -> str | None:
+        """The column of the abscissa."""
+        return self.x if isinstance(self.x, str) else None
+
+    @property
+    def conditions(self) -> list[tuple[str, Wanted]]:
+        """All that holds in the rows that are read."""
+        return [*self.where.items(), *self.at.items()]
 
 
 @dataclass(frozen=True)
 class Values:
-    """Selected values, all finite.
+    """Selected values, all finite."""
 
-    Attributes
-    ----------
-    values : (n,) array
-        In the unit of the check; n = 1 unless it is a profile.
-    x : (n,) array or None
-        Abscissa of a profile, increasing.
-    profile : bool
-        Whether there may be several values.
-    """
-
-    values: Array
-    x: Array | None
-    profile: bool
-
-
-def read_selection(fields: Fields, file: str) -> Selection:
-    """Take the keys of a selection from a table; the caller calls `done`."""
-    place = fields.place
-    key = fields.text("key", None)
-    if key is not None:
-        return Selection(place, file, (), (), False, None, None, None, None, key)
-    if fields.has("columns") == fields.has("column"):
-        raise CaseError(f"{place}: either 'column' or 'columns' is needed")
-    several = fields.has("columns")
-    columns = fields.texts("columns") if several else (fields.text("column"),)
-    where = _conditions(fields.mapping("where"), f"{place}: where")
-    at = _conditions(fields.mapping("at"), f"{place}: at")
-    take = fields.choice("take", tuple(TAKES), None)
-    interpolate = _interpolation(fields.mapping("interpolate"), place)
-    x = None if several else fields.text("x", None)
-    x_values = fields.numbers("x", None) if several else None
-    if sum(map(bool, (at, take, interpolate, x))) > 1:
-        raise CaseError(f"{place}: 'at', 'take', 'interpolate' and 'x' exclude each other")
-    if several and not at:
-        raise CaseError(f"{place}: 'columns' needs 'at': one row")
-    if x_values is not None and len(x_values) != len(columns):
-        raise CaseError(f"{place}: {len(x_values)} values of x for {len(columns)} columns")
-    conditions = (*where, *at)
-    return Selection(
-        place, file, columns, conditions, bool(at), take, interpolate, x, x_values, None
-    )
+    values: Array  # (n,) in the unit of the check; n = 1 unless it is a profile
+    x: Array | None  # (n,) abscissa of a profile, increasing
+    profile: bool  # whether there may be several values
 
 
 def names_of(
@@ -125,51 +149,20 @@ def names_of(
     if selection.key is not None:
         found = set(_KEY.findall(selection.key)) - _OWN
         return {name for name in found if not is_column(name)}
-    texts = [*selection.columns, *([selection.x] if selection.x else [])]
-    if selection.interpolate:
-        texts.append(selection.interpolate[0])
+    x = [selection.x_column] if selection.x_column else []
+    texts = [*selection.all_columns, *x, *selection.interpolate]
     found = {name for text in texts if not is_column(text) for name in names_in(text) - _OWN}
-    return {name for name in found | {name for name, _ in selection.where} if not is_column(name)}
-
-
-def _conditions(given: Mapping[str, Any], place: str) -> tuple[tuple[str, Wanted], ...]:
-    found: list[tuple[str, Wanted]] = []
-    for column, wanted in given.items():
-        if isinstance(wanted, Mapping):
-            fields = Fields(wanted, f"{place}.{column}")
-            limits = Limits(fields.number("min", -np.inf), fields.number("max", np.inf))
-            fields.done()
-            found.append((column, limits))
-        elif isinstance(wanted, str):
-            found.append((column, wanted))
-        else:
-            found.append((column, as_number(wanted, f"{place}.{column}")))
-    return tuple(found)
-
-
-def _interpolation(given: Mapping[str, Any], place: str) -> tuple[str, float] | None:
-    if not given:
-        return None
-    if len(given) != 1:
-        raise CaseError(f"{place}: 'interpolate' takes one column")
-    ((column, value),) = given.items()
-    return column, as_number(value, f"{place}: interpolate.{column}")
+    found |= {name for name, _ in selection.conditions}
+    return {name for name in found if not is_column(name)}
 
 
 def select(
-    selection: Selection,
-    folder: Path,
-    constants: Mapping[str, float],
-    as_path: bool = False,
+    selection: Selection, folder: Path, constants: Mapping[str, float], as_path: bool = False
 ) -> Values:
     """Read the selected values from a file in the folder.
 
-    With `as_path`, a profile keeps the order of the file's rows: a curve that may turn back.
-
-    Raises
-    ------
-    CaseError
-        If the file, a column or the row is not there, or if a value is no finite number.
+    With `as_path`, a profile keeps the order of the file's rows: a curve that may turn back. Raises
+    `CaseError` if the file, a column or the row is not there, or if a value is no finite number.
     """
     if selection.key is not None:
         return Values(np.array([_json_number(selection, folder)]), None, False)
@@ -177,27 +170,26 @@ def select(
     kept = _rows(table, selection)
     if not kept.any():
         raise CaseError(f"{selection.file}: no row where {_spoken(selection)}")
-    if selection.single_row and np.count_nonzero(kept) > 1:
+    if selection.at and np.count_nonzero(kept) > 1:
         raise CaseError(
             f"{selection.file}: {np.count_nonzero(kept)} rows where {_spoken(selection)}, "
             "and 'at' wants one"
         )
-    columns = [_column(table, name, kept, constants) for name in selection.columns]
-    if selection.x_values is not None or len(columns) > 1:
-        x = None if selection.x_values is None else np.array(selection.x_values)
+    columns = [_column(table, name, kept, constants) for name in selection.all_columns]
+    if isinstance(selection.x, tuple) or len(columns) > 1:
+        x = np.array(selection.x) if selection.x else None
         return _ordered(np.concatenate(columns), x, selection)
     values = columns[0]
     if selection.take is not None:
         return Values(np.array([TAKES[selection.take](values)]), None, False)
-    if selection.interpolate is not None:
-        name, wanted = selection.interpolate
+    for name, wanted in selection.interpolate.items():
         profile = _ordered(values, _column(table, name, kept, constants), selection)
         return Values(interpolated(profile, np.array([wanted]), selection.file), None, False)
-    if selection.single_row:
+    if selection.at:
         return Values(values, None, False)
-    if selection.x is None:
+    if selection.x_column is None:
         return Values(values, None, True)
-    x = _column(table, selection.x, kept, constants)
+    x = _column(table, selection.x_column, kept, constants)
     return Values(values, x, True) if as_path else _ordered(values, x, selection)
 
 
@@ -229,7 +221,7 @@ def _ordered(values: Array, x: Array | None, selection: Selection) -> Values:
 
 def _rows(table: Table, selection: Selection) -> Mask:
     kept = np.ones(table.rows, dtype=np.bool_)
-    for column, wanted in selection.where:
+    for column, wanted in selection.conditions:
         kept &= _matches(table, column, wanted)
     return kept
 
@@ -239,7 +231,7 @@ def _matches(table: Table, column: str, wanted: Wanted) -> Mask:
         return _guarded(lambda: np.asarray(table.text(column) == wanted, dtype=np.bool_))
     numbers = _numbers(table, column)
     if isinstance(wanted, Limits):
-        return np.asarray((numbers >= wanted.lower) & (numbers <= wanted.upper), dtype=np.bool_)
+        return np.asarray((numbers >= wanted.min) & (numbers <= wanted.max), dtype=np.bool_)
     if isinstance(wanted, str):
         if table.rows == 0:
             raise CaseError(f"{table.path.name}: there is no row")
@@ -325,9 +317,9 @@ def _guarded(action: Callable[[], T]) -> T:
 
 def _spoken(selection: Selection) -> str:
     parts = []
-    for column, wanted in selection.where:
+    for column, wanted in selection.conditions:
         if isinstance(wanted, Limits):
-            parts.append(f"{wanted.lower:g} <= {column} <= {wanted.upper:g}")
+            parts.append(f"{wanted.min:g} <= {column} <= {wanted.max:g}")
         else:
             parts.append(f"{column} = {wanted}")
     return " and ".join(parts) or "there is any"

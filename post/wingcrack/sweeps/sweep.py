@@ -9,34 +9,16 @@ import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence, Set
-from typing import Any, TypeAlias
+from typing import Any
 
-from wingcrack.sweeps.errors import CaseError
+from wingcrack.errors import CaseError
 from wingcrack.sweeps.expressions import FUNCTIONS, evaluate, names_in
-from wingcrack.sweeps.fields import Fields
+from wingcrack.sweeps.fields import Table, as_tables
 from wingcrack.sweeps.likes import Likes, joined
+from wingcrack.sweeps.selection import Selection
 
-Table: TypeAlias = dict[str, Any]
-
-# Names of a point that are keys of the table are given to it; all others are for its templates.
-_RUN = {
-    *("name", "method", "size", "default", "constants", "time_limit_s"),
-    *("scene", "set", "unset", "program", "args"),
-}
-_CHECK = {
-    *("quantity", "unit", "runs", "judged", "result", "reference", "metric", "normalise"),
-    *("tolerance", "scale", "order", "economy", "front", "work_precision", "known_gap", "x_label"),
-}
-_FIGURE = {
-    *("title", "caption", "x_label", "y_label", "x_log", "y_log", "equal_axes", "lines"),
-    *("picture", "run"),
-}
-_LINE = {
-    *("label", "run", "points", "file", "column", "columns", "where", "at", "take"),
-    *("interpolate", "x", "key"),
-}
-_TRIAL = {"name", "expect", "cause", "note", "known_gap", "quick", "set", "unset"}
-_KEYS = {"run": _RUN, "sweep": _RUN, "check": _CHECK, "figure": _FIGURE, "trial": _TRIAL}
+# Names of a point that are keys of a line of a figure are given to it; others are for templates.
+_LINE_KEYS = {*Selection.model_fields, "label", "run", "points"}
 
 # A name, or arithmetic of names, in braces; perhaps with a format, as in Python.
 _PLACEHOLDER = re.compile(r"\{([^{}:]+)(?::([^{}]*))?\}")
@@ -49,9 +31,7 @@ class Defaults:
     """
 
     def __init__(self, data: Any, kinds: Sequence[str], outer: Defaults | None = None) -> None:
-        fields = Fields(data, "defaults")
-        self._tables = {kind: fields.mapping(kind) for kind in kinds}
-        fields.done()
+        self._tables = as_tables(data, kinds, "defaults")
         self._left = {kind: set(table) for kind, table in self._tables.items()}
         self._outer = outer
 
@@ -72,26 +52,25 @@ class Defaults:
 
 
 def read_tables(
-    fields: Fields, kind: str, defaults: Defaults | None = None, likes: Likes | None = None
+    data: Any,
+    kind: str,
+    keys: Set[str],
+    defaults: Defaults | None = None,
+    likes: Likes | None = None,
 ) -> list[tuple[str, Table]]:
     """All tables of a kind, expanded, each with its place for errors.
 
-    Raises
-    ------
-    CaseError
-        As `_expand`; if a run has an ``over``, or a sweep has none; and if one is like another
-        that is not there.
+    Raises `CaseError` as `_expand`; if a run has an ``over``, or a sweep has none; and if one is
+    like another that is not there.
     """
     found = []
-    for index, item in enumerate(fields.tables(kind), start=1):
+    for index, item in enumerate(data, start=1):
         place = f"{kind} {index}"
-        if not isinstance(item, Mapping):
-            raise CaseError(f"{place} must be a table")
         whole = item if likes is None else likes.complete(item, kind, place)
         if kind in ("run", "sweep") and (kind == "sweep") != ("over" in whole):
             raise CaseError(f"{place}: a [[sweep]] needs 'over', and a [[run]] has none")
         whole = whole if defaults is None else defaults.complete(whole, kind)
-        found += [(place, table) for table in _expand(whole, place, _KEYS[kind])]
+        found += [(place, table) for table in _expand(whole, place, keys)]
     return found
 
 
@@ -100,22 +79,12 @@ def _expand(
 ) -> list[Table]:
     """Tables that a table stands for: one per point of its ``over``, or itself without it.
 
-    Parameters
-    ----------
-    data : table
-        With templates: texts with names of the point in braces.
-    place : str
-        Where it stands, for errors.
-    keys : set of str
-        Names of a point that become keys of the tables.
-    outer : _Filler, optional
-        That of the table that this one stands in: its names can be used too.
+    Raises `CaseError` if ``over`` gives nothing, or a name twice, or one that nobody uses, or if a
+    template wants what the point does not have.
 
-    Raises
-    ------
-    CaseError
-        If ``over`` gives nothing, or a name twice, or one that nobody uses, or if a template
-        wants what the point does not have.
+    `data`: with templates: texts with names of the point in braces. `place`: where it stands, for
+    errors. `keys`: names of a point that become keys of the tables. `outer`: that of the table that
+    this one stands in: its names can be used too.
     """
     template = {name: value for name, value in data.items() if name != "over"}
     points = grid_points(data["over"], f"{place}: over") if "over" in data else [{}]
@@ -141,10 +110,7 @@ def filled(
 ) -> tuple[Table, set[str]]:
     """Table with the values of a point in its templates, and the names that these used.
 
-    Raises
-    ------
-    CaseError
-        If a template wants what the point does not have.
+    Raises `CaseError` if a template wants what the point does not have.
     """
     used: set[str] = set()
     return _Filler(dict(point), used, place).filled(table), used
@@ -153,10 +119,8 @@ def filled(
 def grid_points(over: Any, place: str, most: float = math.inf) -> list[Table]:
     """All combinations of the axes; the last axis changes first.
 
-    Raises
-    ------
-    CaseError
-        If an axis gives nothing, or two give the same name, or there would be more than `most`.
+    Raises `CaseError` if an axis gives nothing, or two give the same name, or there would be more
+    than `most`.
     """
     if not isinstance(over, Mapping) or not over:
         raise CaseError(f"{place} must be a table of lists")
@@ -222,7 +186,7 @@ class _Filler:
             filled: list[Any] = []
             for item in value:
                 if isinstance(item, Mapping) and "over" in item:
-                    filled += _expand(item, f"{self.place}: a line", _LINE, self)
+                    filled += _expand(item, f"{self.place}: a line", _LINE_KEYS, self)
                 else:
                     filled.append(self._value(item))
             return filled

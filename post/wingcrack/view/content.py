@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections import OrderedDict
+from collections.abc import Mapping
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -25,9 +26,8 @@ from wingcrack.figures.units import length_unit, time_unit
 from wingcrack.runs.colours import MEAN, colouring, default_field, values_of
 from wingcrack.runs.fields import Fields, read_fields
 from wingcrack.runs.plots import default_column, fitting_unit
-from wingcrack.runs.tables import TEXTS
+from wingcrack.runs.results import TEXTS
 from wingcrack.runs.units import column_words
-from wingcrack.view.packing import pack
 
 _FIELDS = (
     ("pressure", "pore pressure"),
@@ -55,14 +55,10 @@ _WATCHED = ("history.csv", "run.json", "network.json", "scene.nml", "matrix.pvd"
 
 
 class Content:
-    """The files of a run as messages for the page; a run that goes on is read anew as it grows.
+    """The files of a run as messages for the page; a run that continues is read again.
 
     Places in messages are relative to the middle of the body, as 32-bit numbers: coordinates of
     a survey would lose their last digits.
-
-    Parameters
-    ----------
-    directory : Path
     """
 
     def __init__(self, directory: Path) -> None:
@@ -78,12 +74,8 @@ class Content:
     def overview(self) -> bytes:
         """What the run is, which states and fields it has, where its wells are, as JSON.
 
-        Raises
-        ------
-        RunError
-            If there is no run in the folder, or a file is damaged.
-        AbsentError
-            If no state is written.
+        Raises `RunError` if there is no run in the folder, or a file is damaged, `AbsentError` if
+        no state is written.
         """
         with self._lock:
             return json.dumps(self._overview(), allow_nan=False).encode()
@@ -91,10 +83,8 @@ class Content:
     def state(self, place: int, field: str, stamp: str) -> bytes:
         """Values of a field in a written state [SI], and its fractures.
 
-        Raises
-        ------
-        AbsentError
-            If there is no such state or field, or not any more as the stamp tells it.
+        Raises `AbsentError` if there is no such state or field, or not any more as the stamp tells
+        it.
         """
         with self._lock:
             found = self._state(place, stamp)
@@ -225,7 +215,7 @@ class Content:
         snapshot = self._matrix[place]
         key = _stamp(snapshot.path)
         if stamp is not None and stamp != key:
-            raise AbsentError(f"state {place} has been written anew")
+            raise AbsentError(f"state {place} has been written again")
         found = self._kept.pop(key, None)
         if found is None:
             found = read_fields(self._directory, self._matrix, self._fractures, snapshot.time_s)
@@ -288,9 +278,36 @@ def _mesh_of(found: Fields) -> str:
 
 
 def _stamp(path: Path) -> str:
-    """A text that differs once a file is written anew."""
+    """A text that differs once a file is written again."""
     try:
         seen = path.stat()
     except OSError:
         return f"{path.name}: none"
     return f"{path.name}:{seen.st_mtime_ns:x}:{seen.st_size:x}"
+
+
+_ALIGNED = 8  # [byte]
+_LENGTH_BYTES = 4
+_KINDS = {"f4": "Float32Array", "f8": "Float64Array", "u4": "Uint32Array", "u1": "Uint8Array"}
+
+
+def pack(head: Mapping[str, Any], arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:
+    """Put a head and arrays (of float32, float64, uint32 or uint8) into one message.
+
+    Layout: length of the head as a 32-bit number, the head in JSON, then the arrays, all
+    little-endian; each begins at a multiple of eight bytes from the start, so that typed arrays of
+    JavaScript can lie on them without a copy.
+    """
+    parts: list[bytes] = []
+    places: dict[str, tuple[str, int, int]] = {}
+    offset = 0
+    for name, values in arrays.items():
+        flat = np.ascontiguousarray(values).ravel()
+        data = flat.astype(flat.dtype.newbyteorder("<"), copy=False).tobytes()
+        places[name] = (_KINDS[flat.dtype.str[1:]], offset, flat.size)
+        data += bytes(-len(data) % _ALIGNED)
+        parts.append(data)
+        offset += len(data)
+    text = json.dumps({**head, "arrays": places}, allow_nan=False).encode()
+    text += b" " * (-(_LENGTH_BYTES + len(text)) % _ALIGNED)
+    return b"".join((len(text).to_bytes(_LENGTH_BYTES, "little"), text, *parts))

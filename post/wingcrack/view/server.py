@@ -42,10 +42,7 @@ _FOR_GOOD = "private, max-age=86400, immutable"  # the address holds a stamp of 
 def serve(content: Content, port: int) -> ThreadingHTTPServer:
     """Give a server for a run, on a port of this machine or, for 0, on a free one.
 
-    Raises
-    ------
-    OSError
-        If the port is taken or not allowed.
+    Raises `OSError` if the port is taken or not allowed.
     """
 
     class Handler(_Handler):
@@ -111,9 +108,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(message)
 
 
-def _answers(
-    content: Content,
-) -> dict[str, Callable[[dict[str, str]], tuple[str, bytes, str]]]:
+def _answers(content: Content) -> dict[str, Callable[[dict[str, str]], tuple[str, bytes, str]]]:
     """What there is at each path; a query without what it needs is a KeyError or ValueError."""
 
     def page(path: Path) -> Callable[[dict[str, str]], tuple[str, bytes, str]]:

@@ -13,49 +13,26 @@ TOP = Path(__file__).resolve().parents[3]
 
 @dataclass(frozen=True)
 class Benchmark:
-    """A scene that is measured.
-
-    Attributes
-    ----------
-    name, title : str
-    scene : Path or None
-        The file, or None if tools/many_fractures.py writes it.
-    many_fractures : tuple of str
-        Its arguments then.
-    changes : mapping
-        Entries of the scene that differ from the file, by address.
-    one_step : mapping
-        Further ones with which only the first step is left; empty if that is not measured.
-    once : bool
-        Whether it takes too long to be repeated.
-    quick : bool
-        Whether it is part of the short form.
-    """
+    """A scene that is measured."""
 
     name: str
     title: str
-    scene: Path | None = None
-    many_fractures: tuple[str, ...] = ()
+    scene: Path | None = None  # the file, or None if tools/many_fractures.py writes it
+    many_fractures: tuple[str, ...] = ()  # its arguments then
+    # entries of the scene that differ from the file, by address
     changes: Mapping[str, Any] = field(default_factory=dict)
+    # further ones with which only the first step is left; empty if that is not measured
     one_step: Mapping[str, Any] = field(default_factory=dict)
-    once: bool = False
-    quick: bool = False
+    once: bool = False  # whether it takes too long to be repeated
+    quick: bool = False  # whether it is part of the short form
 
 
 @dataclass(frozen=True)
 class Growth:
-    """Measurements of one kind in different sizes.
+    """Measurements of one kind in different sizes."""
 
-    Attributes
-    ----------
-    of : str
-        What their size is counted in: a key of run.json.
-    names : tuple of str
-        The measurements, from small to large.
-    """
-
-    of: str
-    names: tuple[str, ...]
+    of: str  # what their size is counted in: a key of run.json
+    names: tuple[str, ...]  # the measurements, from small to large
 
 
 def read_benchmarks() -> tuple[dict[str, Benchmark], tuple[Growth, ...]]:

@@ -11,31 +11,25 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from types import SimpleNamespace
 
-from wingcrack.figures.errors import EnvironmentLacksError
-from wingcrack.sweeps.errors import CaseError
-from wingcrack_verify.bench.baseline import (
+from wingcrack.errors import CaseError, EnvironmentLacksError
+from wingcrack.figures.text_files import write_whole
+from wingcrack_verify.bench.catalogue import TOP, Benchmark, read_benchmarks
+from wingcrack_verify.bench.measure import Measurement, RunFailedError, count, measure
+from wingcrack_verify.bench.table import (
     MOST_CPU,
     MOST_INSTRUCTIONS,
     Baseline,
-    differences,
-    made_with,
-    read_baseline,
-    store,
-)
-from wingcrack_verify.bench.catalogue import TOP, Benchmark, read_benchmarks
-from wingcrack_verify.bench.growth import Exponent, exponents
-from wingcrack_verify.bench.measure import (
-    Measurement,
-    RunFailedError,
-    count,
-    measure,
-)
-from wingcrack_verify.bench.table import (
+    Exponent,
     as_growth,
     as_json,
     as_phases,
     as_table,
+    differences,
+    exponents,
     instructions_ratio,
+    made_with,
+    read_baseline,
+    store,
 )
 from wingcrack_verify.environment import machine, revision
 
@@ -127,9 +121,7 @@ def _write(
         "measurements": as_json(measured, stored),
         "growth": [asdict(exponent) for exponent in found],
     }
-    part = out / "bench.json.part"
-    part.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
-    part.replace(out / "bench.json")
+    write_whole(out / "bench.json", json.dumps(record, indent=2) + "\n")
 
 
 def _store(measured: Sequence[Measurement], here: dict[str, str], path: Path) -> int:

@@ -9,16 +9,18 @@ import resource
 import shutil
 import statistics
 import subprocess
+import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from wingcrack.figures.errors import EnvironmentLacksError
+from wingcrack.errors import EnvironmentLacksError
 from wingcrack.figures.text_files import read_json
 from wingcrack.runner.task import ONE_THREAD
-from wingcrack_verify.bench.catalogue import Benchmark
-from wingcrack_verify.bench.scenes import write_scene
+from wingcrack.sweeps.scene import scene_text
+from wingcrack_verify.bench.catalogue import TOP, Benchmark
 
 # One set of kernels of OpenBLAS whatever the processor, too: counts mean something then.
 _COUNTED = {**ONE_THREAD, "OPENBLAS_CORETYPE": "Haswell"}
@@ -30,61 +32,31 @@ class RunFailedError(Exception):
 
 @dataclass(frozen=True)
 class Run:
-    """What one run cost, and how large it was.
+    """What one run cost, and how large it was."""
 
-    Attributes
-    ----------
-    cpu_s : float
-        CPU time of the whole process [s].
-    phases_s : dict of str to float
-        The part of it that each phase took; "rest" is what no phase covers [s].
-    states : int
-        Accepted time steps, or load factors with equilibrium.
-    growths : int
-        Propagation steps: how often the mesh followed growth.
-    sizes : dict of str to int
-        Cells, fracture cells, unknowns of all blocks at the end.
-    memory_mb : float
-        Largest memory of the process [MB of 2**20 bytes].
-    """
-
-    cpu_s: float
+    cpu_s: float  # CPU time of the whole process [s]
+    # the part of it that each phase took; "rest" is what no phase covers [s]
     phases_s: dict[str, float]
-    states: int
-    growths: int
-    sizes: dict[str, int]
-    memory_mb: float
+    states: int  # accepted time steps, or load factors with equilibrium
+    growths: int  # propagation steps: how often the mesh followed growth
+    sizes: dict[str, int]  # cells, fracture cells, unknowns of all blocks at the end
+    memory_mb: float  # largest memory of the process [MB of 2**20 bytes]
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a scene costs.
-
-    Attributes
-    ----------
-    name, title : str
-    typical : Run
-        The run with the median CPU time.
-    cpu_s : tuple of float
-        CPU time of each run, in their order [s].
-    first_step_s : float or None
-        CPU time of a run that ends after its first step, if that is measured [s].
-    other_s : tuple of float
-        CPU time of the other program, run in turn with this one [s]; empty without one.
-    instructions : int or None
-        Of the whole process, or None if they were not counted.
-    why_not_counted : str
-        What stood in the way of counting; empty if nothing did.
-    """
+    """What a scene costs."""
 
     name: str
     title: str
-    typical: Run
-    cpu_s: tuple[float, ...]
+    typical: Run  # the run with the median CPU time
+    cpu_s: tuple[float, ...]  # CPU time of each run, in their order [s]
+    # CPU time of a run that ends after its first step, if that is measured [s]
     first_step_s: float | None = None
+    # CPU time of the other program, run in turn with this one [s]; empty without one
     other_s: tuple[float, ...] = ()
-    instructions: int | None = None
-    why_not_counted: str = ""
+    instructions: int | None = None  # of the whole process, or None if they were not counted
+    why_not_counted: str = ""  # what stood in the way of counting; empty if nothing did
 
     @property
     def median_s(self) -> float:
@@ -155,10 +127,7 @@ def measure(
 def count(benchmark: Benchmark, solver: Path) -> tuple[int | None, str]:
     """Count the instructions of a run with valgrind; or say why that cannot be.
 
-    Raises
-    ------
-    EnvironmentLacksError
-        If there is no valgrind.
+    Raises `EnvironmentLacksError` if there is no valgrind.
     """
     valgrind = shutil.which("valgrind")
     if valgrind is None:
@@ -179,7 +148,7 @@ def count(benchmark: Benchmark, solver: Path) -> tuple[int | None, str]:
             # a build for this processor may use what valgrind does not know
             return None, f"valgrind cannot run the program here ({reason})"
     found = re.search(r"I +refs: +([0-9,]+)", words)
-    return (int(found[1].replace(",", "")), "") if found else (None, "valgrind told no count")
+    return (int(found[1].replace(",", "")), "") if found else (None, "valgrind gave no count")
 
 
 def _folder() -> tempfile.TemporaryDirectory[str]:
@@ -234,3 +203,18 @@ def _read(out: Path, cpu_s: float) -> Run:
         },
         memory_mb=float(record["peak_memory_mb"]),
     )
+
+
+def write_scene(benchmark: Benchmark, folder: Path, more: Mapping[str, Any] | None = None) -> Path:
+    """Write the scene of a measurement, perhaps with further entries changed; give its path."""
+    source = benchmark.scene
+    if source is None:
+        source = folder / "many_fractures.nml"
+        command = [sys.executable, str(TOP / "tools" / "many_fractures.py")]
+        done = subprocess.run(
+            [*command, *benchmark.many_fractures], capture_output=True, text=True, check=True
+        )
+        source.write_text(done.stdout, encoding="utf-8")
+    target = folder / f"{benchmark.name}{'_first' if more else ''}.nml"
+    target.write_text(scene_text(source, {**benchmark.changes, **(more or {})}, ()), "utf-8")
+    return target

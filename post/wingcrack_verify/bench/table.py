@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict
+import hashlib
+import json
+import math
+import re
+import subprocess
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
-from wingcrack_verify.bench.baseline import Baseline
-from wingcrack_verify.bench.growth import Exponent
+from wingcrack.figures.text_files import write_whole
+from wingcrack_verify.bench.catalogue import Growth
 from wingcrack_verify.bench.measure import Measurement
+from wingcrack_verify.environment import machine, packages
 
 _PHASE = 0.02  # share of the CPU time below which a phase is not shown
 
@@ -108,3 +115,111 @@ def _millions(count: int | None) -> str:
 
 def _ratio(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """How CPU time grows over measurements of one kind."""
+
+    of: str  # what is counted
+    sizes: tuple[int, ...]
+    cpu_s: tuple[float, ...]  # median CPU time [s] of each size
+    fitted: float  # slope of its logarithm over that of the size, by least squares
+    # CPU(4n)/CPU(n) from each size to the next one, at the slope between the two
+    fourfold: tuple[float, ...]
+
+
+def exponents(kinds: Sequence[Growth], measured: Mapping[str, Measurement]) -> tuple[Exponent, ...]:
+    """Fit each kind of which at least two sizes were measured."""
+    found = []
+    for kind in kinds:
+        mine = [measured[name] for name in kind.names if name in measured]
+        sizes = tuple(m.typical.sizes[kind.of] for m in mine)
+        if len(set(sizes)) >= 2:
+            found.append(fit(kind.of, sizes, tuple(m.median_s for m in mine)))
+    return tuple(found)
+
+
+def fit(of: str, sizes: tuple[int, ...], cpu_s: tuple[float, ...]) -> Exponent:
+    """Fit a power of the size to CPU times."""
+    x, y = [math.log(n) for n in sizes], [math.log(seconds) for seconds in cpu_s]
+    mean_x, mean_y = sum(x) / len(x), sum(y) / len(y)
+    slope = sum((a - mean_x) * (b - mean_y) for a, b in zip(x, y, strict=True)) / sum(
+        (a - mean_x) ** 2 for a in x
+    )
+    between = [
+        4.0 ** ((y[k + 1] - y[k]) / (x[k + 1] - x[k])) for k in range(len(x) - 1) if x[k + 1] > x[k]
+    ]
+    return Exponent(of, sizes, cpu_s, slope, tuple(between))
+
+
+MOST_INSTRUCTIONS = 1.10  # over the stored count: more is a loss
+MOST_CPU = 1.25  # over the CPU time of the other program: more is a loss
+_OURS = ("Fortran compiler", "CXX compiler", "build type")  # of what `packages` tells
+_LIBRARIES = re.compile(
+    r"\s(lib(?:gmsh|dmumps|mumps|metis|pord|scotch|\w*blas|gfortran|stdc|m\.|c\.)\S*) => (/\S+)"
+)
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """What was stored."""
+
+    made_with: dict[str, str]  # compilers, libraries and the processor that the code was made for
+    instructions: dict[str, int]  # by measurement
+
+
+def made_with(solver: Path) -> dict[str, str]:
+    """What the count of a solver's instructions depends on, apart from its own source."""
+    build = next((p for p in solver.resolve().parents if (p / "CMakeCache.txt").is_file()), None)
+    found: dict[str, str] = {}
+    if build is not None:
+        known = packages(build)
+        found |= {name: known[name] for name in _OURS if name in known}
+        cache = (build / "CMakeCache.txt").read_text(encoding="utf-8")
+        target = re.search(r"^WINGCRACK_PROCESSOR:\w+=(.*)$", cache, flags=re.M)
+        found["processor"] = target[1] if target else "unknown"
+        if "native" in found["processor"]:
+            found["processor"] += f", {machine()['processor']}"
+    found["valgrind"] = _said("valgrind", "--version")
+    for name, path in _LIBRARIES.findall(_said("ldd", str(solver))):
+        digest = hashlib.sha256(Path(path).read_bytes()).hexdigest()[:12]
+        found[name] = f"{Path(path).resolve().name} {digest}"
+    return found
+
+
+def read_baseline(path: Path) -> Baseline:
+    """Read what was stored; nothing if there is no such file."""
+    if not path.exists():
+        return Baseline({}, {})
+    content = json.loads(path.read_text(encoding="utf-8"))
+    return Baseline(content["made_with"], content["instructions"])
+
+
+def store(path: Path, new: Baseline) -> None:
+    """Store counts; others of before stay if they were made with the same."""
+    old = read_baseline(path)
+    counts = old.instructions if old.made_with == new.made_with else {}
+    content = {
+        "made_with": new.made_with,
+        "instructions": dict(sorted({**counts, **new.instructions}.items())),
+    }
+    write_whole(path, json.dumps(content, indent=2) + "\n")
+
+
+def differences(stored: Mapping[str, str], here: Mapping[str, str]) -> list[str]:
+    """Name what the stored counts were made with, and these are not."""
+    return [
+        f"{name} ({stored.get(name, 'none')} then, {here.get(name, 'none')} here)"
+        for name in sorted({*stored, *here})
+        if stored.get(name) != here.get(name)
+    ]
+
+
+def _said(*command: str) -> str:
+    """Give what a program prints; nothing where it is not there."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError:
+        return ""
+    return done.stdout.strip()
