@@ -330,8 +330,7 @@ contains
          at_row = at_component(i, 1) - 1
          do entry = matrix%columns%first(i), matrix%columns%last(i)
             at_col = at_component(matrix%columns%item(entry), 1) - 1
-            block = matrix%elastic(:, :, entry)
-            block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
+            block = matrix%block_at(entry, dt)
             do b = 1, 3
                do a = merge(b, 1_ik, at_col == at_row), 3
                   n = n + 1
@@ -405,7 +404,7 @@ contains
       own = at_component(element, 1) - 1
       at = 0
       do k = self%blocks%first(element), self%blocks%last(element)
-         block = block_of(self%matrix, abs(self%entry(k)), self%dt)
+         block = self%matrix%block_at(abs(self%entry(k)), self%dt)
          if (self%entry(k) < 0) block = transpose(block)
          row = at_component(self%blocks%item(k), 1) - 1
          do b = 1, 3
@@ -416,17 +415,6 @@ contains
          at = at + 3
       end do
    end subroutine give
-
-   !> One block of the matrix, for rows [N/m], [N/m], [m2] and unknowns [m], [m], [Pa].
-   pure function block_of(matrix, entry, dt) result(block)
-      type(matrix_t), intent(in) :: matrix
-      integer(ik), intent(in) :: entry
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk) :: block(3, 3)
-
-      block = matrix%elastic(:, :, entry)
-      block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
-   end function block_of
 
    !> The matrix, scaled as in its rows, times a vector.
    pure function times_scaled(rows, x) result(y)
@@ -441,7 +429,7 @@ contains
       do i = 1, size(x, kind=ik)/3
          do k = rows%blocks%first(i), rows%blocks%last(i)
             entry = rows%entry(k)
-            block = block_of(rows%matrix, abs(entry), rows%dt)
+            block = rows%matrix%block_at(abs(entry), rows%dt)
             if (entry < 0) block = transpose(block)
             j = rows%blocks%item(k)
             associate (own => at_component(i, 1), other => at_component(j, 1))

@@ -2,7 +2,8 @@
 module coarse_fields
    use base_kinds, only: ik, rk
    use coarse_matrix, only: matrix_t
-   use coarse_regions, only: regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: rock_t, solid_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -58,10 +59,10 @@ contains
 
       !$omp parallel do
       do c = 1, mesh%n_cells
-         associate (at => min(c, size(rock%shear, kind=ik)))
+         associate (solid => rock%solid_at(c))
             content(c) = matrix%storage(c)*unknowns(3, c) &
-                         + rock%biot(at)*cell_area(mesh, c)*mean_trace(regions, tractions, c) &
-                         /(2.0_rk*(rock%lame(at) + rock%shear(at)))
+                         + solid%biot*cell_area(mesh, c)*mean_trace(regions, tractions, c) &
+                         /(2.0_rk*(solid%lame + solid%shear))
          end associate
       end do
       !$omp end parallel do
@@ -167,20 +168,21 @@ contains
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: strain(2, 2), rotation  !< [-]
-      real(rk) :: stress(2, 2), nu
-      integer(ik) :: at, i
+      real(rk) :: stress(2, 2), trace
+      type(solid_t) :: solid
+      integer(ik) :: i
 
-      at = min(cell, size(rock%shear, kind=ik))
+      solid = rock%solid_at(cell)
       call corner_stress(regions, tractions, cell, k, stress, rotation)
       do i = 1, 2
-         stress(i, i) = stress(i, i) + rock%biot(at)*unknowns(3, cell)
+         stress(i, i) = stress(i, i) + solid%biot*unknowns(3, cell)
       end do
-      nu = rock%lame(at)/(2.0_rk*(rock%lame(at) + rock%shear(at)))
+      trace = stress(1, 1) + stress(2, 2)
       strain = stress
       do i = 1, 2
-         strain(i, i) = strain(i, i) - nu*(stress(1, 1) + stress(2, 2))
+         strain(i, i) = strain(i, i) - solid%poisson()*trace
       end do
-      strain = strain/(2.0_rk*rock%shear(at))
+      strain = strain/(2.0_rk*solid%shear)
    end subroutine corner_strain
 
    !> Total stress at a corner of a cell, and the rotation there.

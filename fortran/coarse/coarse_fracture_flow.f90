@@ -25,12 +25,11 @@
 !! the pressure of the first.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
-   use coarse_fractures, only: cell_fluid_t, fracture_system_t, most_of_rock
+   use coarse_fractures, only: cell_fluid_t, conducting_aperture, fracture_system_t, most_of_rock
    implicit none(type, external)
    private
 
-   public :: conducting_aperture, fill_balance, fill_branch, fill_equilibrium, fill_exchange
-   public :: fill_flow, fill_joint
+   public :: fill_balance, fill_branch, fill_equilibrium, fill_exchange, fill_flow, fill_joint
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides of a cell
 
@@ -206,26 +205,6 @@ contains
          weight = 1.5_rk*eq%condensed%length(cells)*sqrt(reach(tip))/sum(reach)**1.5_rk
       end if
    end subroutine find_way
-
-   !> Aperture that conducts fluid. Roughness keeps the faces apart where they are nearer than that,
-   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of
-   !! a0.
-   pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
-      real(rk), intent(in) :: residual  !< a0 [m]
-      real(rk), intent(in) :: roughness  !< the part of it that is one [m]
-      real(rk), intent(in) :: opening  !< [u]_n [m]
-      real(rk), intent(out) :: aperture  !< [m]
-      real(rk), intent(out) :: slope  !< its derivative by [u]_n [-]
-      real(rk) :: least
-
-      aperture = residual - roughness + opening
-      least = merge(residual, 0.01_rk*residual, roughness > 0.0_rk)
-      slope = 1.0_rk
-      if (.not. aperture > least) then
-         aperture = least
-         slope = 0.0_rk
-      end if
-   end subroutine conducting_aperture
 
    !> Balance of joint j, without the flows of its branches; its equation is that of p_J.
    pure subroutine fill_joint(j, x, eq)

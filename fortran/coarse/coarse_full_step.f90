@@ -11,7 +11,6 @@ module coarse_full_step
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use coarse_slopes, only: slopes_t
-   use coarse_sparse_matrix, only: apply_rows
    use contact_dense, only: factorize_full, solve_factorized
    use contact_newton, only: step_quality_t
    implicit none(type, external)
@@ -160,7 +159,7 @@ contains
          real(rk), intent(in) :: x(:)  !< [Pa]
          real(rk) :: answer(size(x))  !< [Pa]
 
-         call apply_rows(slopes, x, matmul(stiffness, x(slopes%x_of_q)*slopes%q_per_x), answer)
+         call slopes%apply(x, matmul(stiffness, x(slopes%x_of_q)*slopes%q_per_x), answer)
       end function matrix_product
 
    end subroutine improve

@@ -112,10 +112,7 @@ contains
 
       do k = 1, size(cells, kind=ik)
          if (cells(k) > row) cycle
-         entry = matrix%columns%first(row)
-         do while (matrix%columns%item(entry) /= cells(k))
-            entry = entry + 1
-         end do
+         entry = matrix%entry_at(row, cells(k))
          matrix%elastic(axis, axis, entry) = matrix%elastic(axis, axis, entry) + factor*weight(k)
       end do
    end subroutine add_products

@@ -15,17 +15,19 @@ module coarse_model
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: fluid_gained
-   use coarse_fractures, only: flow_paths_t, fracture_problem_t, newton_settings_t
+   use coarse_fractures, only: flow_paths_t, newton_settings_t
    use mesh_geometry, only: cell_area
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
-   use coarse_matrix, only: discretize, matrix_t, renew_sides
-   use coarse_newton, only: solve_fractures
+   use coarse_matrix, only: matrix_t
+   use coarse_newton, only: fracture_problem_t, solve_fractures
    use coarse_loads, only: add_point_forces, find_weight, hold_points
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
+   use coarse_rock, only: new_rock, rock_t, solid_t
    use coarse_wells, only: choose_ways, control_rate, correct_ways, rock_wells_t, wells_t
    use coarse_state, only: fracture_cells_t, go_back, state_t, step_report_t
+   use coarse_stencils, only: discretize, renew_sides
    use mesh_types, only: mesh_t, point_interior
    use scene_fluid_law, only: has_law, new_fluid_law
    use scene_outline, only: sides_of_scene
@@ -189,6 +191,7 @@ contains
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(out) :: state
       real(rk) :: pressure  ! [Pa]
+      type(solid_t) :: solid
       integer(ik) :: c, n
 
       n = mesh%fracture%n_cells
@@ -199,11 +202,8 @@ contains
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         associate (rock => model%rock, at => min(c, size(model%rock%shear, kind=ik)))
-            state%content(c) = pressure*rock%storage(at)*model%matrix%storage(c) &
-                               /(rock%storage(at) + rock%biot(at)**2 &
-                                 /(rock%lame(at) + rock%shear(at)))
-         end associate
+         solid = model%rock%solid_at(c)
+         state%content(c) = pressure*solid%storage*model%matrix%storage(c)/solid%storage_at_stress()
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
@@ -269,7 +269,7 @@ contains
 
       call timers%heed(error)
       if (allocated(error)) return
-      paths = flow_paths_t(self%settings, self%connections, self%joints, self%wells)
+      paths = self%flow_paths_t
       if (self%rock_wells%n > 0) then
          call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       else

@@ -3,7 +3,8 @@ module coarse_nodes
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_fields, only: corner_gradients, displacement_gradients
-   use coarse_regions, only: regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_centre
    use mesh_types, only: mesh_t
    implicit none(type, external)

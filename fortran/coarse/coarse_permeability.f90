@@ -20,8 +20,8 @@
 module coarse_permeability
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, left_part, polygon_area, triangle_area, turned_left
-   use coarse_regions, only: mean_mobility, new_rock, resistivity_of, rock_t
-   use coarse_solid, only: any_differ, make_room, number_stiffnesses, set_solid, solid_of, solid_t
+   use coarse_rock, only: any_differ, make_room, mean_mobility, new_rock, number_stiffnesses, &
+                          resistivity_of, rock_t, set_solid, solid_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_check_permeability, only: most_anisotropic
@@ -55,6 +55,7 @@ contains
       type(rock_t), intent(inout) :: rock  !< uniform before
       type(outline_t) :: outlines(size(regions))
       type(conduction_t) :: at_cell, own(0:size(regions))  ! of the scene's rock first
+      type(rock_t) :: own_rock
       type(solid_t) :: solid(0:size(regions))
       real(rk) :: along(2, size(regions)), part(0:size(regions))
       logical :: differ
@@ -63,13 +64,14 @@ contains
 
       associate (viscosity => fluid%viscosity)
          own(0) = conduction(rock%permeability(:, 1), viscosity)
-         solid(0) = solid_of(rock)
+         solid(0) = rock%solid_at(1_ik)
          do i = 1, size(regions)
             outlines(i)%corners = region_outline(regions(i), domain)
             associate (m => regions(i)%material)
                own(i) = conduction([m%permeability_xx, m%permeability_yy, m%permeability_xy], &
                                    viscosity)
-               solid(i) = solid_of(new_rock(m, fluid))
+               own_rock = new_rock(m, fluid)
+               solid(i) = own_rock%solid_at(1_ik)
             end associate
          end do
          call number_stiffnesses(solid)

@@ -15,7 +15,6 @@ module coarse_pivoting
    use base_kinds, only: ik, rk
    use coarse_fractures, only: fracture_system_t
    use coarse_full_step, only: full_slopes
-   use contact_law, only: contact_law_t
    use contact_newton, only: iterate_from, iteration_report_t, iteration_settings_t, &
                              outcome_converged
    use contact_pivoting, only: pivot_to_solution, slips_t
@@ -148,13 +147,11 @@ contains
       type(condensed_jumps_t), intent(in) :: body
       real(rk), intent(inout) :: x(:)  !< where the body was condensed [Pa]; replaced if solved
       logical, intent(out) :: is_solved
-      type(contact_law_t) :: law(2*eq%layout%n_cells)
       real(rk) :: found(4*eq%layout%n_cells), share(2*eq%layout%n_cells)  ! of the mean length [-]
       real(rk) :: load(size(found)), stiffness(size(found), size(found))
       integer(ik) :: end, i, n
 
       n = 2*eq%layout%n_cells
-      law = [((eq%law_at(i, end), end=1, 2), i=1, eq%layout%n_cells)]
       share = [((eq%condensed%length(i), end=1, 2), i=1, eq%layout%n_cells)]
       share = share*n/sum(share)
       found = x(body%jumps)
@@ -163,9 +160,8 @@ contains
          stiffness(:, i) = -share((i + 1)/2)*body%slope(:, i)
          load(i) = share((i + 1)/2)*load(i)
       end do
-      call pivot_to_solution(stiffness, load, law, eq%stiffness*law%compliance/share, &
-                             slips_t(spread(.false., 1, n), &
-                                     eq%stiffness*reshape(eq%before%jump(2, :, :), [n]), &
+      call pivot_to_solution(stiffness, load, eq%law, eq%stiffness*eq%law%compliance/share, &
+                             slips_t(spread(.false., 1, n), eq%stiffness*eq%slip_before, &
                                      spread(0.0_rk, 1, n)), found, is_solved)
       if (.not. is_solved) return
       x(body%others) = x(body%others) + matmul(body%response(:, :2*n), found - x(body%jumps)) &

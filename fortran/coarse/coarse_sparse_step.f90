@@ -23,7 +23,7 @@ module coarse_sparse_step
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_slopes, only: slopes_t
-   use coarse_sparse_matrix, only: apply_columns, apply_rows, assemble_rock, assemble_rows
+   use coarse_sparse_matrix, only: assemble_rock, assemble_rows
    use contact_newton, only: step_quality_t
    implicit none(type, external)
    private
@@ -159,8 +159,8 @@ contains
          logical, intent(out) :: is_used
 
          associate (p => self%direction(:, place), f => self%force(:, place))
-            call apply_rows(slopes, p, f + condensed%spring*p(slopes%x_of_q)*slopes%q_per_x, &
-                            answer(:, place))
+            call slopes%apply(p, f + condensed%spring*p(slopes%x_of_q)*slopes%q_per_x, &
+                              answer(:, place))
             answer(:, place) = answer(:, place)/self%row_scale
             before = norm2(answer(:, place))
             call make_orthogonal(self, place, answer)
@@ -318,12 +318,12 @@ contains
 
          if (transposed) then
             y = x/self%row_scale
-            call apply_columns(slopes, y, x, moved)
+            call slopes%apply_transposed(y, x, moved)
             call condensed%find_forces(moved, force, error)
             x(slopes%x_of_q) = x(slopes%x_of_q) + force*slopes%q_per_x
          else
             call condensed%find_forces(x(slopes%x_of_q)*slopes%q_per_x, force, error)
-            call apply_rows(slopes, x, force, y)
+            call slopes%apply(x, force, y)
             x = y/self%row_scale
          end if
       end subroutine multiply

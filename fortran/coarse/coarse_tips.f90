@@ -30,8 +30,7 @@
 module coarse_tips
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_regions, only: rock_t
-   use coarse_solid, only: mean_solid, solid_t
+   use coarse_rock, only: mean_solid, rock_t, solid_t
    use coarse_state, only: fracture_cells_t
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)

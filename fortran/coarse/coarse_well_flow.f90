@@ -16,9 +16,7 @@
 !! and no flow without end.
 module coarse_well_flow
    use base_kinds, only: ik, rk
-   use coarse_fluid_law, only: flow_thickness
-   use coarse_fracture_flow, only: conducting_aperture
-   use coarse_fractures, only: fracture_system_t
+   use coarse_fractures, only: conducting_aperture, fracture_system_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    implicit none(type, external)
    private
@@ -187,7 +185,7 @@ contains
                                eq%opening(x, i), aperture, slope)
       resistance = 6.0_rk*eq%paths%settings%viscosity*eq%condensed%length(i)/aperture**3
       if (allocated(eq%paths%settings%fluid_law)) then
-         call flow_thickness(i, x, eq%paths%settings%fluid_law, eq, thickness, unused)
+         call eq%find_thickness(x, i, thickness, unused)
          resistance = resistance*thickness
       end if
       slope = -3.0_rk*resistance/aperture*slope
@@ -212,7 +210,7 @@ contains
          call eq%slopes%add(eq%layout%at_well(w), jumps(end), per_head*by_jump)
       end do
       if (.not. allocated(eq%paths%settings%fluid_law)) return
-      call flow_thickness(i, x, eq%paths%settings%fluid_law, eq, thickness, by_pressure)
+      call eq%find_thickness(x, i, thickness, by_pressure)
       by_pressure = eq%paths%wells%share(i, w)**2*resistance*by_pressure/thickness &
                     *x(eq%layout%at_well(w))*eq%unit/eq%dt
       call eq%slopes%add(eq%layout%at_well(w), eq%layout%at_pressure(i), per_head*by_pressure)

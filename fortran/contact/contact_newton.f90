@@ -27,6 +27,7 @@
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
+   use contact_law, only: contact_law_t
    implicit none(type, external)
    private
 
@@ -54,9 +55,15 @@ module contact_newton
       real(rk), allocatable :: residual(:)  !< (n) where last evaluated [Pa]
       real(rk) :: stress_scale = 0.0_rk  !< residuals are relative to it [Pa]
       logical :: is_propped = .false.  !< what only contact holds is held, since a restart
-      ! Points where the law of contact holds.
-      integer(ik), allocatable :: way(:)  !< of slip in the last iteration: -1, 0, 1
-      integer(ik), allocatable :: state(:)  !< of contact_law
+      ! Contact points, each with two unknowns, [u]_n and [u]_tau times the stiffness:
+      real(rk) :: stiffness = 0.0_rk  !< c of the contact law [Pa/m]
+      type(contact_law_t), allocatable :: law(:)  !< (points)
+      real(rk), allocatable :: slip_before(:)  !< (points) [u]_tau at the last accepted state [m]
+      real(rk), allocatable :: traction(:, :)  !< (2, points) f_n, f_tau where last evaluated [Pa]
+      integer(ik), allocatable :: way(:)  !< (points) direction of slip last time: -1, 0, 1
+      integer(ik), allocatable :: state(:)  !< (points) of contact_law
+      !> (points) at the start of the step, and with the strength that is left
+      type(contact_law_t), allocatable, private :: law_before(:), law_held(:)
    contains
       procedure(evaluate_system), deferred :: evaluate
       procedure(find_linear_step), deferred :: find_step
@@ -65,9 +72,7 @@ module contact_newton
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
-      procedure :: may_wear
-      procedure :: hold_strength
-      procedure :: let_wear
+      procedure :: at_point
    end type contact_system_t
 
    type :: iteration_settings_t
@@ -172,29 +177,43 @@ contains
       class(contact_system_t), intent(inout) :: self
    end subroutine end_restart
 
-   !> Friction may weaken or a bond break within the step. In most systems none does.
-   pure logical function may_wear(self)
+   !> The number of the unknown [u]_n of a point; that of [u]_tau follows. Default: point by point.
+   pure integer(ik) function at_point(self, point)
       class(contact_system_t), intent(in) :: self
+      integer(ik), intent(in) :: point
 
-      may_wear = .false.
-   end function may_wear
+      at_point = 2*point - 1
+   end function at_point
 
-   !> Hold the strength: at first as it was before the step, then as it has become at x, where the
-   !! system was last evaluated, but no stronger than before; whether that is noticeably weaker.
-   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
-      class(contact_system_t), intent(inout) :: self
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      logical, intent(in) :: is_first
-      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
-      logical, intent(out) :: is_worn
+   !> Replace the laws by laws of constant strength: that at the start of the step.
+   subroutine hold_strength(system)
+      class(contact_system_t), intent(inout) :: system
 
-      is_worn = .false.
+      system%law_before = system%law
+      system%law_held = system%law
+      system%law_held%wears = .false.
+      system%law = system%law_held
    end subroutine hold_strength
 
-   !> Let the strength fall from what it was before the step.
-   subroutine let_wear(self)
-      class(contact_system_t), intent(inout) :: self
-   end subroutine let_wear
+   !> Reduce the constant strength to that at x, where the system was last evaluated.
+   subroutine reduce_strength(system, x, tolerance, is_weaker)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
+      logical, intent(out) :: is_weaker  !< by more than the tolerance
+      real(rk) :: jump(2), lost
+      integer(ik) :: at, i
+
+      is_weaker = .false.
+      do i = 1, size(system%law_held, kind=ik)
+         at = system%at_point(i)
+         jump = x(at:at + 1)/system%stiffness
+         call system%law_before(i)%weaken(system%law_held(i), system%traction(:, i), jump, &
+                                          jump(2) - system%slip_before(i), lost)
+         is_weaker = is_weaker .or. lost > tolerance*system%stress_scale
+      end do
+      system%law = system%law_held
+   end subroutine reduce_strength
 
    !> Solve the system, from the x and the states that it has at the start.
    subroutine iterate(system, x, settings, report)
@@ -203,7 +222,7 @@ contains
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(out) :: report
 
-      if (system%may_wear()) then
+      if (any(system%law%ages())) then
          call iterate_worn(system, x, settings, report)
       else
          call iterate_held(system, x, settings, report)
@@ -241,17 +260,17 @@ contains
       type(iteration_report_t) :: found
       real(rk) :: trial(size(x))
       integer(ik) :: k
-      logical :: is_worn
+      logical :: is_weaker
 
       briefly = settings
       briefly%iterations_max = min(settings%iterations_max, iterations_of_trial)
-      call system%hold_strength(x, .true., settings%tolerance, is_worn)
+      call hold_strength(system)
       do k = 1, rounds
          call iterate_held(system, x, settings, report)
          if (report%outcome /= outcome_converged) exit
-         call system%hold_strength(x, .false., settings%tolerance, is_worn)
-         if (.not. is_worn) exit
-         call system%let_wear()
+         call reduce_strength(system, x, settings%tolerance, is_weaker)
+         if (.not. is_weaker) exit
+         system%law = system%law_before
          trial = x
          found%iterations = report%iterations
          call iterate_from(system, trial, briefly, found)
@@ -263,9 +282,9 @@ contains
          end if
          report%outcome = outcome_stuck
          call system%evaluate(x)
-         call system%hold_strength(x, .false., settings%tolerance, is_worn)
+         call reduce_strength(system, x, settings%tolerance, is_weaker)
       end do
-      call system%let_wear()
+      system%law = system%law_before
       if (report%outcome /= outcome_converged) return
       ! A point that has moved and come back has been held weaker than where it is now says.
       call system%evaluate(x)

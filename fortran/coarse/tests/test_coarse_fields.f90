@@ -4,10 +4,12 @@ program test_coarse_fields
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
-   use coarse_matrix, only: discretize, matrix_t
+   use coarse_matrix, only: matrix_t
    use coarse_nodes, only: nodal_values, node_values
    use coarse_own_pressure, only: own_pressure
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_stencils, only: discretize
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t

@@ -170,7 +170,7 @@ contains
       call checks%no_error(error, "factorization")
       allocate (g(model%condensed%layout%count()), source=0.0_rk)
       paths = flow_paths_t(model%settings, model%connections, model%joints, model%wells)
-      call prepare(model%fracture_problem_t, paths, dt, g, state, eq)
+      call prepare(model%condensed, model%cells, paths, dt, g, state, eq)
       x = 4.0e6_rk*scattered(eq%layout%count())
       x(eq%layout%at_flow(1_ik):) = 1.0e-3_rk*x(eq%layout%at_flow(1_ik):)
       below = eq

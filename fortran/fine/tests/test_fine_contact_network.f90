@@ -4,7 +4,8 @@
 program test_fine_contact_network
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t, contact_residual, state_open, state_stick
+   use contact_law, only: contact_law_t, state_open, state_stick
+   use contact_point, only: contact_residual
    use exact_cracks, only: uniform_field
    use fine_boundary, only: add_side_traction, clamped_boundary, fine_boundary_t, free_boundary, &
                             nearest_node
