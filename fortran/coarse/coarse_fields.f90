@@ -3,7 +3,7 @@ module coarse_fields
    use base_kinds, only: ik, rk
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
-   use coarse_rock, only: rock_t, solid_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -168,21 +168,20 @@ contains
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
       integer(ik), intent(in) :: cell, k
       real(rk), intent(out) :: strain(2, 2), rotation  !< [-]
-      real(rk) :: stress(2, 2), trace
-      type(solid_t) :: solid
-      integer(ik) :: i
+      real(rk) :: stress(2, 2), nu
+      integer(ik) :: at, i
 
-      solid = rock%solid_at(cell)
+      at = min(cell, size(rock%shear, kind=ik))
       call corner_stress(regions, tractions, cell, k, stress, rotation)
       do i = 1, 2
-         stress(i, i) = stress(i, i) + solid%biot*unknowns(3, cell)
+         stress(i, i) = stress(i, i) + rock%biot(at)*unknowns(3, cell)
       end do
-      trace = stress(1, 1) + stress(2, 2)
+      nu = rock%lame(at)/(2.0_rk*(rock%lame(at) + rock%shear(at)))
       strain = stress
       do i = 1, 2
-         strain(i, i) = strain(i, i) - solid%poisson()*trace
+         strain(i, i) = strain(i, i) - nu*(stress(1, 1) + stress(2, 2))
       end do
-      strain = strain/(2.0_rk*solid%shear)
+      strain = strain/(2.0_rk*rock%shear(at))
    end subroutine corner_strain
 
    !> Total stress at a corner of a cell, and the rotation there.
