@@ -15,7 +15,7 @@
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_coupling, only: coupling_t, find_coupling, find_coupling_values
+   use coarse_coupling, only: coupling_t, find_coupling
    use coarse_factors, only: coarse_factors_t
    use coarse_layout, only: condensed_layout_t
    use coarse_matrix, only: matrix_t
@@ -57,13 +57,21 @@ module coarse_condensed
 
 contains
 
-   !> Begin anew with another mesh.
-   subroutine forget(self, is_full)
+   !> Begin with another mesh. By default S is formed where this costs less: its elimination grows
+   !! with the cube of the fracture cells, that of the sparse matrix with the cells to the power 1.2,
+   !! and growth and contact need about as many of both.
+   subroutine forget(self, mesh, condensation)
       class(condensed_t), intent(inout) :: self
-      logical, intent(in) :: is_full  !< whether S is to be formed
+      type(mesh_t), intent(in) :: mesh
+      character(len=*), intent(in) :: condensation  !< "auto", "full" or "sparse"
+      real(rk), parameter :: cells_per_square = 30.0_rk  ! where both cost the same, measured
 
       call self%factors%release()
-      self%is_full = is_full
+      associate (n => mesh%fracture%n_cells)
+         self%is_full = real(n, rk)**2 <= cells_per_square*mesh%n_cells
+         if (condensation /= "auto") self%is_full = condensation == "full"
+         self%is_full = self%is_full .or. n == 0
+      end associate
       self%analysed = .false.
       self%dt = -1.0_rk
    end subroutine forget
@@ -83,7 +91,6 @@ contains
          self%n = mesh%fracture%n_cells
          self%layout = condensed_layout_t(self%n)
          call find_frames(mesh, self%normal, self%length)
-         if (.not. self%is_full) call find_coupling(matrix, self%coupling)
          self%analysed = .true.
       end if
       if (self%is_full) then
@@ -93,7 +100,7 @@ contains
       else
          call self%factors%factorize(matrix, dt, error)
          if (allocated(error)) return
-         call find_coupling_values(matrix, self%normal, dt, self%coupling)
+         call find_coupling(matrix, self%normal, dt, self%coupling)
          self%spring = spread(0.0_rk, 1, self%layout%count())
          self%diagonal = spread(huge(1.0_rk), 1, self%layout%count())
       end if
@@ -114,14 +121,14 @@ contains
          all = reshape(rhs, [size(rhs)])*self%factors%scale
          call self%factors%condense(all, g, error)
          g = g/self%factors%scale(self%factors%at_fractures:)
-         call turn_to_normals(self, g)
+         call turn(self, g)
       else
          all = reshape(rhs, [size(rhs)])
          b = all(:self%coupling%n_bulk)
          call solve_rock(self, b, error)
          call self%coupling%forces(b, spread(0.0_rk, 1, size(g)), g)
          associate (own => all(self%factors%at_fractures:))
-            call turn_to_normals(self, own)
+            call turn(self, own)
             g = own - g
          end associate
       end if
@@ -145,7 +152,7 @@ contains
          return
       end if
       jumps = q
-      call turn_to_axes(self, jumps)
+      call turn(self, jumps)
       if (self%is_full) then
       call self%factors%expand(jumps/self%factors%scale(self%factors%at_fractures:), x(:, 1), error)
          x(:, 1) = x(:, 1)*self%factors%scale
@@ -257,7 +264,7 @@ contains
       associate (s => self%factors%scale(self%factors%at_fractures:), stiffness => self%stiffness)
          do i = 1, size(s)
             stiffness(:, i) = stiffness(:, i)/(s*s(i))
-            call turn_to_normals(self, stiffness(:, i))
+            call turn(self, stiffness(:, i))
          end do
          do cell = 1, self%n
             associate (n => self%normal(:, cell))
@@ -288,8 +295,9 @@ contains
       self%spring = spring
    end subroutine support
 
-   !> Components x, y of jumps or forces become n, tau; tau is n turned by -90 degrees.
-   pure subroutine turn_to_normals(self, v)
+   !> Turn jumps or forces from x, y to n, tau of their fracture cells, or back: tau is n turned by -90
+   !! degrees, and the turn is its own inverse.
+   pure subroutine turn(self, v)
       class(condensed_t), intent(in) :: self
       real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
       integer(ik) :: at, end, i
@@ -302,15 +310,7 @@ contains
             end do
          end associate
       end do
-   end subroutine turn_to_normals
-
-   !> Components n, tau become x, y: the turn is its own inverse.
-   pure subroutine turn_to_axes(self, v)
-      class(condensed_t), intent(in) :: self
-      real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
-
-      call turn_to_normals(self, v)
-   end subroutine turn_to_axes
+   end subroutine turn
 
    !> Normal (from side + to side -) and length of each fracture cell.
    subroutine find_frames(mesh, normal, length)

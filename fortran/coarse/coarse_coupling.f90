@@ -11,7 +11,7 @@ module coarse_coupling
    implicit none(type, external)
    private
 
-   public :: coupling_t, find_coupling, find_coupling_values
+   public :: coupling_t, find_coupling
 
    !> C and D, row by row; columns of q stand after those of b.
    type :: coupling_t
@@ -28,108 +28,75 @@ module coarse_coupling
 
 contains
 
-   !> Where the entries stand.
-   subroutine find_coupling(matrix, coupling)
+   !> Find C and D for a time step.
+   subroutine find_coupling(matrix, normal, dt, coupling)
       type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: normal(:, :)  !< (2, fracture cells) [-]
+      real(rk), intent(in) :: dt  !< [s]
       type(coupling_t), intent(out) :: coupling
+      real(rk) :: block(3, 3)
       integer(ik) :: entry, i, j, n_rows
       integer(ik), allocatable :: n_blocks(:), next(:)
 
       allocate (n_blocks(matrix%n_cells + 1:matrix%n_blocks), source=0_ik)
       do i = matrix%n_cells + 1, matrix%n_blocks
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
+         n_blocks(i) = n_blocks(i) + matrix%columns%length(i)
+         do entry = matrix%columns%first(i), matrix%columns%last(i) - 1
             j = matrix%columns%item(entry)
-            n_blocks(i) = n_blocks(i) + 1
-            if (j > matrix%n_cells .and. j < i) n_blocks(j) = n_blocks(j) + 1
+            if (j > matrix%n_cells) n_blocks(j) = n_blocks(j) + 1
          end do
       end do
       coupling%n_bulk = 3*matrix%n_cells
       n_rows = 3*(matrix%n_blocks - matrix%n_cells)
-      allocate (coupling%first(n_rows + 1), next(n_rows))
+      allocate (coupling%first(n_rows + 1))
       coupling%first(1) = 1
       do i = 1, n_rows
          coupling%first(i + 1) = coupling%first(i) + 3*n_blocks(matrix%n_cells + (i + 2)/3)
       end do
       next = coupling%first(:n_rows)
       allocate (coupling%col(coupling%first(n_rows + 1) - 1))
-      allocate (coupling%value(size(coupling%col)), source=0.0_rk)
-      do i = matrix%n_cells + 1, matrix%n_blocks
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
-            j = matrix%columns%item(entry)
-            call place(i, j)
-            if (j > matrix%n_cells .and. j < i) call place(j, i)
-         end do
-      end do
-
-   contains
-
-      !> The entries of a block in the rows of another one.
-      subroutine place(of, block)
-         integer(ik), intent(in) :: of, block
-         integer(ik) :: a, c
-
-         do a = 1, 3
-            associate (row => at_component(of - matrix%n_cells, a))
-               do c = 1, 3
-                  coupling%col(next(row)) = at_component(block, c)
-                  next(row) = next(row) + 1
-               end do
-            end associate
-         end do
-      end subroutine place
-
-   end subroutine find_coupling
-
-   !> The numbers for a time step.
-   subroutine find_coupling_values(matrix, normal, dt, coupling)
-      type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: normal(:, :)  !< (2, fracture cells) [-]
-      real(rk), intent(in) :: dt  !< [s]
-      type(coupling_t), intent(inout) :: coupling
-      real(rk) :: numbers(3, 3)
-      integer(ik), allocatable :: next(:)
-      integer(ik) :: entry, i, j
-
-      next = coupling%first(:size(coupling%first) - 1)
+      allocate (coupling%value(size(coupling%col)))
       do i = matrix%n_cells + 1, matrix%n_blocks
          do entry = matrix%columns%first(i), matrix%columns%last(i)
             j = matrix%columns%item(entry)
             ! The diagonal block is complete; turns are symmetric.
-            numbers = matmul(turn(i), matrix%block_at(entry, dt))
-            if (j > matrix%n_cells) numbers = matmul(numbers, turn(j))
-            call put(i, numbers)
-            if (j > matrix%n_cells .and. j < i) call put(j, transpose(numbers))
+            block = matmul(turn(i), matrix%block_at(entry, dt))
+            if (j > matrix%n_cells) block = matmul(block, turn(j))
+            call put(i, j, block)
+            if (j > matrix%n_cells .and. j < i) call put(j, i, transpose(block))
          end do
       end do
 
    contains
 
-      subroutine put(of, numbers)
-         integer(ik), intent(in) :: of
+      !> Add a block to the rows of a fracture's block.
+      subroutine put(of, column, numbers)
+         integer(ik), intent(in) :: of, column
          real(rk), intent(in) :: numbers(3, 3)
-         integer(ik) :: a
+         integer(ik) :: a, c
 
          do a = 1, 3
-            associate (row => at_component(of - matrix%n_cells, a))
-               coupling%value(next(row):next(row) + 2) = numbers(a, :)
-               next(row) = next(row) + 3
+            associate (at => next(at_component(of - matrix%n_cells, a)))
+               coupling%col(at:at + 2) = [(at_component(column, c), c=1, 3)]
+               coupling%value(at:at + 2) = numbers(a, :)
+               at = at + 3
             end associate
          end do
       end subroutine put
 
       !> From x, y to n, tau of the fracture cell of a block, and back.
-      pure function turn(block) result(to_normal)
-         integer(ik), intent(in) :: block
+      pure function turn(of) result(to_normal)
+         integer(ik), intent(in) :: of
          real(rk) :: to_normal(3, 3)
 
-         associate (n => normal(:, (block - matrix%n_cells + 1)/2))
+         associate (n => normal(:, (of - matrix%n_cells + 1)/2))
             to_normal(:, 1) = [n(1), n(2), 0.0_rk]
             to_normal(:, 2) = [n(2), -n(1), 0.0_rk]
             to_normal(:, 3) = [0.0_rk, 0.0_rk, 1.0_rk]
          end associate
       end function turn
 
-   end subroutine find_coupling_values
+   end subroutine find_coupling
 
    !> C b + D q.
    pure subroutine forces(self, b, q, force)

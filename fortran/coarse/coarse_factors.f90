@@ -17,7 +17,7 @@ module coarse_factors
    use algebra_ordering, only: dissect, expand_order, neighbours_of
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_lists, only: lists_t
+   use base_lists, only: inverted, lists_t
    use coarse_layout, only: at_component
    use coarse_matrix, only: matrix_t
    implicit none(type, external)
@@ -349,47 +349,29 @@ contains
       triplet_count = 9*(matrix%columns%last(n_blocks) - n_blocks) + 6*n_blocks
    end function triplet_count
 
-   !> Divide the entries among the blocks: each belongs to the one that is eliminated first.
+   !> Divide the entries among the blocks: each belongs to the block that is eliminated first, the
+   !! diagonal entry before the others.
    pure subroutine find_rows(columns, place, rows)
       type(lists_t), intent(in) :: columns  !< of the lower triangle, row by row, the diagonal last
       integer(ik), intent(in) :: place(:)  !< (n_blocks) in the order of elimination
       type(rows_t), intent(inout) :: rows
-      integer(ik), allocatable :: next(:)
-      integer(ik) :: entry, first, i, j, n, second
+      integer(ik), dimension(size(columns%item)) :: first, order, row
+      logical :: is_diagonal(size(columns%item))
+      integer(ik) :: i
 
-      n = size(place, kind=ik)
-      if (allocated(rows%entry)) deallocate (rows%blocks%first, rows%blocks%item, rows%entry)
-      allocate (next(n), source=1_ik)
-      do i = 1, n
-         do entry = columns%first(i), columns%last(i) - 1
-            j = columns%item(entry)
-            first = merge(i, j, place(i) < place(j))
-            next(first) = next(first) + 1
-         end do
+      do i = 1, size(place, kind=ik)
+         row(columns%first(i):columns%last(i)) = i
       end do
-      allocate (rows%blocks%first(n + 1))
-      rows%blocks%first(1) = 1
-      do i = 1, n
-         rows%blocks%first(i + 1) = rows%blocks%first(i) + next(i)
-      end do
-      allocate (rows%blocks%item(rows%blocks%first(n + 1) - 1))
-      allocate (rows%entry(size(rows%blocks%item)))
-      next = rows%blocks%first(:n)
-      do i = 1, n
-         rows%blocks%item(next(i)) = i
-         rows%entry(next(i)) = columns%last(i)
-         next(i) = next(i) + 1
-      end do
-      do i = 1, n
-         do entry = columns%first(i), columns%last(i) - 1
-            j = columns%item(entry)
-            first = merge(i, j, place(i) < place(j))
-            second = merge(j, i, place(i) < place(j))
-            rows%blocks%item(next(first)) = second
-            rows%entry(next(first)) = merge(entry, -entry, second == i)
-            next(first) = next(first) + 1
-         end do
-      end do
+      associate (col => columns%item)
+         is_diagonal = row == col
+         order = [(i, i=1, size(order, kind=ik))]
+         order = [pack(order, is_diagonal), pack(order,.not. is_diagonal)]
+         first = merge(row, col, place(row) < place(col))
+         rows%blocks = inverted(reshape(first(order), [1, size(order)]), size(place, kind=ik))
+         order = order(rows%blocks%item)
+         rows%blocks%item = row(order) + col(order) - first(order)
+         rows%entry = merge(order, -order, rows%blocks%item == row(order))
+      end associate
    end subroutine find_rows
 
    !> The scaled entries of one block row.

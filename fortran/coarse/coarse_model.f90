@@ -16,7 +16,7 @@ module coarse_model
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: fluid_gained
    use coarse_fractures, only: flow_paths_t, newton_settings_t
-   use mesh_geometry, only: cell_area
+   use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
    use coarse_matrix, only: matrix_t
@@ -109,7 +109,7 @@ contains
          end if
       end if
       self%ends = free_ends(mesh%fracture)
-      call self%condensed%forget(is_full(mesh, scene%discretization%condensation))
+      call self%condensed%forget(mesh, scene%discretization%condensation)
       call self%factors%release()
       call timers%stop(phase_discretize)
    end subroutine set_mesh
@@ -119,31 +119,25 @@ contains
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(scene_t), intent(in) :: scene
+      real(rk) :: centre(2)
+      real(rk), allocatable :: height(:)
       integer(ik) :: c
 
       call find_in_situ(scene, self%rock%biot(1), self%in_situ)
       call take_sides(self, scene)
       if (allocated(self%in_situ)) then
-         self%cells%pressure_in_situ = [(self%in_situ%pressure_at(middle_height(c)), &
-                                         c=1, mesh%fracture%n_cells)]
+         allocate (height(mesh%fracture%n_cells))
+         do c = 1, mesh%fracture%n_cells
+            centre = fracture_cell_centre(mesh%fracture, c)
+            height(c) = centre(2)
+         end do
+         self%cells%pressure_in_situ = self%in_situ%pressure_at(height)
       end if
       call find_weight(mesh, scene, self%in_situ, self%weight)
       if (scene%has_points() .and. .not. allocated(self%weight)) then
          allocate (self%weight(2, mesh%n_cells), source=0.0_rk)
       end if
       if (scene%has_points()) call add_point_forces(scene, mesh, self%weight)
-
-   contains
-
-      !> Of a fracture cell [m].
-      pure real(rk) function middle_height(cell)
-         integer(ik), intent(in) :: cell
-
-         associate (points => mesh%fracture%cell_points(:, cell))
-            middle_height = 0.5_rk*sum(mesh%fracture%point_xy(2, points))
-         end associate
-      end function middle_height
-
    end subroutine place_in_situ
 
    !> What the scene prescribes on the sides, beyond the state in situ.
@@ -169,19 +163,6 @@ contains
       if (self%joints%n > 0) call renew_outlets(mesh, self%sides, self%joints)
       call timers%stop(phase_assemble)
    end subroutine change_sides
-
-   !> Whether the rock is condensed onto its fractures as a full matrix: as asked for, or where it
-   !! costs less: its elimination grows with the cube of the fracture cells, that of the sparse one
-   !! with the cells to the power 1.2, and growth and contact take about as many of both.
-   pure logical function is_full(mesh, condensation)
-      type(mesh_t), intent(in) :: mesh
-      character(len=*), intent(in) :: condensation  !< "auto", "full", "sparse"
-      real(rk), parameter :: cells_per_square = 30.0_rk  ! where both cost the same, measured
-
-      is_full = real(mesh%fracture%n_cells, rk)**2 <= cells_per_square*mesh%n_cells
-      if (condensation /= "auto") is_full = condensation == "full"
-      is_full = is_full .or. mesh%fracture%n_cells == 0
-   end function is_full
 
    !> The state before anything happens: no displacement, uniform pressure.
    subroutine new_state(mesh, cells, initial, model, state)
@@ -322,18 +303,6 @@ contains
       if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
    end subroutine advance_with_wells
 
-   !> Add values at places of which some may be the same.
-   pure subroutine add_at(place, value, sum)
-      integer(ik), intent(in) :: place(:)
-      real(rk), intent(in) :: value(:)
-      real(rk), intent(inout) :: sum(:)  !< in the unit of the values
-      integer :: k
-
-      do k = 1, size(place)
-         sum(place(k)) = sum(place(k)) + value(k)
-      end do
-   end subroutine add_at
-
    !> What supports the faces of the fractures: springs at tips, dampers.
    subroutine support_faces(self, mesh, settings, dt)
       class(coarse_model_t), intent(inout) :: self
@@ -362,6 +331,7 @@ contains
       real(rk), intent(in) :: content(:)  !< (cells) of fluid before the step [m2]
       real(rk), allocatable, intent(out) :: load(:, :)  !< (3, n_blocks) [N/m], [m2]
       real(rk), allocatable, intent(out) :: fluid(:)  !< (cells) injected, if any [m2/s]
+      integer(ik) :: w
 
       load = self%matrix%elastic_known
       load(3, :) = load(3, :) + dt*self%matrix%flow_known
@@ -369,7 +339,11 @@ contains
       if (allocated(self%source)) then
          fluid = self%source(3, :)
          if (wells%n_all > wells%n) then
-            call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
+            do w = 1, self%rock_wells%n
+               associate (into => fluid(self%rock_wells%cell(w)))
+                  into = into + self%rock_wells%source(w)
+               end associate
+            end do
          end if
          load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%source(:2, :)
          load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - dt*fluid
@@ -538,16 +512,16 @@ contains
    subroutine find_connections(mesh, connections)
       type(mesh_t), intent(in) :: mesh
       integer(ik), allocatable, intent(out) :: connections(:, :)
-      integer(ik) :: n, point
+      integer(ik), allocatable :: inside(:)
+      integer(ik) :: i
 
-      allocate (connections(2, mesh%fracture%n_points))
-      n = 0
-      do point = 1, mesh%fracture%n_points
-         if (mesh%fracture%point_kind(point) /= point_interior) cycle
-         n = n + 1
-         connections(:, n) = mesh%fracture%point_cells%of(point)
-      end do
-      connections = connections(:, :n)
+      associate (fracture => mesh%fracture)
+         inside = pack([(i, i=1, fracture%n_points)], fracture%point_kind == point_interior)
+         allocate (connections(2, size(inside)))
+         do i = 1, size(inside, kind=ik)
+            connections(:, i) = fracture%point_cells%of(inside(i))
+         end do
+      end associate
    end subroutine find_connections
 
 end module coarse_model

@@ -212,14 +212,11 @@ contains
       integer(ik) :: region
 
       real(rk) :: distance(2)
-      integer(ik) :: k
 
       associate (nodes => mesh%face_nodes(:, mesh%fracture%cell_faces(1, cell)), &
                  point => mesh%fracture%point_xy(:, mesh%fracture%cell_points(end, cell)))
-         do k = 1, 2
-            distance(k) = norm2(mesh%xy(:, nodes(k)) - point)
-         end do
-         region = regions%region_of_node(nodes(merge(1, 2, distance(1) < distance(2))))
+         distance = norm2(mesh%xy(:, nodes) - spread(point, 2, 2), dim=1)
+         region = regions%region_of_node(nodes(minloc(distance, dim=1)))
       end associate
    end function fracture_end_region
 
