@@ -58,8 +58,8 @@ module coarse_condensed
 contains
 
    !> Begin with another mesh. By default S is formed where this costs less: its elimination grows
-   !! with the cube of the fracture cells, that of the sparse matrix with the cells to the power 1.2,
-   !! and growth and contact need about as many of both.
+   !! with the cube of the fracture cells, that of the sparse matrix with the cells to the power
+   !! 1.2, and growth and contact need about as many of both.
    subroutine forget(self, mesh, condensation)
       class(condensed_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -295,8 +295,8 @@ contains
       self%spring = spring
    end subroutine support
 
-   !> Turn jumps or forces from x, y to n, tau of their fracture cells, or back: tau is n turned by -90
-   !! degrees, and the turn is its own inverse.
+   !> Turn jumps or forces from x, y to n, tau of their fracture cells, or back: tau is n turned by
+   !! -90 degrees, and the turn is its own inverse.
    pure subroutine turn(self, v)
       class(condensed_t), intent(in) :: self
       real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay

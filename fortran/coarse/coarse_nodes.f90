@@ -14,8 +14,8 @@ module coarse_nodes
 
 contains
 
-   !> Fields at the mesh's nodes. `values`: displacement and pressure, the mean of the extrapolations
-   !! from the cells around a node. `curved` and `gradients`: displacement and its gradient for an
+   !> Fields at the mesh's nodes. `values`: displacement and pressure, the mean of what the cells
+   !! around a node extrapolate. `curved` and `gradients`: displacement and its gradient for an
    !! interpolation that is exact for quadratic fields; from a cell's centre to a node with the mean
    !! of the gradients at both.
    subroutine nodal_fields(mesh, rock, regions, unknowns, tractions, values, curved, gradients)
@@ -37,7 +37,8 @@ contains
       if (present(curved)) call curve_to_nodes(mesh, unknowns, at_corners, curved, gradients)
    end subroutine nodal_fields
 
-   !> Mean of the extrapolations to each node, from the cells of one region on its side of a fracture.
+   !> Mean of the extrapolations to each node, from the cells of one region on its side of a
+   !! fracture.
    subroutine extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock

@@ -12,7 +12,7 @@ module coarse_regions
    use base_lists, only: inverted, lists_t
    use coarse_elimination, only: response_t
    use coarse_layout, only: block_count, end_block
-   use mesh_geometry, only: corner_geometry
+   use mesh_geometry, only: corner_geometry, split_by_kind
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -81,7 +81,6 @@ contains
             end do
          end do
          regions%blocks = inverted(regions%regions_of_block, n)
-         region_of_rotation = region
          call number_rotations(mesh, stiffness, regions, region_of_rotation)
          regions%nodes = inverted(reshape(region_of_rotation, [1, size(region_of_rotation)]), n)
 
@@ -105,42 +104,20 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in), optional :: stiffness(:)  !< (n_cells), or 1 for all
       type(regions_t), intent(inout) :: regions
-      integer(ik), allocatable, intent(inout) :: region_of_rotation(:)  !< those of nodes, at first
-      integer(ik) :: c, k, last, n, node
-      integer(ik), allocatable :: next(:), own(:), more(:)
+      integer(ik), allocatable, intent(out) :: region_of_rotation(:)
+      integer(ik), allocatable :: node(:)
+      integer(ik) :: i
 
-      allocate (regions%has_interface(regions%n_regions), source=.false.)
+      node = [(i, i=1, mesh%n_nodes)]
       regions%rotation_of_corner = mesh%cell_nodes
-      if (.not. present(stiffness)) return
-      if (size(stiffness) < mesh%n_cells) return
-      ! The rotations of a node as a chain, each with the stiffness that it is for.
-      n = mesh%n_nodes
-      allocate (next(n), own(n), source=-1_ik)
-      do c = 1, mesh%n_cells
-         do k = 1, 3
-            node = mesh%cell_nodes(k, c)
-            last = node
-            if (own(node) < 0) own(node) = stiffness(c)
-            do while (own(last) /= stiffness(c) .and. next(last) > 0)
-               last = next(last)
-            end do
-            if (own(last) /= stiffness(c)) then
-               if (n == size(next)) then
-                  allocate (more(n), source=-1_ik)
-                  next = [next, more]
-                  own = [own, more]
-                  deallocate (more)
-               end if
-               n = n + 1
-               next(last) = n
-               own(n) = stiffness(c)
-               region_of_rotation = [region_of_rotation, regions%region_of_node(node)]
-               regions%has_interface(regions%region_of_node(node)) = .true.
-               last = n
-            end if
-            regions%rotation_of_corner(k, c) = last
-         end do
-      end do
+      if (present(stiffness)) then
+         if (size(stiffness) == mesh%n_cells) then
+            call split_by_kind(stiffness, regions%rotation_of_corner, node)
+         end if
+      end if
+      region_of_rotation = regions%region_of_node(node)
+      allocate (regions%has_interface(regions%n_regions), source=.false.)
+      regions%has_interface(region_of_rotation(mesh%n_nodes + 1:)) = .true.
    end subroutine number_rotations
 
    !> Where the tractions and rotations at all corners of cells stand.

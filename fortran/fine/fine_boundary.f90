@@ -13,7 +13,7 @@ module fine_boundary
    implicit none(type, external)
    private
 
-   public :: add_point_force, add_side_pressure, add_side_springs, add_side_stress
+   public :: add_point_force, add_side_springs, add_side_stress
    public :: add_side_traction, check_boundary, check_support, clamped_boundary, find_loose
    public :: fine_boundary_t, free_boundary, hold_side, nearest_node, stand_on_springs
 
@@ -111,16 +111,6 @@ contains
          if (fine%boundary_sides(face) == side) call add_face_traction(fine, face, traction, force)
       end do
    end subroutine add_side_traction
-
-   !> A uniform pressure on one side of the body, whatever its direction.
-   pure subroutine add_side_pressure(fine, side, pressure, force)
-      type(fine_mesh_t), intent(in) :: fine
-      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
-      real(rk), intent(in) :: pressure  !< [Pa]
-      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
-
-      call add_side_stress(fine, side, -pressure, 0.0_rk, force)
-   end subroutine add_side_pressure
 
    !> Uniform tractions along the outward normal of a side and along the side itself, in the
    !! direction that has the body on its left.
