@@ -25,7 +25,7 @@ module coarse_model
    use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t, solid_t
-   use coarse_wells, only: choose_ways, control_rate, correct_ways, rock_wells_t, wells_t
+   use coarse_wells, only: control_rate, rock_wells_t, wells_t
    use coarse_state, only: fracture_cells_t, go_back, state_t, step_report_t
    use coarse_stencils, only: discretize, renew_sides
    use mesh_types, only: mesh_t, point_interior
@@ -270,35 +270,33 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: before
-      integer(ik), allocatable :: way(:)
       logical :: any_changed
       integer(ik) :: first, k, last, most
 
       before = state
-      way = state%rock_well_control
       first = self%wells%n + 1
       last = self%wells%n_all
-      call choose_ways(self%wells, way)
-      most = 3*self%rock_wells%n + 1
-      do k = 1, 2*most + 30
-         call self%rock_wells%set_terms(self%wells, way, dt, before%well_head(first:), &
-                                        self%matrix, any_changed)
-         if (any_changed) self%condensed%dt = -1.0_rk
-         call solve_step(self, mesh, paths, dt, state, timers, report, error)
-         if (allocated(error) .or. .not. report%converged) return
-         call self%rock_wells%find_flows(self%wells, way, dt, before%well_head(first:), &
-                                         state%unknowns(3, :mesh%n_cells), &
-                                         state%well_flow(first:last), state%well_head(first:last), &
-                                         state%well_rate(first:last))
-         ! The balance has counted what would flow into cells without pressure.
-         report%mass_error = report%mass_error + dt*sum(self%rock_wells%source &
-                                                        - state%well_flow(first:last))
-         call correct_ways(self%wells, state%well_head(first:last), state%well_rate(first:last), &
-                           k > most, way, any_changed)
-         if (.not. any_changed) exit
-         call go_back(state, before)
-      end do
-      state%rock_well_control = way
+      associate (wells => self%rock_wells, head_before => before%well_head(first:))
+         call wells%choose_controls(self%wells, state%rock_well_control)
+         most = 3*wells%n + 1
+         do k = 1, 2*most + 30
+            call wells%set_terms(self%wells, dt, head_before, self%matrix, any_changed)
+            if (any_changed) self%condensed%dt = -1.0_rk
+            call solve_step(self, mesh, paths, dt, state, timers, report, error)
+            if (allocated(error) .or. .not. report%converged) return
+            call wells%find_flows(self%wells, dt, head_before, state%unknowns(3, :mesh%n_cells), &
+                                  state%well_flow(first:last), state%well_head(first:last), &
+                                  state%well_rate(first:last))
+            ! The balance contains the sources at a pressure of zero in the cells.
+            report%mass_error = report%mass_error + dt*sum(wells%source &
+                                                           - state%well_flow(first:last))
+            call wells%correct_controls(self%wells, state%well_head(first:last), &
+                                        state%well_rate(first:last), k > most, any_changed)
+            if (.not. any_changed) exit
+            call go_back(state, before)
+         end do
+         state%rock_well_control = wells%control
+      end associate
       report%converged = .not. any_changed
       if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
    end subroutine advance_with_wells
