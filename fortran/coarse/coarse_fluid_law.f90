@@ -11,13 +11,13 @@
 !! keeps mu_0, since its resistance there is negligible.
 module coarse_fluid_law
    use base_kinds, only: ik, rk
-   use coarse_fractures, only: cell_fluid_t, fracture_system_t
+   use coarse_fractures, only: cell_fluid_t, flow_paths_t, fracture_system_t
    use coarse_state, only: fracture_cells_t, state_t
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
 
-   public :: add_fluid_law, fluid_gained
+   public :: add_fluid_law, add_fracture_balance
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends of a cell
 
@@ -139,6 +139,35 @@ contains
       beyond = beyond - pressure
       slope = slope - 1.0_rk
    end subroutine find_beyond
+
+   !> Add the fluid balance of the fractures for one step: what they store less what wells supply.
+  pure subroutine add_fracture_balance(paths, cells, length, dt, before, after, compressed, balance)
+      type(flow_paths_t), intent(in) :: paths
+      type(fracture_cells_t), intent(in) :: cells
+      real(rk), intent(in) :: length(:)  !< (cells) [m]
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(in) :: before, after
+      real(rk), intent(out) :: compressed  !< fluid that pressure has added [m2]
+      real(rk), intent(inout) :: balance  !< [m2]
+      real(rk) :: filled(size(length)), into_joints(paths%joints%n)
+
+      filled = after%aperture - after%void
+      compressed = sum(length*filled*paths%settings%compressibility &
+                       *(after%pressure - before%pressure))
+      if (allocated(paths%settings%fluid_law)) then
+         compressed = compressed + fluid_gained(paths%settings%fluid_law, cells, length, before, &
+                                                after)
+      end if
+      filled = filled - (before%aperture - before%void)
+      balance = balance + sum(length*filled) + compressed - dt*sum(after%injection)
+      if (paths%joints%n == 0) return
+      into_joints = paths%joints%injection
+      if (paths%wells%n > 0) then
+         into_joints = into_joints + matmul(paths%wells%joint_share, &
+                                            after%well_flow(:paths%wells%n))
+      end if
+      balance = balance - dt*sum(into_joints) + dt*paths%joints%outflow(after%branch_flow)
+   end subroutine add_fracture_balance
 
    !> What density has added to the fluid of the fractures, at that of the reference pressure [m2].
    pure real(rk) function fluid_gained(law, cells, length, before, after) result(gained)

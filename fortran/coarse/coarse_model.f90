@@ -1,9 +1,6 @@
 !> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step
-!! at a time.
-!!
-!! The discretization is made once per mesh; the matrix is factorized once per length of the time
-!! step. A time step then costs one substitution in the factors and a few small dense Newton steps
-!! on the fractures.
+!! at a time. The rock is discretized once per mesh and factorized once per length of the time step;
+!! a step then costs one substitution and a few small Newton steps on the fractures.
 module coarse_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -14,7 +11,7 @@ module coarse_model
    use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
-   use coarse_fluid_law, only: fluid_gained
+   use coarse_fluid_law, only: add_fracture_balance
    use coarse_fractures, only: flow_paths_t, newton_settings_t
    use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
@@ -351,7 +348,7 @@ contains
       end if
    end subroutine find_load
 
-   !> Add what dampers and a stress in situ load the faces with.
+   !> Add the loads of dampers and of a stress in situ on the faces.
    subroutine add_face_loads(self, mesh, settings, dt, jump, load)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
@@ -438,8 +435,8 @@ contains
       is_damped = settings%damping > 0.0_rk .and. .not. settings%equilibrate
    end function is_damped
 
-   !> Where the fluid of the step went, and what appeared or vanished: what is stored less what came
-   !! in.
+   !> The fluid balance of the step: what is stored less what has been supplied, and the parts of
+   !! it that are reported.
    subroutine book_fluid(self, mesh, paths, fluid, dt, before, after, report)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
@@ -448,26 +445,15 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
       type(step_report_t), intent(inout) :: report
-      real(rk), allocatable :: held(:), outflow(:)
+      real(rk), allocatable :: outflow(:)
 
       report%compressed = 0.0_rk
       report%rock_outflow = 0.0_rk
       associate (balance => report%mass_error)
          balance = sum(after%content - before%content)
          if (mesh%fracture%n_cells > 0) then
-            held = after%aperture - after%void
-            report%compressed = sum(self%condensed%length*held*self%settings%compressibility &
-                                    *(after%pressure - before%pressure))
-            if (allocated(self%settings%fluid_law)) then
-               report%compressed = report%compressed &
-                                   + fluid_gained(self%settings%fluid_law, self%cells, &
-                                                  self%condensed%length, before, after)
-            end if
-            held = held - (before%aperture - before%void)
-            balance = balance + sum(self%condensed%length*held) + report%compressed &
-                      - dt*sum(after%injection)
-            if (paths%joints%n > 0) balance = balance - dt*sum(into_joints(paths, after)) &
-                                              + dt*paths%joints%outflow(after%branch_flow)
+            call add_fracture_balance(paths, self%cells, self%condensed%length, dt, before, after, &
+                                      report%compressed, balance)
          end if
          if (allocated(fluid)) balance = balance - dt*sum(fluid)
          if (self%drained) then
@@ -483,18 +469,6 @@ contains
          end if
       end associate
    end subroutine book_fluid
-
-   !> What wells feed into the joints themselves [m2/s].
-   pure function into_joints(paths, state) result(injection)
-      type(flow_paths_t), intent(in) :: paths
-      type(state_t), intent(in) :: state
-      real(rk) :: injection(paths%joints%n)
-
-      injection = paths%joints%injection
-      if (paths%wells%n > 0) then
-         injection = injection + matmul(paths%wells%joint_share, state%well_flow(:paths%wells%n))
-      end if
-   end function into_joints
 
    !> Free what gfortran 12 does not free by itself where the model is a component: arrays of the
    !! types that its components extend.
