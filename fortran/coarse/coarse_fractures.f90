@@ -131,7 +131,7 @@ contains
       if (allocated(before%slip_path)) then
          eq%law = eq%law%aged(reshape(before%slip_path, [2*n]), reshape(before%opened, [2*n]))
       end if
-      allocate (eq%way(2*n), source=0_ik)
+      allocate (eq%slip_sign(2*n), source=0_ik)
       n_condensed = condensed%layout%count()
       allocate (eq%q(n_condensed), eq%force(n_condensed), eq%traction(2, 2*n))
       allocate (eq%residual(eq%layout%count()))

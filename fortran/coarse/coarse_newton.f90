@@ -81,7 +81,7 @@ contains
             spent = found%iterations
             x = start
             eq%state = reshape(state%contact, [size(eq%state)])
-            eq%way = 0
+            eq%slip_sign = 0
          end if
       end if
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
@@ -423,7 +423,7 @@ contains
       point = 2*(i - 1) + end
       eq%traction(:, point) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
       call contact_equations(eq%law(point), eq%stiffness, eq%traction(:, point), eq%q(at:at + 1), &
-                             eq%slip_before(point), eq%way(point), found)
+                             eq%slip_before(point), eq%slip_sign(point), found)
       eq%state(point) = found%state
       if (eq%is_without_contact) then
          found%residual = eq%traction(:, point)

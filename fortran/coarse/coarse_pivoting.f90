@@ -53,10 +53,10 @@ contains
          call condense(eq, x, fluid, body, has_start)
          if (has_start) call pivot(eq, body, x, has_start)
       end if
-      eq%way = 0
+      eq%slip_sign = 0
       call let_free(eq, fluid, x, has_start)
       eq%share_of_rock = 1.0_rk
-      eq%way = 0
+      eq%slip_sign = 0
    end subroutine pivot_fractures
 
    !> Let the share of the rock in the pressure of the fluid rise to one, from the state without.
@@ -82,7 +82,7 @@ contains
       do k = 1, most_steps
          if (.not. has_start .or. reached >= 1.0_rk) return
          eq%share_of_rock = min(1.0_rk, reached + step)
-         eq%way = 0
+         eq%slip_sign = 0
          trial = x
          call iterate_from(eq, trial, how, report)
          if (report%outcome == outcome_converged) then

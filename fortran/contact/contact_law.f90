@@ -76,11 +76,11 @@ module contact_law
 
    integer, parameter :: n_numbers = 12  !< of a law, but for its age
 
-   !> Of the opening that breaks a bond: so far it closes as if it had not opened, for what rounding
-   !! has left of an opening that is none has no stiffness.
+   !> Share of the opening that breaks a bond, below which the faces count as not opened: an opening
+   !! of the size of rounding errors has no stiffness.
    real(rk), parameter :: hardly_open = 1.0e-6_rk
 
-   !> What a bond bears where its faces are apart by w and have slipped in the step.
+   !> Strength of a bond at the distance w of the faces, after the slip of the step.
    type :: strength_t
       real(rk) :: tension = 0.0_rk, cohesion = 0.0_rk  !< [Pa]
       real(rk) :: tension_by(2) = 0.0_rk  !< by w, and by the size of the slip [Pa/m]
@@ -93,7 +93,7 @@ module contact_law
 
 contains
 
-   !> The numbers of a law, of which means are made.
+   !> The parameters of a law as an array, from which means are made.
    pure function numbers(self)
       class(contact_law_t), intent(in) :: self
       real(rk) :: numbers(n_numbers)
@@ -103,7 +103,7 @@ contains
                  self%tension, self%cohesion, self%wear_by_slip, self%wear_by_opening]
    end function numbers
 
-   !> Give a law these numbers.
+   !> Set the parameters of a law.
    pure subroutine set_numbers(self, numbers)
       class(contact_law_t), intent(inout) :: self
       real(rk), intent(in) :: numbers(n_numbers)
@@ -140,7 +140,7 @@ contains
                                     - [other%numbers(), other%bond, other%opened]) > 0.0_rk)
    end function is_same
 
-   !> Add to the weighted sum of laws whose faces meet. The sum is bilateral or not from the start.
+   !> Add to the weighted sum of laws of faces that meet; `bilateral` is unchanged.
    pure subroutine add_share(self, law, share)
       class(contact_law_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
@@ -157,14 +157,14 @@ contains
       call self%set_numbers(self%numbers()/total)
    end subroutine divide
 
-   !> What the faces have been through changes the law.
+   !> Whether the law depends on the history of the faces.
    elemental logical function ages(self)
       class(contact_law_t), intent(in) :: self
 
       ages = self%weakening > 0.0_rk .or. self%is_bonded()
    end function ages
 
-   !> The law of a point that has slipped along a path so far, and been open so far.
+   !> The law of a point after a slip path and a largest opening.
    elemental type(contact_law_t) function aged(self, path, opened) result(law)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: path  !< [m]
@@ -178,7 +178,8 @@ contains
       if (opened*self%wear_by_opening > hardly_open) law%opened = opened
    end function aged
 
-   !> The law of faces that have grown from these: they are broken, and fit each other.
+   !> The law of new faces that grow from a fracture with this law: without bond, and fitting each
+   !! other.
    elemental type(contact_law_t) function as_grown(self) result(law)
       class(contact_law_t), intent(in) :: self
 
@@ -203,16 +204,15 @@ contains
       if (abs(slip) < self%weakening_slip) slope = -self%weakening
    end subroutine friction_at
 
-   !> The gap that a slip makes, and its derivative by the slip, whose sign it has from the way that
-   !! the shear drives where there is none.
-   pure subroutine dilated(self, slip, way, gap, slope)
+   !> Gap of dilation at a slip, and its derivative by the slip.
+   pure subroutine dilated(self, slip, slip_sign, gap, slope)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: slip  !< [u]_tau [m]
-      real(rk), intent(in) :: way  !< 1 or -1: the sign of the slip, or what it will have
+      real(rk), intent(in) :: slip_sign  !< 1 or -1; without slip, the sign of the trial shear
       real(rk), intent(out) :: gap  !< [m]
       real(rk), intent(out) :: slope  !< [-]
 
-      slope = self%dilation*way
+      slope = self%dilation*slip_sign
       gap = slope*slip
       if (abs(slip)*self%dilation_end > 1.0_rk) then
          gap = self%dilation/self%dilation_end
@@ -220,8 +220,7 @@ contains
       end if
    end subroutine dilated
 
-   !> How far pressed faces come nearer than where they touch, and its derivative; linear where the
-   !! pressure is tension.
+   !> Closure under a pressure, less d_rest, and its derivative; linear under tension.
    elemental subroutine closure(self, pressure, closed, slope)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< s [Pa]
@@ -234,7 +233,7 @@ contains
       slope = self%compliance*stiffer**2
    end subroutine closure
 
-   !> What multiplies the normal equation: c, in a row with the joint's own stiffness [Pa/m].
+   !> Factor of the normal equation: c in series with the stiffness of the joint [Pa/m].
    elemental real(rk) function spring(self, stiffness)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
@@ -242,7 +241,7 @@ contains
       spring = stiffness/(1.0_rk + stiffness*self%compliance)
    end function spring
 
-   !> How far the faces are apart beyond what they are when they touch under their traction: w [m].
+   !> Distance w of the faces from contact under their traction [m].
    pure real(rk) function apart(self, traction, jump)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
@@ -254,14 +253,14 @@ contains
       apart = jump(1) - gap + closed
    end function apart
 
-   !> Something of a bond is left.
+   !> Whether the bond is not broken.
    elemental logical function is_bonded(self)
       class(contact_law_t), intent(in) :: self
 
       is_bonded = self%bond > 0.0_rk .and. (self%tension > 0.0_rk .or. self%cohesion > 0.0_rk)
    end function is_bonded
 
-   !> What is left of a bond: b [-].
+   !> Remaining share b of the bond [-].
    elemental real(rk) function bond_left(self, apart, slip) result(bond)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: apart  !< w [m]
@@ -294,7 +293,7 @@ contains
              + (last%bond - held%bond)*max(self%tension, self%cohesion)
    end subroutine weaken
 
-   !> What the bond bears.
+   !> Strength of the bond, and its derivatives.
    pure type(strength_t) function strength(self, apart, slip) result(found)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: apart  !< w [m]

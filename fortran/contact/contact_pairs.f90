@@ -61,7 +61,7 @@ contains
          row = 2*i - 1
          self%traction(:, i) = -force(row:row + 1)/self%length(i)
          call contact_equations(self%law(i), self%stiffness, self%traction(:, i), &
-                                jump(row:row + 1), self%slip_before(i), self%way(i), found)
+                                jump(row:row + 1), self%slip_before(i), self%slip_sign(i), found)
          self%state(i) = found%state
          self%residual(row:row + 1) = found%residual
          self%by_traction(:, :, i) = found%by_traction
@@ -236,7 +236,7 @@ contains
                              self%stiffness*self%law%compliance*mean/self%length, &
                              slips_t(self%slip_given, self%stiffness*self%slip_before, &
                                      self%stiffness*self%given), x, has_start)
-      self%way = 0
+      self%slip_sign = 0
       if (has_start) return
       x = 0.0_rk
       self%state = -1

@@ -27,7 +27,7 @@ module contact_point
 
    public :: contact_equations, contact_equations_t, contact_residual
 
-   !> The faces at a point as they are to each other, and what the law makes of it.
+   !> Relative position of the faces at a point, and the terms of the law there.
    type :: faces_t
       real(rk) :: slip = 0.0_rk  !< of the step [m]
       real(rk) :: shear = 0.0_rk  !< trial shear q [Pa]
@@ -50,27 +50,27 @@ contains
 
    !> Normal and tangential equation with their derivatives.
    !!
-   !! A point that slipped one way in the last iteration and would slip the other way now is tried
-   !! as sticking: without this the iteration may go to and fro between the two.
-   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, found)
+   !! A point whose direction of slip differs from that of the last iteration is set to stick:
+   !! otherwise the iteration may alternate between the two directions.
+   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, slip_sign, found)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
       real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
       real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
-      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
+      integer(ik), intent(inout) :: slip_sign  !< of this iteration: -1, 1, or 0 for no slip
       type(contact_equations_t), intent(out) :: found
       type(faces_t) :: faces
 
       faces = faces_at(law, stiffness, traction, jump, slip_before)
       if (law%is_bonded()) then
-         call bonded_equations(law, stiffness, traction, faces, way, found)
+         call bonded_equations(law, stiffness, traction, faces, slip_sign, found)
       else
-         call unbonded_equations(law, stiffness, traction, faces, way, found)
+         call unbonded_equations(law, stiffness, traction, faces, slip_sign, found)
       end if
    end subroutine contact_equations
 
-   !> How the faces are to each other at a traction and jump.
+   !> The faces at a traction and jump.
    pure type(faces_t) function faces_at(law, stiffness, traction, jump, slip_before) result(faces)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
@@ -93,20 +93,20 @@ contains
    end function faces_at
 
    !> The equations where no bond holds.
-   pure subroutine unbonded_equations(law, stiffness, traction, faces, way, found)
+   pure subroutine unbonded_equations(law, stiffness, traction, faces, slip_sign, found)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
       type(faces_t), intent(in) :: faces
-      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
+      integer(ik), intent(inout) :: slip_sign  !< of this iteration: -1, 1, or 0 for no slip
       type(contact_equations_t), intent(inout) :: found  !< derivatives are zero at first
       real(rk) :: pressure
-      integer(ik) :: way_before
+      integer(ik) :: sign_before
 
       associate (spring => faces%spring, friction => faces%friction, slip => faces%slip)
          pressure = -traction(1) - spring*faces%apart
-         way_before = way
-         way = 0
+         sign_before = slip_sign
+         slip_sign = 0
          if (.not. pressure > 0.0_rk .and. .not. law%bilateral) then
             found%state = state_open
             found%residual = traction
@@ -115,26 +115,26 @@ contains
             return
          end if
          call touch(faces, found)
-         if (.not. abs(faces%shear) < friction*pressure) way = merge(1, -1, faces%shear > 0.0_rk)
+      if (.not. abs(faces%shear) < friction*pressure) slip_sign = merge(1, -1, faces%shear > 0.0_rk)
          if (.not. pressure > 0.0_rk) then
-            if (abs(slip) > 0.0_rk) way = merge(1, -1, slip > 0.0_rk)
-         else if (way*way_before < 0 .and. friction > 0.0_rk) then
-            way = 0
+            if (abs(slip) > 0.0_rk) slip_sign = merge(1, -1, slip > 0.0_rk)
+         else if (slip_sign*sign_before < 0 .and. friction > 0.0_rk) then
+            slip_sign = 0
          end if
-         if (way == 0) then
+         if (slip_sign == 0) then
             call stick(stiffness, slip, found)
             return
          end if
          found%state = state_slip
-         found%residual(2) = traction(2) - friction*pressure*way
-         found%by_traction(2, :) = [friction*way*(1.0_rk + spring*faces%apart_by(1)), 1.0_rk]
-         found%by_jump(2, :) = friction*way*spring*faces%apart_by(2:)
-         found%by_jump(2, 2) = found%by_jump(2, 2) - way*way_of_slip(slip, way) &
+         found%residual(2) = traction(2) - friction*pressure*slip_sign
+         found%by_traction(2, :) = [friction*slip_sign*(1.0_rk + spring*faces%apart_by(1)), 1.0_rk]
+         found%by_jump(2, :) = friction*slip_sign*spring*faces%apart_by(2:)
+         found%by_jump(2, 2) = found%by_jump(2, 2) - slip_sign*sign_of_slip_at(slip, slip_sign) &
                                *faces%friction_by_slip*pressure
       end associate
    end subroutine unbonded_equations
 
-   !> The normal equation of faces that touch: they are not apart.
+   !> The normal equation of closed faces: w = 0.
    pure subroutine touch(faces, found)
       type(faces_t), intent(in) :: faces
       type(contact_equations_t), intent(inout) :: found
@@ -144,7 +144,7 @@ contains
       found%by_jump(1, :) = faces%spring*faces%apart_by(2:)
    end subroutine touch
 
-   !> The tangential equation of faces that hold: they do not slip.
+   !> The tangential equation of sticking faces: no slip.
    pure subroutine stick(stiffness, slip, found)
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: slip  !< of the step [m]
@@ -155,27 +155,27 @@ contains
       found%by_jump(2, 2) = stiffness
    end subroutine stick
 
-   !> The slip of the step, or the one to come, has a way too.
-   pure real(rk) function way_of_slip(slip, way)
+   !> Sign of the slip of the step; without slip, the given sign.
+   pure real(rk) function sign_of_slip_at(slip, slip_sign)
       real(rk), intent(in) :: slip  !< of the step [m]
-      integer(ik), intent(in) :: way
+      integer(ik), intent(in) :: slip_sign
 
-      way_of_slip = sign(1.0_rk, slip)
-      if (.not. abs(slip) > 0.0_rk) way_of_slip = real(way, rk)
-   end function way_of_slip
+      sign_of_slip_at = sign(1.0_rk, slip)
+      if (.not. abs(slip) > 0.0_rk) sign_of_slip_at = real(slip_sign, rk)
+   end function sign_of_slip_at
 
-   !> The same where a bond holds: with its tension the faces are pressed on each other, and where
-   !! they are apart it goes on pulling.
-   pure subroutine bonded_equations(law, stiffness, traction, faces, way, found)
+   !> The equations of bonded faces: closed up to the tension of the bond, and under this tension
+   !! while they are apart.
+   pure subroutine bonded_equations(law, stiffness, traction, faces, slip_sign, found)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
       real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
       type(faces_t), intent(in) :: faces
-      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
+      integer(ik), intent(inout) :: slip_sign  !< of this iteration: -1, 1, or 0 for no slip
       type(contact_equations_t), intent(inout) :: found  !< derivatives are zero at first
       type(strength_t) :: bond
       real(rk) :: bound, bound_by(3), pressure, sign_of_slip
-      integer(ik) :: way_before
+      integer(ik) :: sign_before
       logical :: is_apart
 
       associate (spring => faces%spring, friction => faces%friction, apart_by => faces%apart_by)
@@ -184,11 +184,11 @@ contains
          pressure = -traction(1)
          if (.not. is_apart) pressure = pressure - spring*faces%apart
          bound = bond%cohesion + friction*pressure
-         way_before = way
-         way = 0
-         if (.not. abs(faces%shear) < bound) way = merge(1, -1, faces%shear > 0.0_rk)
-         if (way*way_before < 0 .and. bound > 0.0_rk) way = 0
-         sign_of_slip = way_of_slip(faces%slip, way)
+         sign_before = slip_sign
+         slip_sign = 0
+         if (.not. abs(faces%shear) < bound) slip_sign = merge(1, -1, faces%shear > 0.0_rk)
+         if (slip_sign*sign_before < 0 .and. bound > 0.0_rk) slip_sign = 0
+         sign_of_slip = sign_of_slip_at(faces%slip, slip_sign)
          found%state = merge(state_open, state_slip, is_apart)
          if (is_apart) then
             found%residual(1) = traction(1) - bond%tension
@@ -198,7 +198,7 @@ contains
          else
             call touch(faces, found)
          end if
-         if (way == 0) then
+         if (slip_sign == 0) then
             call stick(stiffness, faces%slip, found)
             return
          end if
@@ -210,15 +210,14 @@ contains
          if (.not. is_apart) bound_by = bound_by - friction*spring*apart_by
          bound_by(3) = bound_by(3) &
                        + (bond%cohesion_by(2) + faces%friction_by_slip*pressure)*sign_of_slip
-         found%residual(2) = traction(2) - bound*way
-         found%by_traction(2, 1) = -bound_by(1)*way
-         found%by_jump(2, :) = -bound_by(2:)*way
+         found%residual(2) = traction(2) - bound*slip_sign
+         found%by_traction(2, 1) = -bound_by(1)*slip_sign
+         found%by_jump(2, :) = -bound_by(2:)*slip_sign
       end associate
    end subroutine bonded_equations
 
-   !> How far a point is from fulfilling the law [Pa]: gap, sign of the contact pressure, friction
-   !! bound and direction of slip, each by itself and independent of the equations that Newton's
-   !! method solves.
+   !> Violation of the law at a point [Pa]: gap, sign of the contact pressure, friction bound and
+   !! direction of slip, each separately and independent of the equations of Newton's method.
    pure function contact_residual(law, stiffness, traction, jump, slip_before) result(worst)
       type(contact_law_t), intent(in) :: law
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
@@ -255,9 +254,9 @@ contains
                      min(spring*abs(opening), abs(traction(1) - bond%tension)))
       end if
       worst = max(worst, min(stiffness*abs(slip), abs(abs(traction(2)) - bound)))
-      ! Friction must not drive the slip.
+      ! Friction opposes the slip.
       worst = max(worst, min(stiffness*abs(slip), max(0.0_rk, -traction(2)*sign(1.0_rk, slip))))
-      ! max() passes over what is not a number.
+      ! max() ignores NaN.
       if (.not. sum(abs(traction)) + sum(abs(jump)) <= huge(1.0_rk)) worst = huge(1.0_rk)
    end function contact_residual
 

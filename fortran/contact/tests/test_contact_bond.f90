@@ -250,7 +250,7 @@ contains
       pairs%load = load
       pairs%slip_before = [slip_before]
       allocate (pairs%given(1), pairs%traction(2, 1), pairs%residual(2), source=0.0_rk)
-      allocate (pairs%way(1), source=0_ik)
+      allocate (pairs%slip_sign(1), source=0_ik)
       allocate (pairs%state(1), source=-1_ik)
       x = stiffness*[0.0_rk, slip_before]
       call iterate(pairs, x, iteration_settings_t(), report)

@@ -192,7 +192,7 @@ contains
       pairs%load = [-load, shear*load]/unit
       allocate (pairs%slip_before(1), pairs%given(1), pairs%traction(2, 1), source=0.0_rk)
       allocate (pairs%residual(2), source=0.0_rk)
-      allocate (pairs%way(1), source=0_ik)
+      allocate (pairs%slip_sign(1), source=0_ik)
       allocate (pairs%state(1), source=-1_ik)
       x = 0.0_rk
       call iterate(pairs, x, iteration_settings_t(), report)
