@@ -217,7 +217,7 @@ contains
       call check_status(self, "solution", error)
    end subroutine solve
 
-   !> The matrix as it was given.
+   !> The entries of the matrix, as set by `factorize`.
    subroutine get_entries(self, row, col, values)
       class(mumps_t), intent(in) :: self
       integer(ik), allocatable, intent(out) :: row(:), col(:)
@@ -242,8 +242,8 @@ contains
       call complete_lower(schur)
    end subroutine get_schur
 
-   !> Forward elimination: the right-hand side of the condensed system. What else follows from it
-   !! MUMPS keeps until `expand`; `rhs` may be changed on the way.
+   !> Forward elimination: the right-hand side of the condensed system. MUMPS keeps the rest of the
+   !! result until `expand`; `rhs` may be changed.
    subroutine condense(self, rhs, reduced, error)
       class(mumps_t), intent(inout) :: self
       !> (n) entries of the condensed unknowns included
@@ -277,7 +277,7 @@ contains
       call check_status(self, "expansion", error)
    end subroutine expand
 
-   !> Give all memory back.
+   !> Release all memory.
    subroutine release(self)
       class(mumps_t), intent(inout) :: self
 

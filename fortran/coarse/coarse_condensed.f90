@@ -28,23 +28,23 @@ module coarse_condensed
    !> Factors of the matrix and the dense system on the fractures, for one mesh and one time step.
    type :: condensed_t
       real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
-      integer(ik) :: factorizations = 0  !< so far: what is made of one is not that of the next
+      integer(ik) :: factorizations = 0  !< number so far; identifies factors
       logical :: is_full = .true.  !< S is formed; to be chosen before the first factorization
       !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]; none unless full
       real(rk), allocatable :: stiffness(:, :)
       type(coupling_t) :: coupling  !< of the fractures with the rest; unless full
-      !> (3 n_cells) what the last q made of the cells, without loads; unless full [m], [m], [Pa]
+      !> (3 n_cells) response of the cells to the last q; unless full [m], [m], [Pa]
       real(rk), allocatable :: rock(:)
-      !> (6 n) diagonal of S where it has been asked for, else huge; unless full
+      !> (6 n) diagonal of S as far as it is known, else huge; unless full
       real(rk), allocatable :: diagonal(:)
       real(rk), allocatable :: body(:)  !< (6 n) its diagonal without springs [Pa]; if full
-      real(rk), allocatable :: spring(:)  !< (6 n) part of its diagonal that is not the body's [Pa]
+      real(rk), allocatable :: spring(:)  !< (6 n) springs, added to the diagonal [Pa]
       real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
       integer(ik) :: n = 0  !< fracture cells
       type(condensed_layout_t) :: layout  !< of q
       type(coarse_factors_t) :: factors
-      logical :: analysed = .false.  !< the mesh is known
+      logical :: analysed = .false.  !< whether the pattern of the mesh has been analysed
    contains
       procedure :: forget
       procedure :: factorize
@@ -186,8 +186,8 @@ contains
       end if
    end subroutine find_forces
 
-   !> Derivatives of the volumes of some faces by their own pressures, on the diagonal of S. They
-   !! have no springs.
+   !> Derivatives of the volumes of some faces by their own pressures: entries on the diagonal of S,
+   !! without springs.
    subroutine find_volume_slopes(self, at, slope, error)
       class(condensed_t), intent(inout) :: self
       integer(ik), intent(in) :: at(:)  !< numbers in q
@@ -205,7 +205,7 @@ contains
       end if
    end subroutine find_volume_slopes
 
-   !> Entries on the diagonal of S one by one, each from the answer of the rock to its unknown.
+   !> Find entries on the diagonal of S, each by one solution with the factors of the rock.
    subroutine find_diagonal(self, at, error)
       class(condensed_t), intent(inout) :: self
       integer(ik), intent(in) :: at(:)  !< numbers in q
@@ -281,7 +281,7 @@ contains
       self%body = [(self%stiffness(i, i), i=1, size(self%spring))]
    end subroutine find_stiffness
 
-   !> Springs on the unknowns of q, instead of those so far.
+   !> Replace the springs on the unknowns of q.
    pure subroutine support(self, spring)
       class(condensed_t), intent(inout) :: self
       real(rk), intent(in) :: spring(:)  !< (6 n) [Pa]

@@ -120,7 +120,7 @@ contains
       end do
    end subroutine forces
 
-   !> C' q: what the fractures add to the equations of the cells.
+   !> C' q: contribution of the fractures to the equations of the cells.
    pure subroutine bulk_load(self, q, load)
       class(coupling_t), intent(in) :: self
       real(rk), intent(in) :: q(:)  !< [m], [Pa]
@@ -150,7 +150,7 @@ contains
       end do
    end function diagonal
 
-   !> The sum of the sizes of the terms that a force consists of.
+   !> Sum of the magnitudes of the terms of a force.
    pure real(rk) function sizes(self, b, q, row) result(total)
       class(coupling_t), intent(in) :: self
       real(rk), intent(in) :: b(:), q(:)

@@ -41,7 +41,7 @@ module coarse_factors
       real(rk), allocatable :: scale(:)
       integer(ik) :: at_fractures = 1  !< where the fractures' begin among the unknowns
       logical :: by_fronts = .false.  !< no pivots are exchanged
-      logical :: needs_exchanges = .false.  !< they were needed once: nothing else is tried
+      logical :: needs_exchanges = .false.  !< exchange pivots, also in the future
       logical, private :: analysed = .false.
       type(mumps_t), private :: exchanging
       type(multifrontal_t), private :: fronts
@@ -57,7 +57,7 @@ module coarse_factors
 
 contains
 
-   !> Forget a mesh.
+   !> Release the factors of a mesh.
    subroutine release(self)
       class(coarse_factors_t), intent(inout) :: self
       type(multifrontal_t) :: none
@@ -73,8 +73,8 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      !> What the matrix, scaled, is when condensed onto the fractures' unknowns. Absent: the cells
-      !! alone are factorized.
+      !> Scaled matrix condensed onto the unknowns of the fractures. Absent: the cells alone are
+      !! factorized.
       real(rk), allocatable, intent(inout), optional :: schur(:, :)
 
       call find_scale(matrix, dt, self%scale)
@@ -185,8 +185,7 @@ contains
       end if
    end subroutine factorize_by_mumps
 
-   !> The same by fronts, without exchange of pivots: an error is raised where the matrix is none
-   !! for that.
+   !> Factorize by fronts, without exchange of pivots: an error is raised if this is not stable.
    subroutine factorize_by_fronts(self, matrix, dt, schur, error)
       class(coarse_factors_t), intent(inout), target :: self
       type(matrix_t), intent(in), target :: matrix
@@ -222,10 +221,10 @@ contains
       nullify (self%rows%matrix, self%rows%scale)
    end subroutine factorize_by_fronts
 
-   !> Judge how far rounding has grown by a solution that is known: an error is raised if it is not
-   !! that of a stable elimination. Its pressure is the same everywhere: that is what is lost first
-   !! where pressures even out so fast that a flow says little of the stored fluid. Seen from the
-   !! fractures it is lost if what the rock takes up then is not known.
+   !> Measure the growth of rounding errors on a known solution: an error is raised if the
+   !! elimination is not stable. The known pressure is uniform: its accuracy is lost first where
+   !! pressures diffuse so fast that flows hardly depend on the stored fluid; seen from the
+   !! fractures, if the fluid taken up by the rock is not accurate.
    subroutine check_factors(self, schur, error)
       class(coarse_factors_t), intent(inout) :: self
       real(rk), intent(in) :: schur(:, :)
@@ -263,14 +262,14 @@ contains
             if (allocated(error)) return
          end associate
       end if
-      found = abs(found - known)  ! scaled; pressures as parts of their own value
+      found = abs(found - known)  ! scaled; pressures relative to their value
       found(3 :: 3) = found(3 :: 3)*self%scale(3 :: 3)/pressure
       difference = max(difference, maxval(found))
       if (difference <= tolerance) return
       call raise_error(error, "coarse_factors_t", "elimination without exchanges is not stable")
    end subroutine check_factors
 
-   !> Units in which the matrix has ones and minus ones on its diagonal.
+   !> Find units in which the diagonal of the matrix is 1 or -1.
    pure subroutine find_scale(matrix, dt, scale)
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
@@ -290,7 +289,7 @@ contains
       end do
    end subroutine find_scale
 
-   !> Where the numbers of the lower triangle stand, one by one.
+   !> Rows and columns of the lower triangle, entry by entry.
    subroutine triplet_pattern(matrix, n_blocks, row, col)
       type(matrix_t), intent(in) :: matrix
       integer(ik), intent(in) :: n_blocks  !< so many of them
@@ -314,7 +313,7 @@ contains
       end do
    end subroutine triplet_pattern
 
-   !> The numbers themselves, for scaled unknowns and equations.
+   !> Entries of the lower triangle, for scaled unknowns and equations.
    subroutine triplet_values(matrix, n_blocks, scale, dt, values)
       type(matrix_t), intent(in) :: matrix
       integer(ik), intent(in) :: n_blocks  !< so many of them
@@ -341,7 +340,7 @@ contains
       end do
    end subroutine triplet_values
 
-   !> How many numbers the lower triangle has: six in a diagonal block, nine in another.
+   !> Number of entries of the lower triangle: six in a diagonal block, nine in another.
    pure integer(ik) function triplet_count(matrix, n_blocks)
       type(matrix_t), intent(in) :: matrix
       integer(ik), intent(in) :: n_blocks  !< so many of them

@@ -1,6 +1,6 @@
-!> Data of the equations of one time step on the fractures: the unknowns and their units, the
-!! condensed body and its forces, the state before. The equations are those of contact
-!! (coarse_newton) and of the fluid (coarse_fracture_flow).
+!> Data of the equations of one time step on the fractures: unknowns and units, the condensed body
+!! and its forces, the last state. The equations are those of contact (coarse_newton) and of the
+!! fluid (coarse_fracture_flow).
 !!
 !! All unknowns x and equations are scaled to Pa: jumps by a stiffness, flows and volumes by a unit.
 module coarse_fractures
@@ -20,7 +20,7 @@ module coarse_fractures
    public :: cell_fluid_t, conducting_aperture, flow_paths_t, fracture_system_t, most_of_rock
    public :: newton_settings_t, prepare
 
-   !> What the iteration needs to know.
+   !> Settings of the iteration, and constants of fluid and rock.
    type :: newton_settings_t
       real(rk) :: tolerance = 1.0e-9_rk  !< residuals relative to the largest stress [-]
       integer(ik) :: iterations_max = 30
@@ -28,11 +28,11 @@ module coarse_fractures
       real(rk) :: mobility = 0.0_rk  !< of the rock, mean of K/mu [m2/(Pa s)]
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
-      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure of the fluid [Pa]
       real(rk) :: damping = 0.0_rk  !< eta of radiation damping [Pa s/m]
       !> initial state: no exchange, p_F = (p+ + p-)/2 but not below vapour, no fluid balance
       logical :: equilibrate = .false.
-      type(fluid_law_t), allocatable :: fluid_law  !< of viscosity and density, if there is one
+      type(fluid_law_t), allocatable :: fluid_law  !< pressure dependence, if any
    end type newton_settings_t
 
    !> Settings of a step, and where fluid flows along fractures.
@@ -43,8 +43,8 @@ module coarse_fractures
       type(wells_t) :: wells  !< wells whose rate depends on pressures; set by the caller
    end type flow_paths_t
 
-   !> One step's equations in scaled unknowns. What they are made of is referred to, not copied, and
-   !! must outlive them. The points of contact are the starts and ends of the cells in turn.
+   !> Equations of one step in scaled unknowns. Their data are referenced, not copied, and must
+   !! outlive them. Contact points are the start and the end of each cell in turn.
    type, abstract, extends(contact_system_t) :: fracture_system_t
       type(condensed_t), pointer :: condensed => null()
       type(fracture_cells_t), pointer :: cells => null()
@@ -54,19 +54,20 @@ module coarse_fractures
       type(fracture_layout_t) :: layout  !< of x
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk) :: unit = 0.0_rk  !< fluid volumes are divided by it [m2/Pa]
-      real(rk), allocatable :: lowest(:)  !< (n) pressure that the fluid bears, as x counts it [Pa]
+      real(rk), allocatable :: lowest(:)  !< (n) vapour pressure less that in situ [Pa]
       real(rk) :: load_stress = 0.0_rk  !< traction of the faces without jumps and fluid [Pa]
       real(rk), allocatable :: q(:)  !< (6 n) unknowns of the condensed system [m], [Pa]
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g [N/m], volumes [m2]
-      logical :: has_failed = .false.  !< the condensed body could not answer
+      logical :: has_failed = .false.  !< whether a solution with the factors of the body has failed
       type(slopes_t) :: slopes  !< derivatives of the residuals where last evaluated
       real(rk), allocatable :: start(:)  !< unknowns where the step starts [Pa]
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)
-      !> Share of the rock's pressure in that of the fluid, in the initial state; the rest is held
+      !> Share of the rock's pressure in that of the fluid, in the initial state; the remaining
+      !! share is that of held_pressure
       real(rk) :: share_of_rock = 1.0_rk
       real(rk), allocatable :: held_pressure(:)  !< (n) with a share below 1 [Pa]
-      !> Contact's equations are that the tractions are zero
+      !> Replace the contact equations by zero tractions
       logical :: is_without_contact = .false.
    contains
       procedure :: at_point
@@ -80,10 +81,9 @@ module coarse_fractures
       procedure :: find_thickness
    end type fracture_system_t
 
-   !> The fluid of a cell: it has the pressure that its unknown says, or where that is less than the
-   !! vapour pressure it has this one, and the rest of the unknown says how wide the void is that
-   !! vapour fills. So one of the two holds, p > p_v or a void, whatever the unknown. In the initial
-   !! state, which has no fluid balance, the fracture is full, at p_v where the rock draws on it.
+   !> Fluid of a cell as a function of its unknown: the unknown is the pressure, or, below the
+   !! vapour pressure p_v, the pressure is p_v and the difference gives the width of the void filled
+   !! by vapour. In the initial state, which has no fluid balance, there is no void.
    type :: cell_fluid_t
       real(rk) :: pressure = 0.0_rk  !< [Pa]
       real(rk) :: pressure_slope = 1.0_rk  !< by the unknown [-]
@@ -91,12 +91,13 @@ module coarse_fractures
       real(rk) :: void_slope = 0.0_rk  !< by the unknown [m/Pa]
    end type cell_fluid_t
 
-   !> The resistance to leak-off at a tip takes this much of the rock's own away, and no more [-].
+   !> Largest reduction of the rock's resistance to leak-off at a tip, as a share of this resistance
+   !! [-].
    real(rk), parameter :: most_of_rock = 0.8_rk
 
 contains
 
-   !> Units, and what does not change within the step.
+   !> Set the units and all data that are constant within the step.
    subroutine prepare(condensed, cells, paths, dt, g, before, eq)
       type(condensed_t), intent(inout), target :: condensed
       type(fracture_cells_t), intent(in), target :: cells
@@ -139,7 +140,7 @@ contains
       call find_volume_slopes(eq)
    end subroutine prepare
 
-   !> Which of the unknowns are those of q.
+   !> Find the unknowns of q among those of x, and their units.
    pure subroutine link_unknowns(eq)
       class(fracture_system_t), intent(inout) :: eq
       integer(ik) :: at, i, k
@@ -158,11 +159,12 @@ contains
       end associate
    end subroutine link_unknowns
 
-   !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
-   !! state everywhere, but as a unit of the equations only.
+   !> Derivatives of the leak-off of the faces by their pressures, which limit the correction of
+   !! leak-off at tips; in the initial state for all faces, as units of the equations.
    !!
-   !! The pressure of one face alone, all other unknowns fixed, moves more fluid than it does where
-   !! the rock answers. That is known at once, and where it bounds nothing, nothing does.
+   !! With all other unknowns fixed, the derivative is larger than with the response of the rock,
+   !! and known without a solution: where it does not limit the correction, the exact one does not
+   !! either.
    subroutine find_volume_slopes(eq)
       class(fracture_system_t), intent(inout) :: eq
       type(error_t), allocatable :: error
@@ -192,7 +194,7 @@ contains
       end associate
    end subroutine find_volume_slopes
 
-   !> The resistance to leak-off at a tip would be less than minus the most of the rock's own.
+   !> Whether the correction of leak-off at a tip exceeds the limit `most_of_rock`.
    elemental logical function is_beyond(leak_resistance, rock, slope)
       real(rk), intent(in) :: leak_resistance  !< times the rock's mobility [-]
       real(rk), intent(in) :: rock  !< mobility times the step [m2/Pa]
@@ -201,9 +203,8 @@ contains
       is_beyond = leak_resistance*abs(slope) < -most_of_rock*rock
    end function is_beyond
 
-   !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
-   !! without fluid carry none, and yet rounding errors are relative to what has been released
-   !! there.
+   !> Largest traction on the fractures without jumps and fluid [Pa]. Open faces without fluid carry
+   !! none, but rounding errors are relative to the traction released there.
    pure function stress_without_jumps(condensed, g) result(stress)
       type(condensed_t), intent(in) :: condensed
       real(rk), intent(in) :: g(:)  !< (6 n) [N/m], [m2]
@@ -262,7 +263,8 @@ contains
       total = total + dot_product(abs(slope), abs(x))
    end function size_of_terms
 
-   !> Fluid that the step makes or loses is nothing beside what flows in it and what is there.
+   !> Whether the error of the fluid balance is negligible compared with the fluid that flows or is
+   !! stored.
    logical function is_balanced(self)
       class(fracture_system_t), intent(in) :: self
       real(rk), parameter :: least = 1.0e-12_rk
@@ -282,7 +284,7 @@ contains
                  + self%dt*abs(self%cells%injection(i)) + sum(abs(self%force(at)))
       end do
       do i = 1, self%paths%joints%n
-         ! At an outlet, and where all branches are shut, the equation is not a balance.
+         ! The equations of outlets and of joints with only shut branches are not balances.
          if (self%paths%joints%is_outlet(i)) cycle
          if (all(self%paths%joints%is_shut(self%paths%joints%branches%of(i)))) cycle
          balance = balance + self%residual(self%layout%at_joint(i))*self%unit
@@ -313,7 +315,7 @@ contains
              /self%stiffness
    end function opening
 
-   !> The fluid of a cell.
+   !> Fluid of a cell at x.
    pure type(cell_fluid_t) function fluid_at(self, x, cell) result(fluid)
       class(fracture_system_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -331,7 +333,7 @@ contains
       end associate
    end function fluid_at
 
-   !> The unknown that says so.
+   !> The unknown of a cell for a pressure and a void, inverse to fluid_at.
    pure real(rk) function unknown_of_fluid(self, cell, pressure, void) result(unknown)
       class(fracture_system_t), intent(in) :: self
       integer(ik), intent(in) :: cell
@@ -369,9 +371,8 @@ contains
       end associate
    end subroutine find_thickness
 
-   !> Aperture that conducts fluid. Roughness keeps the faces apart where they are nearer than that,
-   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of
-   !! a0.
+   !> Hydraulic aperture. Roughness is the least aperture, and does not add to larger openings;
+   !! overlapping faces in the iteration keep a hundredth of a0.
    pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
       real(rk), intent(in) :: residual  !< a0 [m]
       real(rk), intent(in) :: roughness  !< the part of it that is one [m]

@@ -35,7 +35,7 @@ module coarse_model
 
    public :: coarse_model_t, new_state, rest_fluid
 
-   !> Everything that belongs to one mesh.
+   !> Discretized body on one mesh.
    type, extends(fracture_problem_t) :: coarse_model_t
       type(rock_t) :: rock
       type(boundary_side_t), allocatable :: sides(:)  !< pressures beyond those in situ
@@ -43,14 +43,14 @@ module coarse_model
       type(regions_t) :: regions
       type(matrix_t) :: matrix
       type(rock_wells_t) :: rock_wells  !< those of them in the rock
-      !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
-      !! regions differ [-]
+      !> (fracture cells) resistance of the adjacent rock over that of the scene's rock; allocated
+      !! with regions [-]
       real(rk), allocatable :: rock_resistance(:)
       type(crack_ends_t) :: ends  !< of the cracks
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
-      !> (2, n_cells) force that no stress in situ carries: weight, point loads [N/m]
+      !> (2, n_cells) forces not balanced by the stress in situ: weight, point loads [N/m]
       real(rk), allocatable :: weight(:, :)
    contains
       procedure :: set_mesh
@@ -91,7 +91,7 @@ contains
                                            young=scene%material%young)
          if (has_law(fluid)) then
             self%settings%fluid_law = new_fluid_law(fluid)
-            ! A density counts its compression itself.
+            ! A density law contains the compression.
             if (fluid%density_law /= "linear") self%settings%compressibility = 0.0_rk
          end if
       end associate
@@ -111,7 +111,7 @@ contains
       call timers%stop(phase_discretize)
    end subroutine set_mesh
 
-   !> The state in situ of a scene that has one, and the weight that it does not carry.
+   !> Set the state in situ, if the scene has one, and the weight that it does not balance.
    subroutine place_in_situ(self, mesh, scene)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -137,7 +137,7 @@ contains
       if (scene%has_points()) call add_point_forces(scene, mesh, self%weight)
    end subroutine place_in_situ
 
-   !> What the scene prescribes on the sides, beyond the state in situ.
+   !> Set the boundary conditions, relative to the state in situ.
    pure subroutine take_sides(self, scene)
       class(coarse_model_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -146,7 +146,7 @@ contains
       if (allocated(self%in_situ)) self%sides%pressure = self%sides%pressure - self%in_situ%pressure
    end subroutine take_sides
 
-   !> Take other values on the sides, of the same kinds, in the course of time.
+   !> Change the values of the boundary conditions; their kinds remain.
    subroutine change_sides(self, mesh, scene, timers, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -198,7 +198,8 @@ contains
       call rest_fluid(model, state)
    end subroutine new_state
 
-   !> Nothing flows along the fractures, and joints have the pressures of the cells around them.
+   !> Set all flows along the fractures to zero and the pressures of joints to those of the adjacent
+   !! cells.
    subroutine rest_fluid(model, state)
       class(coarse_model_t), intent(in) :: model
       type(state_t), intent(inout) :: state
@@ -209,7 +210,7 @@ contains
       state%joint_pressure = [(model%joints%mean_pressure(j, state%pressure), j=1, model%joints%n)]
    end subroutine rest_fluid
 
-   !> Undrained response to the load, the fractures having the pressure of the rock around them: no
+   !> Undrained response to the load: the fractures have the pressure of the adjacent rock, and no
    !! fluid flows along them, through joints or wells.
    subroutine equilibrate(self, mesh, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
@@ -255,8 +256,8 @@ contains
       end if
    end subroutine advance
 
-   !> The same with wells in the rock whose rate depends on pressures, repeated until these agree
-   !! with how they have been tried.
+   !> A step with pressure-controlled wells in the rock, repeated until the results agree with the
+   !! controls that have been tried.
    subroutine advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -298,7 +299,7 @@ contains
       if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
    end subroutine advance_with_wells
 
-   !> What supports the faces of the fractures: springs at tips, dampers.
+   !> Set the springs on the faces of the fractures: at tips, and dampers.
    subroutine support_faces(self, mesh, settings, dt)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -317,7 +318,7 @@ contains
       end if
    end subroutine support_faces
 
-   !> Loads, sources and the fluid that is there.
+   !> Right-hand side of the body: loads, sources, stored fluid.
    subroutine find_load(self, mesh, wells, dt, content, load, fluid)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
@@ -367,7 +368,7 @@ contains
       end if
    end subroutine add_face_loads
 
-   !> The step with sources and matrix as they are.
+   !> Solve a step with the present sources and matrix.
    subroutine solve_step(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -428,7 +429,7 @@ contains
       end if
    end subroutine solve_step
 
-   !> Fast slip radiates energy. Not in the initial state, which takes no time.
+   !> Whether slip radiates energy; not in the initial state, which takes no time.
    pure logical function is_damped(settings)
       type(newton_settings_t), intent(in) :: settings
 
@@ -461,7 +462,7 @@ contains
             call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
             report%rock_outflow = dt*sum(outflow)
             if (mesh%fracture%n_cells > 0) then
-               ! Through the faces of fractures fluid stays inside.
+               ! Fluid that crosses the faces of fractures remains in the body.
                report%rock_outflow = report%rock_outflow &
                                      + dt*sum(self%condensed%length*after%leakoff)
             end if

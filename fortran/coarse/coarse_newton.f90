@@ -46,8 +46,8 @@ module coarse_newton
 
 contains
 
-   !> One time step of the fractures, the rock condensed. `state` holds the state before and is
-   !! replaced only if the iteration converges.
+   !> Solve one time step of the fractures, with the rock condensed. `state` is that before the step
+   !! and is replaced only if the iteration converges.
    subroutine solve_fractures(problem, paths, dt, g, state, q, report)
       type(fracture_problem_t), intent(inout), target :: problem
       type(flow_paths_t), intent(in), target :: paths
@@ -109,7 +109,7 @@ contains
       if (report%converged) call accept(eq, x, state, report)
    end subroutine solve_fractures
 
-   !> The cell whose equations are missed most at x; 0: none is known.
+   !> The cell with the largest residual at x; 0: none.
    integer(ik) function worst_cell(eq, x) result(worst)
       type(equations_t), intent(inout) :: eq
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -133,7 +133,8 @@ contains
       end do
    end function worst_cell
 
-   !> The state before, the rock at the fractures having their pressure, without flow.
+   !> Initial guess: the last state without flow, the rock at the faces at the pressure of the
+   !! fluid.
    pure subroutine find_start(eq, state, x)
       type(equations_t), intent(in) :: eq
       type(state_t), intent(in) :: state
@@ -192,7 +193,7 @@ contains
       end associate
    end subroutine accept
 
-   !> Faces are apart everywhere, and no more fluid is drawn than there is.
+   !> Check that apertures are positive and that no more fluid is extracted than there is.
    subroutine check_fluid(eq, x, aperture, fluid, report)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -241,7 +242,7 @@ contains
       end if
    end subroutine check_contact
 
-   !> Jumps, tractions, contact and what the faces have been through.
+   !> Store jumps, tractions, contact states and the history of the faces.
    subroutine keep_contact(eq, state)
       type(equations_t), intent(in) :: eq
       type(state_t), intent(inout) :: state
@@ -271,8 +272,8 @@ contains
       state%contact = reshape(eq%state, shape(state%contact))
    end subroutine keep_contact
 
-   !> How little is known of flows round loops, over the largest flow, or one that exchanges the
-   !! fluid of a cell in the step [-].
+   !> Uncertainty of flows round loops, over the largest flow or the flow that exchanges the fluid
+   !! of a cell in the step [-].
    pure function loop_flow_error(eq, x, aperture, report) result(error)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -294,8 +295,8 @@ contains
       end associate
    end function loop_flow_error
 
-   !> A joint, which holds no fluid that could become vapour, would have a pressure below that of
-   !! vapour: only a well can draw it so low.
+   !> Whether a well lowers the pressure of a joint below that of vapour; a joint holds no fluid
+   !! that could evaporate.
    pure logical function is_overdrawn(eq, x)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -372,8 +373,8 @@ contains
       end if
    end subroutine find_step
 
-   !> Which of the unknowns may leave the full matrix. Along a fracture flows follow each other from
-   !! the last cell to the first.
+   !> Find the unknowns that may be eliminated from the full matrix first. Flows along a fracture
+   !! are listed from its last cell to its first.
    pure subroutine find_kinds(eq)
       class(equations_t), intent(inout) :: eq
       integer(ik) :: end, flow_to(eq%layout%n_cells), i, k
@@ -393,7 +394,7 @@ contains
       end associate
    end subroutine find_kinds
 
-   !> Contact by pivoting, from where the step started.
+   !> Initial guess by pivoting, from the start of the step.
    subroutine restart(self, x, has_start)
       class(equations_t), intent(inout) :: self
       real(rk), intent(inout) :: x(:)  !< [Pa]

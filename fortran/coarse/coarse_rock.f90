@@ -21,8 +21,8 @@ module coarse_rock
    public :: any_differ, make_room, mean_mobility, mean_solid, new_rock, number_stiffnesses
    public :: resistivity_of, rock_t, set_solid, shear_beside, solid_t
 
-   !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants. The lists hold one
-   !! item if the rock is uniform, else one per cell: what cell c has is at min(c, size).
+   !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants. Arrays have one item
+   !! for uniform rock, else one per cell: that of cell c is at min(c, size).
    type :: rock_t
       real(rk), allocatable :: shear(:)  !< shear modulus G [Pa]
       real(rk), allocatable :: lame(:)  !< first Lame constant, reduced for plane stress [Pa]
@@ -35,8 +35,8 @@ module coarse_rock
       ! (.., 1) of a uniform rock, (.., n_cells) where regions differ (coarse_permeability):
       real(rk), allocatable :: permeability(:, :)  !< (3, ..) K_xx, K_yy, K_xy [m2]
       real(rk), allocatable :: resistivity(:, :, :)  !< (2, 2, ..) inverse of K/mu [Pa s/m2]
-      !> How much better a cell that outlines of regions cut conducts along them than across, at the
-      !! most, and which one; 0: no cell is cut.
+      !> Largest ratio of the permeabilities along and across layers in a cell cut by outlines of
+      !! regions, and this cell; 0: no cell is cut.
       real(rk) :: most_layered = 0.0_rk
       integer(ik) :: most_layered_cell = 0
    contains
@@ -138,7 +138,7 @@ contains
                       storage=self%storage(at), stiffness=self%stiffness(at))
    end function solid_at
 
-   !> Number the rocks such that those of one stiffness have one number.
+   !> Number the rocks by stiffness.
    pure subroutine number_stiffnesses(solid)
       type(solid_t), intent(inout) :: solid(:)
       integer(ik) :: i, k
@@ -155,7 +155,7 @@ contains
       end do
    end subroutine number_stiffnesses
 
-   !> Regions have other stiffness or storage than the rock around.
+   !> Whether regions differ in stiffness or storage from the surrounding rock.
    pure logical function any_differ(solid)
       type(solid_t), intent(in) :: solid(:)
 
@@ -164,7 +164,7 @@ contains
                    any(abs(solid%storage - solid(1)%storage) > 0.0_rk)
    end function any_differ
 
-   !> Let each cell have constants of its own.
+   !> Allocate separate constants for each cell.
    pure subroutine make_room(n_cells, rock)
       integer(ik), intent(in) :: n_cells
       type(rock_t), intent(inout) :: rock
@@ -174,7 +174,7 @@ contains
                 rock%storage(n_cells), rock%stiffness(n_cells))
    end subroutine make_room
 
-   !> The constants of a cell from its parts.
+   !> Set the constants of a cell from its parts.
    pure subroutine set_solid(part, solid, cell, rock)
       real(rk), intent(in) :: part(:)  !< area in each rock [m2]
       type(solid_t), intent(in) :: solid(:)  !< those rocks
@@ -194,7 +194,7 @@ contains
       rock%stiffness(cell) = own%stiffness
    end subroutine set_solid
 
-   !> The mean of what stress and pressure make of strain and content.
+   !> Constants of the mean strain and fluid content at uniform stress and pressure.
    pure type(solid_t) function mixed(part, solid) result(mean)
       real(rk), intent(in) :: part(:)  !< [-]
       type(solid_t), intent(in) :: solid(:)
@@ -211,7 +211,7 @@ contains
       mean%stiffness = solid(maxloc(part, dim=1))%stiffness
    end function mixed
 
-   !> Some cells in equal parts.
+   !> Mean rock of some cells in equal parts.
    pure type(solid_t) function mean_solid(rock, cells) result(mean)
       type(rock_t), intent(in) :: rock
       integer(ik), intent(in) :: cells(:)
@@ -230,7 +230,7 @@ contains
       end if
    end function mean_solid
 
-   !> The shear modulus beside each fracture cell, of both sides as mean_solid has it [Pa].
+   !> Shear modulus of the rock on both sides of each fracture cell (mean_solid) [Pa].
    pure function shear_beside(rock, mesh) result(shear)
       type(rock_t), intent(in) :: rock
       type(mesh_t), intent(in) :: mesh

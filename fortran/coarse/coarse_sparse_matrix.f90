@@ -66,7 +66,7 @@ contains
 
    end subroutine assemble_rock
 
-   !> Those of the fractures.
+   !> The equations of the fractures as triplets.
    subroutine assemble_rows(condensed, slopes, col_scale, row_scale, row_factor, row, col, values)
       type(condensed_t), intent(in) :: condensed
       type(slopes_t), intent(in) :: slopes
@@ -105,7 +105,7 @@ contains
          values(n) = value*col_scale(j)
       end subroutine add
 
-      !> A force, as the sum over the cells around.
+      !> Add a force, as the sum over the surrounding cells.
       subroutine add_force(i, force, weight)
          integer(ik), intent(in) :: i, force
          real(rk), intent(in) :: weight
@@ -134,7 +134,7 @@ contains
       real(rk), intent(in) :: col_scale(:)  !< of the fractures' unknowns
       real(rk), intent(inout) :: values(:)
       real(rk), intent(out) :: row_scale(:)  !< largest coefficient by such an unknown, unscaled
-      real(rk), intent(out) :: row_factor(:)  !< what the equations are multiplied by
+      real(rk), intent(out) :: row_factor(:)  !< factors of the equations
       integer(ik) :: k
 
       row_scale = 0.0_rk

@@ -35,8 +35,8 @@ module coarse_sparse_step
    integer(ik), parameter :: most_kept = 32  !< directions
    integer(ik), parameter :: estimate_every = 10  !< factorizations
    real(rk), parameter :: reduction = 1.0e-8_rk  !< of the residuals
-   real(rk), parameter :: most = 1.0e-11_rk  !< of the stress scale: no more is left
-   real(rk), parameter :: least = 1.0e-13_rk  !< of the stress scale: less is not asked for
+   real(rk), parameter :: most = 1.0e-11_rk  !< of the stress scale, the largest tolerance
+   real(rk), parameter :: least = 1.0e-13_rk  !< of the stress scale, the least tolerance
 
    type :: sparse_step_t
       private
@@ -101,7 +101,8 @@ contains
       quality%rest = maxval(abs(left)/self%row_scale)/stress_scale
    end subroutine find_step
 
-   !> There are none, those of another time step, or of other contact at too many points.
+   !> Whether there are no factors, those of another time step, or too many points have changed
+   !! their state.
    pure logical function needs_factors(self, condensed, slopes)
       class(sparse_step_t), intent(in) :: self
       type(condensed_t), intent(in) :: condensed
@@ -351,7 +352,7 @@ contains
       end if
    end subroutine solve
 
-   !> Give all memory back.
+   !> Release all memory.
    subroutine release(self)
       class(sparse_step_t), intent(inout) :: self
 

@@ -27,8 +27,8 @@ module coarse_well_flow
 
 contains
 
-   !> The equation of a well, and its part in the balances of what it feeds, which must be there
-   !! already.
+   !> The equation of a well, and its terms in the balances of the cells and joints that it
+   !! supplies, which must be set already.
    pure subroutine fill_well(w, x, eq)
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -65,8 +65,8 @@ contains
       end do
    end subroutine fill_well
 
-   !> Which of the conditions holds: control_rate, control_pressure, or control_shut where nothing
-   !! goes into the well.
+   !> The active condition: control_rate, control_pressure, or control_shut without flow into the
+   !! well.
    pure integer(ik) function condition_of(w, eq, flow, head) result(condition)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
@@ -88,7 +88,7 @@ contains
       end associate
    end function condition_of
 
-   !> Its residual, and its derivatives.
+   !> Residual of the active condition, and its derivatives.
    pure subroutine find_residual(w, eq, flow, head, residual, per_flow, per_head)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
@@ -116,8 +116,8 @@ contains
       end associate
    end subroutine find_residual
 
-   !> What a well does in a solution. What its equation gives is not left to rounding: else flows of
-   !! wells that are shut would be followed in time.
+   !> Flow, head and rate of a well in a solution. Prescribed values are exact: flows of shut wells
+   !! of the size of rounding errors would otherwise affect the time steps.
    pure subroutine find_well(w, x, eq, flow, head, rate)
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -191,7 +191,8 @@ contains
       slope = -3.0_rk*resistance/aperture*slope
    end subroutine half_cell
 
-   !> How the resistance of half a cell follows its opening, and its pressure if the fluid does.
+   !> Derivatives of the resistance of half a cell by its opening, and by its pressure with a fluid
+   !! law.
    pure subroutine add_opening(w, i, x, per_head, eq)
       integer(ik), intent(in) :: w
       integer(ik), intent(in) :: i  !< cell

@@ -39,24 +39,24 @@ module coarse_wells
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
       real(rk), allocatable :: turbulence(:)  !< (n_all) and per its square [Pa s2/m4]
-      !> (n_all) in situ, beyond which its pressures count; unallocated: 0 [Pa]
+      !> (n_all) pressure in situ, to which pressures are relative; unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
       ! In the present step:
       integer(ik), allocatable :: control(:)  !< (n_all)
-      real(rk), allocatable :: rate(:)  !< (n_all) asked for; negative: extraction [m2/s]
-      real(rk), allocatable :: pressure(:)  !< (n_all) asked for, or the limit [Pa]
+      real(rk), allocatable :: rate(:)  !< (n_all) prescribed; negative: extraction [m2/s]
+      real(rk), allocatable :: pressure(:)  !< (n_all) prescribed, or the limit [Pa]
    contains
       procedure :: lost
       procedure :: is_at_limit
    end type wells_t
 
-   !> The last ones of all controlled wells (wells_t).
+   !> Pressure-controlled wells in the rock, the last ones of wells_t.
    type :: rock_wells_t
       integer(ik) :: n = 0
       integer(ik), allocatable :: cell(:)  !< (n)
       real(rk), allocatable :: index(:)  !< (n) flow per p_w - p_c [m2/(Pa s)]
       real(rk), allocatable :: source(:)  !< (n) q of the step where p_c is 0 [m2/s]
-      !> (n) what q loses per p_c, as the matrix has it [m2/(Pa s)]
+      !> (n) decrease of q per p_c, part of the matrix [m2/(Pa s)]
       real(rk), allocatable :: conductance(:)
       real(rk), allocatable :: rock(:)  !< (n) entries of the matrix without wells [m2/(Pa s)]
       !> (n) control that is tried: control_shut, _rate or _pressure
@@ -70,7 +70,7 @@ module coarse_wells
 
 contains
 
-   !> Pressure that a flow loses on its way through the well, and its derivative.
+   !> Pressure loss in the well at a flow, and its derivative.
    pure subroutine lost(self, well, flow, pressure, slope)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well
@@ -82,7 +82,7 @@ contains
       slope = self%friction(well) + 2.0_rk*self%turbulence(well)*abs(flow)
    end subroutine lost
 
-   !> A limited well has the pressure of its limit, and less than its rate.
+   !> Whether a limited well is at its pressure limit, with less than its rate.
    pure logical function is_at_limit(self, well, rate, head)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well
@@ -169,7 +169,7 @@ contains
       end do
    end subroutine set_terms
 
-   !> What flows at the cells' pressures.
+   !> Flows, heads and rates at the pressures of the cells.
    pure subroutine find_flows(self, wells, dt, head_before, pressure, flow, head, rate)
       class(rock_wells_t), intent(in) :: self
       type(wells_t), intent(in) :: wells

@@ -120,7 +120,7 @@ contains
       call links%complete(step)
    end subroutine find_step
 
-   !> Whether enough equations have a factor for being solved apart.
+   !> Whether separate elimination of the equations with a factor is worthwhile.
    pure logical function is_worth(factor)
       real(rk), intent(in) :: factor(:)  !< see solve_by_parts
       integer(ik), parameter :: many = 32
@@ -130,7 +130,8 @@ contains
       is_worth = n >= many .and. 2*n >= size(factor)
    end function is_worth
 
-   !> What makes an equation that one traction alone decides that of the symmetric S; otherwise 0.
+   !> The factor with which an equation that contains one traction alone becomes that of the
+   !! symmetric S; otherwise 0.
    pure real(rk) function factor_of(self, equation)
       class(contact_pairs_t), intent(in) :: self
       integer(ik), intent(in) :: equation  !< n, tau pair by pair
@@ -179,7 +180,7 @@ contains
       total = dot_product(abs(slope), abs(x))
    end function size_of_terms
 
-   !> How far the pairs are from the law itself where last evaluated, over the stress scale [-].
+   !> Violation of the contact law at the last evaluation, over the stress scale [-].
    pure real(rk) function law_residual(self, x) result(worst)
       class(contact_pairs_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< (2 n) where last evaluated [Pa]
@@ -211,9 +212,9 @@ contains
       obeys_law = self%law_residual(x) <= tolerance
    end function obeys_law
 
-   !> The solution by complementary pivoting, on a foundation far softer than the body, whose share
-   !! the iteration takes away again. Where pivoting has no guarantee and fails: the faces without
-   !! jumps, on that foundation.
+   !> Initial guess by complementary pivoting, on a foundation far softer than the body, which the
+   !! iteration removes again. If pivoting fails, where it is not guaranteed: the faces without
+   !! jumps, on the foundation.
    subroutine restart(self, x, has_start)
       class(contact_pairs_t), intent(inout) :: self
       real(rk), intent(inout) :: x(:)  !< (2 n) [Pa]
@@ -243,7 +244,7 @@ contains
       has_start = .true.
    end subroutine restart
 
-   !> Without the foundation.
+   !> Remove the foundation.
    subroutine end_restart(self)
       class(contact_pairs_t), intent(inout) :: self
 

@@ -37,7 +37,7 @@ contains
       allocate (boundary%sprung(2, fine%n_nodes), source=.false.)
    end function clamped_boundary
 
-   !> Nothing given yet: the body floats.
+   !> No displacement prescribed: a free body.
    pure function free_boundary(fine) result(boundary)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t) :: boundary
@@ -57,7 +57,7 @@ contains
       call mark_side(fine, side, boundary%prescribed(component, :))
    end subroutine hold_side
 
-   !> Count the springs of a side, part of the elements' stiffness, as what holds the body.
+   !> Mark the nodes of a side as supported by springs, which are part of the elements' stiffness.
    pure subroutine stand_on_springs(fine, side, component, boundary)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
@@ -177,8 +177,8 @@ contains
       end if
    end subroutine check_boundary
 
-   !> Refuse a body, or a piece of it, that could move as a rigid one: what has no given
-   !! displacements or springs that exclude it has no unique solution.
+   !> Raise an error if the body or a part of it has a rigid-body motion that no prescribed
+   !! displacements or springs exclude: the solution is not unique.
    pure subroutine check_support(fine, boundary, bonds, error)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
@@ -193,9 +193,11 @@ contains
                        "its boundary")
    end subroutine check_support
 
-   !> Find a piece of the body that the given displacements and springs leave a rigid motion.
+   !> Find a part of the body with a rigid-body motion that no prescribed displacements or springs
+   !! exclude.
    !!
-   !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
+   !! Parts are groups of elements that share nodes; `bonds` joins the nodes that face conditions
+   !! tie.
    pure subroutine find_loose(fine, boundary, bonds, place)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary

@@ -10,7 +10,7 @@ module fine_elements
 
    public :: pattern_of, pattern_t, tied_elements_t
 
-   !> Which unknowns occur together.
+   !> Unknowns of the elements in blocks.
    type :: pattern_t
       integer(ik), allocatable :: first_unknown(:)  !< (blocks + 1)
       type(lists_t) :: blocks  !< of each element
@@ -19,7 +19,7 @@ module fine_elements
       procedure :: is_same_as
    end type pattern_t
 
-   !> The matrices of a body's elements.
+   !> Matrices of the elements of a body.
    type, extends(element_matrices_t) :: tied_elements_t
       integer(ik), pointer, contiguous :: cell_nodes(:, :) => null()  !< (6, n_cells)
       real(rk), pointer, contiguous :: stiffness(:, :, :) => null()  !< (12, 12, n_cells) [Pa]
@@ -40,7 +40,7 @@ contains
       pattern%kept = constraints%kept_dofs
    end function pattern_of
 
-   !> The same unknowns occur in the same elements.
+   !> Whether two patterns are the same.
    pure logical function is_same_as(self, other)
       class(pattern_t), intent(in) :: self, other
 
@@ -56,7 +56,7 @@ contains
                    .and. all(self%kept == other%kept)
    end function is_same_as
 
-   !> Blocks of unknowns that follow each other and move the same nodes, those in contact apart.
+   !> Blocks of consecutive unknowns that move the same nodes, those in contact separate.
    pure subroutine find_blocks(constraints, first_unknown)
       type(constraints_t), intent(in) :: constraints
       integer(ik), allocatable, intent(out) :: first_unknown(:)  !< (blocks + 1)

@@ -1,4 +1,4 @@
-!> How far a solution is from the truth, in energy, and how fine a mesh would have to be.
+!> Error estimates of a solution in the energy norm, and element sizes for a prescribed error.
 !!
 !! The error of an element is estimated by the energy of the difference between its stress and the
 !! recovered one (Zienkiewicz and Zhu 1987, 1992), the energy norm of a stress being the root of
@@ -42,8 +42,8 @@ module fine_error
 
 contains
 
-   !> Compare the stresses of the elements with the recovered ones. Elements may be left out: those
-   !! near a point load, whose energy is infinite in truth.
+   !> Compare the stresses of the elements with the recovered ones. Elements may be left out, such
+   !! as those near a point load, where the exact energy is infinite.
    subroutine estimate_error(model, displacement, recovery, estimate, left_out)
       type(fine_model_t), intent(in) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
@@ -192,7 +192,7 @@ contains
 
    contains
 
-      !> A change of size within what is trusted at once; no error at all lets sizes grow.
+      !> A change of size within the limits of one step; without error, sizes increase.
       pure real(rk) function within(change)
          real(rk), intent(in) :: change  !< new size over the old [-]
 
@@ -265,7 +265,8 @@ contains
       has_dual = all(model%conditions%condition == face_loaded)
    end function has_dual
 
-   !> Add what K_I and K_II lack to their corrected values, and its magnitude to their errors.
+   !> Add the estimated errors of K_I and K_II to the corrected values, and their magnitudes to the
+   !! error estimates.
    subroutine correct_intensity(model, displacement, recovery, probe, intensity, error)
       type(fine_model_t), intent(inout) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]

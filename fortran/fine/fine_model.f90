@@ -88,8 +88,8 @@ contains
       end do
    end subroutine set_mesh
 
-   !> Take the order of elimination that another body's mesh has, whose nodes may lie elsewhere.
-   !! That one has to be set up again.
+   !> Take over the order of elimination of another body, whose mesh differs only in the positions
+   !! of its nodes. The other body must be set up again.
    subroutine take_order(self, from)
       class(fine_model_t), intent(inout) :: self
       type(fine_model_t), intent(inout) :: from
@@ -232,8 +232,8 @@ contains
       end if
    end subroutine solve
 
-   !> Displacements that nodal forces alone cause, where no face touches another: all displacements
-   !! and jumps that are given are 0.
+   !> Displacements under nodal forces alone, without faces in contact: all prescribed displacements
+   !! and jumps are 0.
    subroutine influence(self, force, displacement, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
@@ -256,7 +256,7 @@ contains
       end if
    end subroutine influence
 
-   !> Add what the forces do to the given part of the displacements.
+   !> Add the displacements of the free unknowns to the prescribed ones.
    subroutine solve_free_part(self, force, given_jump, displacement, contact, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
@@ -288,7 +288,7 @@ contains
       call show_closing(self%mesh, self%contact_problem, displacement, contact)
    end subroutine solve_free_part
 
-   !> The unknowns from their loads, by way of the condensed system where faces touch.
+   !> Unknowns from their loads, with faces in contact by the condensed system.
    subroutine solve_unknowns(self, given_jump, contact, x, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
@@ -321,7 +321,7 @@ contains
       call self%solver%expand([jump, loose], x(:, 1), error)
    end subroutine solve_unknowns
 
-   !> Where a fracture cell is, for messages; empty if there is none.
+   !> Place of a fracture cell for messages; empty for cell 0.
    pure function cell_place(fracture, cell) result(words)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: cell
@@ -334,7 +334,7 @@ contains
       words = ", most of all at ("//brief_text(middle(1), 4)//", "//brief_text(middle(2), 4)//") m"
    end function cell_place
 
-   !> Where a piece is that nothing but contact holds, for messages; empty if there is none.
+   !> Place of a part that is held only by contact, for messages; empty if there is none.
    pure function loose_place(self) result(words)
       class(fine_model_t), intent(in) :: self
       character(len=:), allocatable :: words, place
@@ -374,7 +374,7 @@ contains
       end do
    end function strain_energy
 
-   !> Forces on the nodes of an element that strain it as it is, without pore pressure.
+   !> Nodal forces of the strain of an element, without pore pressure.
    pure function element_forces(self, displacement, cell) result(force)
       class(fine_model_t), intent(in) :: self
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]

@@ -19,7 +19,7 @@ module fine_patches
    integer(ik), parameter :: n_terms = 6  !< of a full quadratic
    integer(ik), parameter :: smallest_patch = 4  ! elements: 12 points for 6 terms
 
-   !> Elastic stresses at points of all elements, and who is whose neighbour.
+   !> Elastic stresses at points of all elements, and the neighbours of each element.
    type :: samples_t
       real(rk), allocatable :: xy(:, :, :)  !< (2, n_samples, n_cells) [m]
       real(rk), allocatable :: stress(:, :, :)  !< (xx yy xy, n_samples, n_cells) [Pa]
@@ -143,8 +143,8 @@ contains
       term = [1.0_rk, xy(1), xy(2), xy(1)**2, xy(1)*xy(2), xy(2)**2]
    end function quadratic_terms
 
-   !> The quadratics that come closest to values at points, by least squares. Where the points
-   !! leave a quadratic undetermined it is reduced to a linear function, or to their mean.
+   !> Least-squares fit of quadratics to values at points. If the points do not determine a
+   !! quadratic, it is reduced to a linear function, or to the mean.
    subroutine fit_quadratic(xy, values, coefficients)
       real(rk), intent(in) :: xy(:, :)  !< (2, n) from the node, in units of the patch's size [-]
       real(rk), intent(in) :: values(:, :)  !< (xx yy xy, n) [Pa]
