@@ -35,26 +35,13 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(coupling_t), intent(out) :: coupling
       real(rk) :: block(3, 3)
-      integer(ik) :: entry, i, j, n_rows
-      integer(ik), allocatable :: n_blocks(:), next(:)
+      integer(ik) :: entry, i, j
+      integer(ik), allocatable :: next(:)
 
-      allocate (n_blocks(matrix%n_cells + 1:matrix%n_blocks), source=0_ik)
-      do i = matrix%n_cells + 1, matrix%n_blocks
-         n_blocks(i) = n_blocks(i) + matrix%columns%length(i)
-         do entry = matrix%columns%first(i), matrix%columns%last(i) - 1
-            j = matrix%columns%item(entry)
-            if (j > matrix%n_cells) n_blocks(j) = n_blocks(j) + 1
-         end do
-      end do
       coupling%n_bulk = 3*matrix%n_cells
-      n_rows = 3*(matrix%n_blocks - matrix%n_cells)
-      allocate (coupling%first(n_rows + 1))
-      coupling%first(1) = 1
-      do i = 1, n_rows
-         coupling%first(i + 1) = coupling%first(i) + 3*n_blocks(matrix%n_cells + (i + 2)/3)
-      end do
-      next = coupling%first(:n_rows)
-      allocate (coupling%col(coupling%first(n_rows + 1) - 1))
+      coupling%first = first_entries(matrix)
+      next = coupling%first(:size(coupling%first) - 1)
+      allocate (coupling%col(coupling%first(size(coupling%first)) - 1))
       allocate (coupling%value(size(coupling%col)))
       do i = matrix%n_cells + 1, matrix%n_blocks
          do entry = matrix%columns%first(i), matrix%columns%last(i)
@@ -97,6 +84,29 @@ contains
       end function turn
 
    end subroutine find_coupling
+
+   !> Where the entries of each row of C and D begin, and where those of the last one end.
+   pure function first_entries(matrix) result(first)
+      type(matrix_t), intent(in) :: matrix
+      integer(ik), allocatable :: first(:)  !< (rows + 1)
+      integer(ik), allocatable :: n_blocks(:)
+      integer(ik) :: entry, i, j, n_rows
+
+      allocate (n_blocks(matrix%n_cells + 1:matrix%n_blocks), source=0_ik)
+      do i = matrix%n_cells + 1, matrix%n_blocks
+         n_blocks(i) = n_blocks(i) + matrix%columns%length(i)
+         do entry = matrix%columns%first(i), matrix%columns%last(i) - 1
+            j = matrix%columns%item(entry)
+            if (j > matrix%n_cells) n_blocks(j) = n_blocks(j) + 1
+         end do
+      end do
+      n_rows = 3*(matrix%n_blocks - matrix%n_cells)
+      allocate (first(n_rows + 1))
+      first(1) = 1
+      do i = 1, n_rows
+         first(i + 1) = first(i) + 3*n_blocks(matrix%n_cells + (i + 2)/3)
+      end do
+   end function first_entries
 
    !> C b + D q.
    pure subroutine forces(self, b, q, force)

@@ -214,7 +214,7 @@ contains
       call condensed%coupling%forces(all(:n, 1), x(slopes%x_of_q)*slopes%q_per_x, force)
    end subroutine precondition
 
-   !> Factors of the system with the rows of now.
+   !> Factorize the system with the present equations.
    subroutine renew(self, condensed, slopes, is_flow, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
@@ -225,22 +225,7 @@ contains
       real(rk), allocatable :: values(:)
       logical :: is_known
 
-      is_known = allocated(self%row)
-      if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
-      if (.not. is_known .or. self%of /= condensed%factorizations) then
-         call assemble_rock(condensed, slopes, self%col_scale, row, col, values)
-         if (is_known) is_known = size(row) == self%n_rock
-         if (is_known) is_known = all(self%row(:self%n_rock) == row)
-         if (is_known) is_known = all(self%col(:self%n_rock) == col)
-         if (is_known) then
-            self%values(:size(values)) = values
-         else
-            call move_alloc(row, self%row)
-            call move_alloc(col, self%col)
-            call move_alloc(values, self%values)
-            self%n_rock = size(self%row, kind=ik)
-         end if
-      end if
+      call renew_rock(self, condensed, slopes, is_known)
       self%is_ready = .false.
       call assemble_rows(condensed, slopes, self%col_scale, self%row_scale, self%row_factor, row, &
                          col, values)
@@ -276,6 +261,32 @@ contains
           self%factorizations < self%estimated_at + estimate_every) return
       call estimate_condition(self, condensed, slopes, is_flow, error)
    end subroutine renew
+
+   !> Assemble the equations of the cells, if those of another factorization are stored.
+   subroutine renew_rock(self, condensed, slopes, is_known)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      logical, intent(out) :: is_known  !< their pattern is that of the last analysis
+      integer(ik), allocatable :: col(:), row(:)
+      real(rk), allocatable :: values(:)
+
+      is_known = allocated(self%row)
+      if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
+      if (is_known .and. self%of == condensed%factorizations) return
+      call assemble_rock(condensed, slopes, self%col_scale, row, col, values)
+      if (is_known) is_known = size(row) == self%n_rock
+      if (is_known) is_known = all(self%row(:self%n_rock) == row)
+      if (is_known) is_known = all(self%col(:self%n_rock) == col)
+      if (is_known) then
+         self%values(:size(values)) = values
+      else
+         call move_alloc(row, self%row)
+         call move_alloc(col, self%col)
+         call move_alloc(values, self%values)
+         self%n_rock = size(self%row, kind=ik)
+      end if
+   end subroutine renew_rock
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
    !! transpose: the norms of both that matrix and its inverse, estimated; of the inverse without
