@@ -151,7 +151,7 @@ contains
                             rotation(k))
          free(k) = rotation_is_free(regions, regions%region_of_node(mesh%cell_nodes(k, cell)))
       end do
-      ! A loaded corner of the body knows no rotation: take the cell's other corners'.
+      ! A corner with prescribed tractions has no rotation: that of the cell's other corners counts.
       if (any(free) .and. .not. all(free)) then
          rotation = merge(sum(rotation, mask=.not. free)/real(count(.not. free), rk), rotation, &
                           free)

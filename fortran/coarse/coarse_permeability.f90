@@ -33,12 +33,12 @@ module coarse_permeability
    public :: bearable, conduction_t, layered, mean_of_regions, place_regions
    public :: relative_resistance, share_of_cell
 
-   !> How a rock conducts, each xx, yy, xy.
+   !> Permeability and resistivity of a rock, each xx, yy, xy.
    type :: conduction_t
       real(rk) :: permeability(3) = 0.0_rk  !< [m2]
       real(rk) :: resistivity(3) = 0.0_rk  !< [Pa s/m2]
-      !> Of a cell with several rocks: how much better they conduct along their layers than across,
-      !! also where the cell is taken for less than that (`bearable`).
+      !> Of a cell with several rocks: ratio of the permeabilities along and across the layers,
+      !! before the limit of `bearable`.
       real(rk) :: layering = 0.0_rk
    end type conduction_t
 
@@ -46,7 +46,7 @@ module coarse_permeability
 
 contains
 
-   !> Give each cell of the mesh its rock.
+   !> Set the rock of each cell of the mesh.
    pure subroutine place_regions(mesh, regions, domain, fluid, rock)
       type(mesh_t), intent(in) :: mesh
       type(region_t), intent(in) :: regions(:)
@@ -104,7 +104,7 @@ contains
       conduction%resistivity = [resistivity(1, 1), resistivity(2, 2), resistivity(1, 2)]
    end function conduction
 
-   !> The mean over each cell of what the scene's rock and each region have.
+   !> Mean over each cell of a property of the scene's rock and of each region.
    pure function mean_of_regions(mesh, regions, domain, values) result(mean)
       type(mesh_t), intent(in) :: mesh
       type(region_t), intent(in) :: regions(:)
@@ -144,7 +144,7 @@ contains
       end do
    end function relative_resistance
 
-   !> What a cell has of each region, from the last one, which counts most, to the rock around.
+   !> Areas of a cell in each region and in the surrounding rock; later regions have priority.
    pure subroutine parts_of_cell(cell, outlines, part, along)
       real(rk), intent(in) :: cell(2, 3)  !< corners, counter-clockwise [m]
       type(outline_t), intent(in) :: outlines(:)
@@ -203,8 +203,8 @@ contains
       if (is_mixed) mixed = bearable(mixed, viscosity)
    end function mixed_conduction
 
-   !> The same, or if it conducts more than `most_anisotropic` times better along than across, less
-   !! well along: by most_anisotropic**2 over this ratio, or as well as across.
+   !> Limit the conduction along layers: if the ratio along and across exceeds `most_anisotropic`,
+   !! it becomes most_anisotropic**2 over this ratio, at least 1.
    pure function bearable(layers, viscosity) result(limited)
       type(conduction_t), intent(in) :: layers
       real(rk), intent(in) :: viscosity  !< [Pa s]
@@ -227,7 +227,7 @@ contains
       limited%resistivity = resistance*([1.0_rk, 1.0_rk, 0.0_rk] + (1.0_rk/ratio - 1.0_rk)*dyad)
    end function bearable
 
-   !> The part of a cell in a region, and a line with the region on its left that cuts it off.
+   !> Share of a cell in a region, and a line that cuts it off, with the region on its left.
    pure subroutine share_of_cell(cell, outline, share, line)
       real(rk), intent(in) :: cell(2, 3)  !< corners, counter-clockwise [m]
       real(rk), intent(in) :: outline(:, :)  !< corners of the region, counter-clockwise [m]
@@ -253,7 +253,7 @@ contains
       line(:, 2) = line(:, 1) + along
    end subroutine share_of_cell
 
-   !> An edge of the outline comes near the cell: their boxes overlap.
+   !> Whether the bounding box of an edge of the outline overlaps that of the cell.
    pure logical function may_cut(outline, cell)
       real(rk), intent(in) :: outline(:, :), cell(2, 3)  !< [m]
       real(rk) :: high(2), low(2)
@@ -271,8 +271,8 @@ contains
       may_cut = .false.
    end function may_cut
 
-   !> The direction of the outline within a cell, the region on its left: the principal one of the
-   !! edges that do not lie on the cell's own, so that both sides of a thin region count alike.
+   !> Direction of the outline within a cell, the region on its left: the principal direction of the
+   !! edges that do not lie on the cell's own, so that both sides of a thin region count equally.
    pure function mean_direction(cell, part) result(along)
       real(rk), intent(in) :: cell(2, 3)  !< [m]
       real(rk), intent(in) :: part(:, :)  !< what of the region lies in the cell [m]

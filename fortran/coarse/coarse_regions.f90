@@ -19,8 +19,8 @@ module coarse_regions
 
    public :: find_regions, fracture_end_region, regions_t, traction_face
 
-   !> What meets around each vertex (a list per region); and how tractions and fluxes there follow
-   !! from the unknowns, whose blocks are those of coarse_layout.
+   !> Nodes, faces and blocks around each vertex (a list per region), and the responses of tractions
+   !! and fluxes to the unknowns, whose blocks are those of coarse_layout.
    type :: regions_t
       integer(ik) :: n_regions = 0
       integer(ik) :: n_blocks = 0
@@ -197,7 +197,7 @@ contains
       end associate
    end function fracture_end_region
 
-   !> How many numbers the tractions and rotations of all regions are.
+   !> Number of tractions and rotations of all regions.
    pure integer(ik) function traction_count(self)
       class(regions_t), intent(in) :: self
 

@@ -41,10 +41,10 @@ module coarse_stencils
 
    public :: discretize, renew_sides
 
-   !> What one vertex adds.
+   !> Contributions of one vertex.
    type :: stencil_t
       type(share_t) :: elastic, flow
-      integer(ik) :: info = 0  !< not 0: it has none (degenerate cells)
+      integer(ik) :: info = 0  !< not 0: none, since cells are degenerate
    end type stencil_t
 
    !> Vertices whose stencils are found one after another by one thread, and those that are kept
@@ -95,7 +95,7 @@ contains
       end do
    end subroutine discretize
 
-   !> Take other values on the sides, of the same kinds: what is known around the vertices there.
+   !> Update the values of the boundary conditions in the right-hand side; their kinds remain.
    subroutine renew_sides(mesh, rock, sides, regions, matrix, error, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
@@ -151,7 +151,7 @@ contains
       end do
    end subroutine find_stencils
 
-   !> The error of cells that no stencil can be found on.
+   !> Raise an error for degenerate cells around a node.
    subroutine refuse_place(xy, error)
       real(rk), intent(in) :: xy(2)  !< [m]
       type(error_t), allocatable, intent(out) :: error
@@ -161,7 +161,7 @@ contains
       call raise_error(error, "coarse_stencils", "degenerate cells around the mesh node at "//place)
    end subroutine refuse_place
 
-   !> Which blocks meet in some region.
+   !> Find the pattern of the matrix: blocks that share a region.
    subroutine find_pattern(mesh, regions, matrix)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(in) :: regions
@@ -201,7 +201,7 @@ contains
       allocate (matrix%flow_known(matrix%n_blocks), matrix%storage(mesh%n_cells), source=0.0_rk)
    end subroutine find_pattern
 
-   !> Add the shares of one region.
+   !> Add the contributions of one region to the matrix.
    pure subroutine add_region(regions, region, stencil, matrix)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
@@ -228,7 +228,7 @@ contains
       end do
    end subroutine add_region
 
-   !> Add what the boundary data of one region give.
+   !> Add the contributions of the boundary data of one region to the right-hand side.
    pure subroutine add_known(regions, region, stencil, matrix)
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
@@ -269,7 +269,7 @@ contains
       if (regions%has_interface(region)) call leave_out_repeated(n_tractions, local)
    end subroutine set_stress_equations
 
-   !> Take the factors of the rotations off the response of one region.
+   !> Divide the rotations in the response of one region by their factors.
    pure subroutine divide_rotations(doubled, response)
       real(rk), intent(in) :: doubled(:)
       type(response_t), intent(inout) :: response  !< tractions x, y [Pa], then rotations [-]
@@ -283,7 +283,7 @@ contains
       end do
    end subroutine divide_rotations
 
-   !> What the cells' corners around the vertex give.
+   !> Contributions of the corners of cells around the vertex.
    pure subroutine add_corners(mesh, rock, regions, region, local, doubled)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
@@ -328,8 +328,8 @@ contains
       end do
    end subroutine add_corners
 
-   !> Rotations whose equations, in the tractions that are not given, follow from those before:
-   !! fixed, so that the rotations before stand for them too.
+   !> Fix rotations whose equations, in the unknown tractions, depend linearly on those of previous
+   !! rotations.
    pure subroutine leave_out_repeated(n_tractions, local)
       integer(ik), intent(in) :: n_tractions
       type(local_system_t), intent(inout) :: local
@@ -403,7 +403,8 @@ contains
       matrix(col, row) = matrix(col, row) + value
    end subroutine add_symmetric
 
-   !> Outer boundary: a component is displaced as given, loaded as given, or both on a spring.
+   !> Outer boundary: each component has a prescribed displacement, a prescribed traction, or a
+   !! spring.
    pure subroutine apply_sides(mesh, sides, regions, region, local, in_situ)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
