@@ -99,7 +99,7 @@ contains
       end if
    end subroutine link_pair
 
-   !> The unknowns that stay.
+   !> Unknowns that are not linked.
    pure function kept_unknowns(self) result(numbers)
       class(links_t), intent(in) :: self
       integer(ik), allocatable :: numbers(:)
@@ -108,7 +108,7 @@ contains
       numbers = pack([(i, i=1, size(self%is_linked, kind=ik))],.not. self%is_linked)
    end function kept_unknowns
 
-   !> The equations that stay.
+   !> Equations that are not used by links.
    pure function kept_equations(self) result(numbers)
       class(links_t), intent(in) :: self
       integer(ik), allocatable :: numbers(:)
@@ -117,7 +117,7 @@ contains
       numbers = pack([(i, i=1, size(self%is_used, kind=ik))],.not. self%is_used)
    end function kept_equations
 
-   !> What the residuals of their own equations ask of the linked unknowns.
+   !> Set the constant parts of the links from the residuals of their equations.
    pure subroutine take_residual(self, residual)
       class(links_t), intent(inout) :: self
       real(rk), intent(in) :: residual(:)  !< (equations) [Pa]
@@ -132,7 +132,7 @@ contains
       end do
    end subroutine take_residual
 
-   !> Take the linked unknowns out of an equation.
+   !> Eliminate the linked unknowns from an equation.
    pure subroutine reduce(self, row, residual)
       class(links_t), intent(in) :: self
       real(rk), intent(inout) :: row(:)  !< derivatives by all unknowns [-]

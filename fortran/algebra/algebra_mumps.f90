@@ -81,6 +81,7 @@ module algebra_mumps
    !> One matrix with its factors. Not to be copied: the factors belong to the original.
    type :: mumps_t
       type(dmumps_struc) :: id
+      integer(ik) :: ordering = mumps_minimum_degree  !< or mumps_pord, of the next analysis
       logical :: active = .false.
       integer(ik) :: share = 0  !< its number among those that ranks share; 0: it is not shared
       integer(ik) :: n_schur = 0
@@ -102,15 +103,15 @@ contains
    !!
    !! One triangle of the matrix as triplets, or all of one that is not symmetric; entries given
    !! twice are added.
-   subroutine analyse(self, n, row, col, kind, error, schur, ordering, place)
+   subroutine analyse(self, n, row, col, kind, error, schur, place)
       class(mumps_t), intent(inout) :: self
       integer(ik), intent(in) :: n  !< number of unknowns
       integer(ik), intent(in) :: row(:), col(:)  !< (n_entries) from 1
       integer(ik), intent(in) :: kind  !< mumps_definite, _indefinite or _unsymmetric
       type(error_t), allocatable, intent(out) :: error
       integer(ik), intent(in), optional :: schur(:)  !< unknowns to condense onto, in this order
-      integer(ik), intent(in), optional :: ordering  !< mumps_minimum_degree, if absent, or _pord
-      !> (n) instead: the place of each unknown in a given order, those to condense onto last
+      !> (n) place of each unknown in a given order, the unknowns to condense onto last; absent: as
+      !! `ordering` says
       integer(ik), intent(in), optional :: place(:)
 
       call self%release()
@@ -124,8 +125,7 @@ contains
       self%id%icntl(4) = 0
       ! No permutation by values: they are not known yet when the order is chosen.
       self%id%icntl(6) = 0
-      self%id%icntl(7) = mumps_minimum_degree
-      if (present(ordering)) self%id%icntl(7) = ordering
+      self%id%icntl(7) = self%ordering
       if (present(place)) then
          self%id%icntl(7) = 1
          allocate (self%id%perm_in(n))
@@ -217,7 +217,7 @@ contains
       call check_status(self, "solution", error)
    end subroutine solve
 
-   !> The matrix as it was given.
+   !> The entries of the matrix, as set by `factorize`.
    subroutine get_entries(self, row, col, values)
       class(mumps_t), intent(in) :: self
       integer(ik), allocatable, intent(out) :: row(:), col(:)
@@ -242,8 +242,8 @@ contains
       call complete_lower(schur)
    end subroutine get_schur
 
-   !> Forward elimination: the right-hand side of the condensed system. What else follows from it
-   !! MUMPS keeps until `expand`; `rhs` may be changed on the way.
+   !> Forward elimination: the right-hand side of the condensed system. MUMPS keeps the rest of the
+   !! result until `expand`; `rhs` may be changed.
    subroutine condense(self, rhs, reduced, error)
       class(mumps_t), intent(inout) :: self
       !> (n) entries of the condensed unknowns included
@@ -277,7 +277,7 @@ contains
       call check_status(self, "expansion", error)
    end subroutine expand
 
-   !> Give all memory back.
+   !> Release all memory.
    subroutine release(self)
       class(mumps_t), intent(inout) :: self
 

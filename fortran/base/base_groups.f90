@@ -43,7 +43,7 @@ contains
       if (present(were_joined)) were_joined = roots(1) == roots(2)
    end subroutine join
 
-   !> The member that stands for a group; the way to it is halved for those who come after.
+   !> The representative of a group, with path halving.
    pure subroutine find(groups, member, root)
       type(groups_t), intent(inout) :: groups
       integer(ik), intent(in) :: member

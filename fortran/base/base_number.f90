@@ -171,7 +171,7 @@ contains
       end if
    end subroutine place_digits
 
-   !> Put a piece after the first `length` characters.
+   !> Append a text after the first `length` characters.
    pure subroutine append(text, length, piece)
       character(len=number_width), intent(inout) :: text
       integer, intent(inout) :: length

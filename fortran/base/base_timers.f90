@@ -32,14 +32,14 @@ module base_timers
                                                                "solve", "contact", "tips", &
                                                                "remesh", "transfer", "output"]
 
-   !> Whom long work tells that it goes on.
+   !> Receiver of notices during long computations.
    type, abstract :: listener_t
    contains
       procedure(hear_of_work), deferred :: hear
    end type listener_t
 
    abstract interface
-      !> One more piece of work begins. `ends`: it shall not, and nothing else either.
+      !> Called before a long computation; `ends` requests the end of the run.
       subroutine hear_of_work(self, ends)
          import :: listener_t
          implicit none(type, external)
@@ -80,8 +80,8 @@ contains
       allocate (self%running(8))
    end subroutine begin
 
-   !> A piece of work begins that may take some time, unless it shall not: then an interruption is
-   !! raised, and the caller leaves everything as after an error.
+   !> Notify the listener of a long computation. If it requests the end, an interruption is raised,
+   !! and the caller returns as after an error.
    subroutine heed(self, error)
       class(timers_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -154,7 +154,7 @@ contains
       end if
    end function wall_seconds
 
-   !> Add the stretch that ends now to the innermost phase.
+   !> Add the interval that ends now to the innermost phase.
    subroutine book(self)
       class(timers_t), intent(inout) :: self
       real(rk) :: now

@@ -11,19 +11,13 @@
 !!
 !! For many fracture cells S is not formed: its size grows with the square of their number, and the
 !! cost of its elimination with the cube. The rock is then factorized without its fractures, and S q
-!! costs one solution with these factors.
-!!
-!! The equations of the fracture cells in the matrix of the coarse level as sparse rows, in the
-!! directions n and tau of the fractures: the forces and volumes on the fractures, without
-!! elimination of the rest of the body,
-!!   force = C b + D q
-!! with b the unknowns of the cells and q those on the fractures (coarse_layout); C' is the
-!! contribution of the fractures to the equations of the cells.
+!! costs one solution with these factors (coarse_coupling).
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use coarse_coupling, only: coupling_t, find_coupling
    use coarse_factors, only: coarse_factors_t
-   use coarse_layout, only: at_component, condensed_layout, condensed_layout_t
+   use coarse_layout, only: condensed_layout_t
    use coarse_matrix, only: matrix_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -31,39 +25,26 @@ module coarse_condensed
 
    public :: condensed_t
 
-   !> C and D, row by row; columns of q stand after those of b.
-   type :: coupling_t
-      integer(ik) :: n_bulk = 0  !< unknowns of the cells
-      integer(ik), allocatable :: first(:)  !< (rows + 1) of each row's entries
-      integer(ik), allocatable :: col(:)
-      real(rk), allocatable :: value(:)  !< for [m], [Pa] and [N/m], [m2]
-   contains
-      procedure :: forces
-      procedure :: bulk_load
-      procedure :: diagonal
-      procedure :: sizes
-   end type coupling_t
-
    !> Factors of the matrix and the dense system on the fractures, for one mesh and one time step.
    type :: condensed_t
       real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
-      integer(ik) :: factorizations = 0  !< so far: what is made of one is not that of the next
+      integer(ik) :: factorizations = 0  !< number so far; identifies factors
       logical :: is_full = .true.  !< S is formed; to be chosen before the first factorization
       !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]; none unless full
       real(rk), allocatable :: stiffness(:, :)
       type(coupling_t) :: coupling  !< of the fractures with the rest; unless full
-      !> (3 n_cells) what the last q made of the cells, without loads; unless full [m], [m], [Pa]
+      !> (3 n_cells) response of the cells to the last q; unless full [m], [m], [Pa]
       real(rk), allocatable :: rock(:)
-      !> (6 n) diagonal of S where it has been asked for, else huge; unless full
+      !> (6 n) diagonal of S as far as it is known, else huge; unless full
       real(rk), allocatable :: diagonal(:)
       real(rk), allocatable :: body(:)  !< (6 n) its diagonal without springs [Pa]; if full
-      real(rk), allocatable :: spring(:)  !< (6 n) part of its diagonal that is not the body's [Pa]
+      real(rk), allocatable :: spring(:)  !< (6 n) springs, added to the diagonal [Pa]
       real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
       integer(ik) :: n = 0  !< fracture cells
       type(condensed_layout_t) :: layout  !< of q
       type(coarse_factors_t) :: factors
-      logical :: analysed = .false.  !< the mesh is known
+      logical :: analysed = .false.  !< whether the pattern of the mesh has been analysed
    contains
       procedure :: forget
       procedure :: factorize
@@ -76,13 +57,21 @@ module coarse_condensed
 
 contains
 
-   !> Begin anew with another mesh.
-   subroutine forget(self, is_full)
+   !> Begin with another mesh. By default S is formed where this costs less: its elimination grows
+   !! with the cube of the fracture cells, that of the sparse matrix with the cells to the power
+   !! 1.2, and growth and contact need about as many of both.
+   subroutine forget(self, mesh, condensation)
       class(condensed_t), intent(inout) :: self
-      logical, intent(in) :: is_full  !< whether S is to be formed
+      type(mesh_t), intent(in) :: mesh
+      character(len=*), intent(in) :: condensation  !< "auto", "full" or "sparse"
+      real(rk), parameter :: cells_per_square = 30.0_rk  ! where both cost the same, measured
 
       call self%factors%release()
-      self%is_full = is_full
+      associate (n => mesh%fracture%n_cells)
+         self%is_full = real(n, rk)**2 <= cells_per_square*mesh%n_cells
+         if (condensation /= "auto") self%is_full = condensation == "full"
+         self%is_full = self%is_full .or. n == 0
+      end associate
       self%analysed = .false.
       self%dt = -1.0_rk
    end subroutine forget
@@ -100,9 +89,8 @@ contains
       if (.not. self%analysed) then
          if (allocated(self%rock)) deallocate (self%rock)  ! of another mesh
          self%n = mesh%fracture%n_cells
-         self%layout = condensed_layout(self%n)
+         self%layout = condensed_layout_t(self%n)
          call find_frames(mesh, self%normal, self%length)
-         if (.not. self%is_full) call find_coupling(matrix, self%coupling)
          self%analysed = .true.
       end if
       if (self%is_full) then
@@ -112,7 +100,7 @@ contains
       else
          call self%factors%factorize(matrix, dt, error)
          if (allocated(error)) return
-         call find_coupling_values(matrix, self%normal, dt, self%coupling)
+         call find_coupling(matrix, self%normal, dt, self%coupling)
          self%spring = spread(0.0_rk, 1, self%layout%count())
          self%diagonal = spread(huge(1.0_rk), 1, self%layout%count())
       end if
@@ -133,14 +121,14 @@ contains
          all = reshape(rhs, [size(rhs)])*self%factors%scale
          call self%factors%condense(all, g, error)
          g = g/self%factors%scale(self%factors%at_fractures:)
-         call turn_to_normals(self, g)
+         call turn(self, g)
       else
          all = reshape(rhs, [size(rhs)])
          b = all(:self%coupling%n_bulk)
          call solve_rock(self, b, error)
          call self%coupling%forces(b, spread(0.0_rk, 1, size(g)), g)
          associate (own => all(self%factors%at_fractures:))
-            call turn_to_normals(self, own)
+            call turn(self, own)
             g = own - g
          end associate
       end if
@@ -164,7 +152,7 @@ contains
          return
       end if
       jumps = q
-      call turn_to_axes(self, jumps)
+      call turn(self, jumps)
       if (self%is_full) then
       call self%factors%expand(jumps/self%factors%scale(self%factors%at_fractures:), x(:, 1), error)
          x(:, 1) = x(:, 1)*self%factors%scale
@@ -198,8 +186,8 @@ contains
       end if
    end subroutine find_forces
 
-   !> Derivatives of the volumes of some faces by their own pressures, on the diagonal of S. They
-   !! have no springs.
+   !> Derivatives of the volumes of some faces by their own pressures: entries on the diagonal of S,
+   !! without springs.
    subroutine find_volume_slopes(self, at, slope, error)
       class(condensed_t), intent(inout) :: self
       integer(ik), intent(in) :: at(:)  !< numbers in q
@@ -217,7 +205,7 @@ contains
       end if
    end subroutine find_volume_slopes
 
-   !> Entries on the diagonal of S one by one, each from the answer of the rock to its unknown.
+   !> Find entries on the diagonal of S, each by one solution with the factors of the rock.
    subroutine find_diagonal(self, at, error)
       class(condensed_t), intent(inout) :: self
       integer(ik), intent(in) :: at(:)  !< numbers in q
@@ -276,7 +264,7 @@ contains
       associate (s => self%factors%scale(self%factors%at_fractures:), stiffness => self%stiffness)
          do i = 1, size(s)
             stiffness(:, i) = stiffness(:, i)/(s*s(i))
-            call turn_to_normals(self, stiffness(:, i))
+            call turn(self, stiffness(:, i))
          end do
          do cell = 1, self%n
             associate (n => self%normal(:, cell))
@@ -293,7 +281,7 @@ contains
       self%body = [(self%stiffness(i, i), i=1, size(self%spring))]
    end subroutine find_stiffness
 
-   !> Springs on the unknowns of q, instead of those so far.
+   !> Replace the springs on the unknowns of q.
    pure subroutine support(self, spring)
       class(condensed_t), intent(inout) :: self
       real(rk), intent(in) :: spring(:)  !< (6 n) [Pa]
@@ -307,8 +295,9 @@ contains
       self%spring = spring
    end subroutine support
 
-   !> Components x, y of jumps or forces become n, tau; tau is n turned by -90 degrees.
-   pure subroutine turn_to_normals(self, v)
+   !> Turn jumps or forces from x, y to n, tau of their fracture cells, or back: tau is n turned by
+   !! -90 degrees, and the turn is its own inverse.
+   pure subroutine turn(self, v)
       class(condensed_t), intent(in) :: self
       real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
       integer(ik) :: at, end, i
@@ -321,15 +310,7 @@ contains
             end do
          end associate
       end do
-   end subroutine turn_to_normals
-
-   !> Components n, tau become x, y: the turn is its own inverse.
-   pure subroutine turn_to_axes(self, v)
-      class(condensed_t), intent(in) :: self
-      real(rk), intent(inout) :: v(:)  !< (6 n) [m] or [N/m]; the pressures or volumes stay
-
-      call turn_to_normals(self, v)
-   end subroutine turn_to_axes
+   end subroutine turn
 
    !> Normal (from side + to side -) and length of each fracture cell.
    subroutine find_frames(mesh, normal, length)
@@ -348,179 +329,5 @@ contains
          normal(:, i) = [-tangent(2), tangent(1)]/length(i)
       end do
    end subroutine find_frames
-
-   !> Where the entries stand.
-   subroutine find_coupling(matrix, coupling)
-      type(matrix_t), intent(in) :: matrix
-      type(coupling_t), intent(out) :: coupling
-      integer(ik) :: entry, i, j, n_rows
-      integer(ik), allocatable :: n_blocks(:), next(:)
-
-      allocate (n_blocks(matrix%n_cells + 1:matrix%n_blocks), source=0_ik)
-      do i = matrix%n_cells + 1, matrix%n_blocks
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
-            j = matrix%columns%item(entry)
-            n_blocks(i) = n_blocks(i) + 1
-            if (j > matrix%n_cells .and. j < i) n_blocks(j) = n_blocks(j) + 1
-         end do
-      end do
-      coupling%n_bulk = 3*matrix%n_cells
-      n_rows = 3*(matrix%n_blocks - matrix%n_cells)
-      allocate (coupling%first(n_rows + 1), next(n_rows))
-      coupling%first(1) = 1
-      do i = 1, n_rows
-         coupling%first(i + 1) = coupling%first(i) + 3*n_blocks(matrix%n_cells + (i + 2)/3)
-      end do
-      next = coupling%first(:n_rows)
-      allocate (coupling%col(coupling%first(n_rows + 1) - 1))
-      allocate (coupling%value(size(coupling%col)), source=0.0_rk)
-      do i = matrix%n_cells + 1, matrix%n_blocks
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
-            j = matrix%columns%item(entry)
-            call place(i, j)
-            if (j > matrix%n_cells .and. j < i) call place(j, i)
-         end do
-      end do
-
-   contains
-
-      !> The entries of a block in the rows of another one.
-      subroutine place(of, block)
-         integer(ik), intent(in) :: of, block
-         integer(ik) :: a, c
-
-         do a = 1, 3
-            associate (row => at_component(of - matrix%n_cells, a))
-               do c = 1, 3
-                  coupling%col(next(row)) = at_component(block, c)
-                  next(row) = next(row) + 1
-               end do
-            end associate
-         end do
-      end subroutine place
-
-   end subroutine find_coupling
-
-   !> The numbers for a time step.
-   subroutine find_coupling_values(matrix, normal, dt, coupling)
-      type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: normal(:, :)  !< (2, fracture cells) [-]
-      real(rk), intent(in) :: dt  !< [s]
-      type(coupling_t), intent(inout) :: coupling
-      real(rk) :: numbers(3, 3)
-      integer(ik), allocatable :: next(:)
-      integer(ik) :: entry, i, j
-
-      next = coupling%first(:size(coupling%first) - 1)
-      do i = matrix%n_cells + 1, matrix%n_blocks
-         do entry = matrix%columns%first(i), matrix%columns%last(i)
-            j = matrix%columns%item(entry)
-            numbers = matrix%elastic(:, :, entry)
-            numbers(3, 3) = numbers(3, 3) + dt*matrix%flow(entry)
-            ! The diagonal block is given in full; turns are symmetric.
-            numbers = matmul(turn(i), numbers)
-            if (j > matrix%n_cells) numbers = matmul(numbers, turn(j))
-            call put(i, numbers)
-            if (j > matrix%n_cells .and. j < i) call put(j, transpose(numbers))
-         end do
-      end do
-
-   contains
-
-      subroutine put(of, numbers)
-         integer(ik), intent(in) :: of
-         real(rk), intent(in) :: numbers(3, 3)
-         integer(ik) :: a
-
-         do a = 1, 3
-            associate (row => at_component(of - matrix%n_cells, a))
-               coupling%value(next(row):next(row) + 2) = numbers(a, :)
-               next(row) = next(row) + 3
-            end associate
-         end do
-      end subroutine put
-
-      !> From x, y to n, tau of the fracture cell of a block, and back.
-      pure function turn(block) result(to_normal)
-         integer(ik), intent(in) :: block
-         real(rk) :: to_normal(3, 3)
-
-         associate (n => normal(:, (block - matrix%n_cells + 1)/2))
-            to_normal(:, 1) = [n(1), n(2), 0.0_rk]
-            to_normal(:, 2) = [n(2), -n(1), 0.0_rk]
-            to_normal(:, 3) = [0.0_rk, 0.0_rk, 1.0_rk]
-         end associate
-      end function turn
-
-   end subroutine find_coupling_values
-
-   !> C b + D q.
-   pure subroutine forces(self, b, q, force)
-      class(coupling_t), intent(in) :: self
-      real(rk), intent(in) :: b(:)  !< [m], [m], [Pa] cell by cell
-      real(rk), intent(in) :: q(:)  !< [m], [Pa]
-      real(rk), intent(out) :: force(:)  !< [N/m], [m2]
-      integer(ik) :: k, row
-      real(rk) :: total
-
-      do row = 1, size(force)
-         total = 0.0_rk
-         do k = self%first(row), self%first(row + 1) - 1
-            if (self%col(k) <= self%n_bulk) then
-               total = total + self%value(k)*b(self%col(k))
-            else
-               total = total + self%value(k)*q(self%col(k) - self%n_bulk)
-            end if
-         end do
-         force(row) = total
-      end do
-   end subroutine forces
-
-   !> C' q: what the fractures add to the equations of the cells.
-   pure subroutine bulk_load(self, q, load)
-      class(coupling_t), intent(in) :: self
-      real(rk), intent(in) :: q(:)  !< [m], [Pa]
-      real(rk), intent(out) :: load(:)  !< [N/m], [m2] cell by cell
-      integer(ik) :: k, row
-
-      load = 0.0_rk
-      do row = 1, size(q)
-         if (.not. abs(q(row)) > 0.0_rk) cycle
-         do k = self%first(row), self%first(row + 1) - 1
-            if (self%col(k) <= self%n_bulk) then
-               load(self%col(k)) = load(self%col(k)) + self%value(k)*q(row)
-            end if
-         end do
-      end do
-   end subroutine bulk_load
-
-   !> An entry of D's diagonal.
-   elemental real(rk) function diagonal(self, row)
-      class(coupling_t), intent(in) :: self
-      integer(ik), intent(in) :: row
-      integer(ik) :: k
-
-      diagonal = 0.0_rk
-      do k = self%first(row), self%first(row + 1) - 1
-         if (self%col(k) == self%n_bulk + row) diagonal = diagonal + self%value(k)
-      end do
-   end function diagonal
-
-   !> The sum of the sizes of the terms that a force consists of.
-   pure real(rk) function sizes(self, b, q, row) result(total)
-      class(coupling_t), intent(in) :: self
-      real(rk), intent(in) :: b(:), q(:)
-      integer(ik), intent(in) :: row
-      integer(ik) :: k
-
-      total = 0.0_rk
-      do k = self%first(row), self%first(row + 1) - 1
-         if (self%col(k) <= self%n_bulk) then
-            total = total + abs(self%value(k)*b(self%col(k)))
-         else
-            total = total + abs(self%value(k)*q(self%col(k) - self%n_bulk))
-         end if
-      end do
-   end function sizes
 
 end module coarse_condensed

@@ -43,7 +43,7 @@ contains
       call apply_sides(mesh, is_given, given, regions, region, local)
    end subroutine set_flux_equations
 
-   !> What the cells' corners around the vertex give.
+   !> Contributions of the corners of cells around the vertex.
    pure subroutine add_corners(mesh, resistivity, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
@@ -92,7 +92,7 @@ contains
       end do
    end subroutine add_fracture_faces
 
-   !> Outer boundary: the scalar is given, or the flux.
+   !> Outer boundary: the scalar or the flux is prescribed.
    pure subroutine apply_sides(mesh, is_given, given, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       logical, intent(in) :: is_given(:)  !< (sides)
@@ -133,7 +133,7 @@ contains
       call responses(region)%apply(around, flux)
    end subroutine region_fluxes
 
-   !> What leaves each cell through its faces.
+   !> Outflow of each cell through its faces.
    subroutine cell_outflow(mesh, regions, responses, scalars, outflow)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(in) :: regions

@@ -17,7 +17,7 @@ module coarse_factors
    use algebra_ordering, only: dissect, expand_order, neighbours_of
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_lists, only: lists_t
+   use base_lists, only: inverted, lists_t
    use coarse_layout, only: at_component
    use coarse_matrix, only: matrix_t
    implicit none(type, external)
@@ -41,7 +41,7 @@ module coarse_factors
       real(rk), allocatable :: scale(:)
       integer(ik) :: at_fractures = 1  !< where the fractures' begin among the unknowns
       logical :: by_fronts = .false.  !< no pivots are exchanged
-      logical :: needs_exchanges = .false.  !< they were needed once: nothing else is tried
+      logical :: needs_exchanges = .false.  !< exchange pivots, also in the future
       logical, private :: analysed = .false.
       type(mumps_t), private :: exchanging
       type(multifrontal_t), private :: fronts
@@ -57,7 +57,7 @@ module coarse_factors
 
 contains
 
-   !> Forget a mesh.
+   !> Release the factors of a mesh.
    subroutine release(self)
       class(coarse_factors_t), intent(inout) :: self
       type(multifrontal_t) :: none
@@ -73,8 +73,8 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      !> What the matrix, scaled, is when condensed onto the fractures' unknowns. Absent: the cells
-      !! alone are factorized.
+      !> Scaled matrix condensed onto the unknowns of the fractures. Absent: the cells alone are
+      !! factorized.
       real(rk), allocatable, intent(inout), optional :: schur(:, :)
 
       call find_scale(matrix, dt, self%scale)
@@ -185,8 +185,7 @@ contains
       end if
    end subroutine factorize_by_mumps
 
-   !> The same by fronts, without exchange of pivots: an error is raised where the matrix is none
-   !! for that.
+   !> Factorize by fronts, without exchange of pivots: an error is raised if this is not stable.
    subroutine factorize_by_fronts(self, matrix, dt, schur, error)
       class(coarse_factors_t), intent(inout), target :: self
       type(matrix_t), intent(in), target :: matrix
@@ -222,10 +221,10 @@ contains
       nullify (self%rows%matrix, self%rows%scale)
    end subroutine factorize_by_fronts
 
-   !> Judge how far rounding has grown by a solution that is known: an error is raised if it is not
-   !! that of a stable elimination. Its pressure is the same everywhere: that is what is lost first
-   !! where pressures even out so fast that a flow says little of the stored fluid. Seen from the
-   !! fractures it is lost if what the rock takes up then is not known.
+   !> Measure the growth of rounding errors on a known solution: an error is raised if the
+   !! elimination is not stable. The known pressure is uniform: its accuracy is lost first where
+   !! pressures diffuse so fast that flows hardly depend on the stored fluid; seen from the
+   !! fractures, if the fluid taken up by the rock is not accurate.
    subroutine check_factors(self, schur, error)
       class(coarse_factors_t), intent(inout) :: self
       real(rk), intent(in) :: schur(:, :)
@@ -263,14 +262,14 @@ contains
             if (allocated(error)) return
          end associate
       end if
-      found = abs(found - known)  ! scaled; pressures as parts of their own value
+      found = abs(found - known)  ! scaled; pressures relative to their value
       found(3 :: 3) = found(3 :: 3)*self%scale(3 :: 3)/pressure
       difference = max(difference, maxval(found))
       if (difference <= tolerance) return
       call raise_error(error, "coarse_factors_t", "elimination without exchanges is not stable")
    end subroutine check_factors
 
-   !> Units in which the matrix has ones and minus ones on its diagonal.
+   !> Find units in which the diagonal of the matrix is 1 or -1.
    pure subroutine find_scale(matrix, dt, scale)
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
@@ -290,7 +289,7 @@ contains
       end do
    end subroutine find_scale
 
-   !> Where the numbers of the lower triangle stand, one by one.
+   !> Rows and columns of the lower triangle, entry by entry.
    subroutine triplet_pattern(matrix, n_blocks, row, col)
       type(matrix_t), intent(in) :: matrix
       integer(ik), intent(in) :: n_blocks  !< so many of them
@@ -314,7 +313,7 @@ contains
       end do
    end subroutine triplet_pattern
 
-   !> The numbers themselves, for scaled unknowns and equations.
+   !> Entries of the lower triangle, for scaled unknowns and equations.
    subroutine triplet_values(matrix, n_blocks, scale, dt, values)
       type(matrix_t), intent(in) :: matrix
       integer(ik), intent(in) :: n_blocks  !< so many of them
@@ -330,8 +329,7 @@ contains
          at_row = at_component(i, 1) - 1
          do entry = matrix%columns%first(i), matrix%columns%last(i)
             at_col = at_component(matrix%columns%item(entry), 1) - 1
-            block = matrix%elastic(:, :, entry)
-            block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
+            block = matrix%block_at(entry, dt)
             do b = 1, 3
                do a = merge(b, 1_ik, at_col == at_row), 3
                   n = n + 1
@@ -342,7 +340,7 @@ contains
       end do
    end subroutine triplet_values
 
-   !> How many numbers the lower triangle has: six in a diagonal block, nine in another.
+   !> Number of entries of the lower triangle: six in a diagonal block, nine in another.
    pure integer(ik) function triplet_count(matrix, n_blocks)
       type(matrix_t), intent(in) :: matrix
       integer(ik), intent(in) :: n_blocks  !< so many of them
@@ -350,47 +348,29 @@ contains
       triplet_count = 9*(matrix%columns%last(n_blocks) - n_blocks) + 6*n_blocks
    end function triplet_count
 
-   !> Divide the entries among the blocks: each belongs to the one that is eliminated first.
+   !> Divide the entries among the blocks: each belongs to the block that is eliminated first, the
+   !! diagonal entry before the others.
    pure subroutine find_rows(columns, place, rows)
       type(lists_t), intent(in) :: columns  !< of the lower triangle, row by row, the diagonal last
       integer(ik), intent(in) :: place(:)  !< (n_blocks) in the order of elimination
       type(rows_t), intent(inout) :: rows
-      integer(ik), allocatable :: next(:)
-      integer(ik) :: entry, first, i, j, n, second
+      integer(ik), dimension(size(columns%item)) :: first, order, row
+      logical :: is_diagonal(size(columns%item))
+      integer(ik) :: i
 
-      n = size(place, kind=ik)
-      if (allocated(rows%entry)) deallocate (rows%blocks%first, rows%blocks%item, rows%entry)
-      allocate (next(n), source=1_ik)
-      do i = 1, n
-         do entry = columns%first(i), columns%last(i) - 1
-            j = columns%item(entry)
-            first = merge(i, j, place(i) < place(j))
-            next(first) = next(first) + 1
-         end do
+      do i = 1, size(place, kind=ik)
+         row(columns%first(i):columns%last(i)) = i
       end do
-      allocate (rows%blocks%first(n + 1))
-      rows%blocks%first(1) = 1
-      do i = 1, n
-         rows%blocks%first(i + 1) = rows%blocks%first(i) + next(i)
-      end do
-      allocate (rows%blocks%item(rows%blocks%first(n + 1) - 1))
-      allocate (rows%entry(size(rows%blocks%item)))
-      next = rows%blocks%first(:n)
-      do i = 1, n
-         rows%blocks%item(next(i)) = i
-         rows%entry(next(i)) = columns%last(i)
-         next(i) = next(i) + 1
-      end do
-      do i = 1, n
-         do entry = columns%first(i), columns%last(i) - 1
-            j = columns%item(entry)
-            first = merge(i, j, place(i) < place(j))
-            second = merge(j, i, place(i) < place(j))
-            rows%blocks%item(next(first)) = second
-            rows%entry(next(first)) = merge(entry, -entry, second == i)
-            next(first) = next(first) + 1
-         end do
-      end do
+      associate (col => columns%item)
+         is_diagonal = row == col
+         order = [(i, i=1, size(order, kind=ik))]
+         order = [pack(order, is_diagonal), pack(order,.not. is_diagonal)]
+         first = merge(row, col, place(row) < place(col))
+         rows%blocks = inverted(reshape(first(order), [1, size(order)]), size(place, kind=ik))
+         order = order(rows%blocks%item)
+         rows%blocks%item = row(order) + col(order) - first(order)
+         rows%entry = merge(order, -order, rows%blocks%item == row(order))
+      end associate
    end subroutine find_rows
 
    !> The scaled entries of one block row.
@@ -405,7 +385,7 @@ contains
       own = at_component(element, 1) - 1
       at = 0
       do k = self%blocks%first(element), self%blocks%last(element)
-         block = block_of(self%matrix, abs(self%entry(k)), self%dt)
+         block = self%matrix%block_at(abs(self%entry(k)), self%dt)
          if (self%entry(k) < 0) block = transpose(block)
          row = at_component(self%blocks%item(k), 1) - 1
          do b = 1, 3
@@ -416,17 +396,6 @@ contains
          at = at + 3
       end do
    end subroutine give
-
-   !> One block of the matrix, for rows [N/m], [N/m], [m2] and unknowns [m], [m], [Pa].
-   pure function block_of(matrix, entry, dt) result(block)
-      type(matrix_t), intent(in) :: matrix
-      integer(ik), intent(in) :: entry
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk) :: block(3, 3)
-
-      block = matrix%elastic(:, :, entry)
-      block(3, 3) = block(3, 3) + dt*matrix%flow(entry)
-   end function block_of
 
    !> The matrix, scaled as in its rows, times a vector.
    pure function times_scaled(rows, x) result(y)
@@ -441,7 +410,7 @@ contains
       do i = 1, size(x, kind=ik)/3
          do k = rows%blocks%first(i), rows%blocks%last(i)
             entry = rows%entry(k)
-            block = block_of(rows%matrix, abs(entry), rows%dt)
+            block = rows%matrix%block_at(abs(entry), rows%dt)
             if (entry < 0) block = transpose(block)
             j = rows%blocks%item(k)
             associate (own => at_component(i, 1), other => at_component(j, 1))

@@ -2,7 +2,8 @@
 module coarse_fields
    use base_kinds, only: ik, rk
    use coarse_matrix, only: matrix_t
-   use coarse_regions, only: regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -58,10 +59,10 @@ contains
 
       !$omp parallel do
       do c = 1, mesh%n_cells
-         associate (at => min(c, size(rock%shear, kind=ik)))
+         associate (solid => rock%solid_at(c))
             content(c) = matrix%storage(c)*unknowns(3, c) &
-                         + rock%biot(at)*cell_area(mesh, c)*mean_trace(regions, tractions, c) &
-                         /(2.0_rk*(rock%lame(at) + rock%shear(at)))
+                         + solid%biot*cell_area(mesh, c)*mean_trace(regions, tractions, c) &
+                         /(2.0_rk*(solid%lame + solid%shear))
          end associate
       end do
       !$omp end parallel do
@@ -150,7 +151,7 @@ contains
                             rotation(k))
          free(k) = rotation_is_free(regions, regions%region_of_node(mesh%cell_nodes(k, cell)))
       end do
-      ! A loaded corner of the body knows no rotation: take the cell's other corners'.
+      ! A corner with prescribed tractions has no rotation: that of the cell's other corners counts.
       if (any(free) .and. .not. all(free)) then
          rotation = merge(sum(rotation, mask=.not. free)/real(count(.not. free), rk), rotation, &
                           free)

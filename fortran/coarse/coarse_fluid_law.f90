@@ -11,13 +11,13 @@
 !! keeps mu_0, since its resistance there is negligible.
 module coarse_fluid_law
    use base_kinds, only: ik, rk
-   use coarse_fractures, only: cell_fluid_t, fracture_system_t
+   use coarse_fractures, only: cell_fluid_t, flow_paths_t, fracture_system_t
    use coarse_state, only: fracture_cells_t, state_t
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
 
-   public :: add_fluid_law, flow_thickness, fluid_gained
+   public :: add_fluid_law, add_fracture_balance
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends of a cell
 
@@ -56,7 +56,7 @@ contains
       row = eq%layout%at_pressure(i)
       jumps = eq%layout%at_jump(i, both)
       fluid = eq%fluid_at(x, i)
-      in_situ = in_situ_at(eq, i)
+      in_situ = eq%in_situ_at(i)
       call law%density_at(fluid%pressure + in_situ, density, slope)
       call law%density_at(eq%before%pressure(i) + in_situ, before, unused)
       associate (length => eq%condensed%length(i))
@@ -86,7 +86,7 @@ contains
 
       row = eq%layout%at_flow(k)
       cells = eq%paths%connections(:, k)
-      in_situ = 0.5_rk*(in_situ_at(eq, cells(1)) + in_situ_at(eq, cells(2)))
+      in_situ = 0.5_rk*(eq%in_situ_at(cells(1)) + eq%in_situ_at(cells(2)))
       do end = 1, 2
          fluid = eq%fluid_at(x, cells(end))
          call find_beyond(law, in_situ, fluid%pressure, beyond, slope)
@@ -115,7 +115,7 @@ contains
       beyond = 0.0_rk
       slope = 0.0_rk
       if (.not. eq%paths%joints%is_shut(b)) then
-         in_situ = in_situ_at(eq, cell)
+         in_situ = eq%in_situ_at(cell)
          if (allocated(eq%paths%joints%pressure_in_situ)) then
             in_situ = 0.5_rk*(in_situ + eq%paths%joints%pressure_in_situ(eq%paths%joints%joint(b)))
          end if
@@ -140,32 +140,34 @@ contains
       slope = slope - 1.0_rk
    end subroutine find_beyond
 
-   !> In situ, of a cell [Pa].
-   pure real(rk) function in_situ_at(eq, cell) result(pressure)
-      class(fracture_system_t), intent(in) :: eq
-      integer(ik), intent(in) :: cell
+   !> Add the fluid balance of the fractures for one step: what they store less what wells supply.
+  pure subroutine add_fracture_balance(paths, cells, length, dt, before, after, compressed, balance)
+      type(flow_paths_t), intent(in) :: paths
+      type(fracture_cells_t), intent(in) :: cells
+      real(rk), intent(in) :: length(:)  !< (cells) [m]
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(in) :: before, after
+      real(rk), intent(out) :: compressed  !< fluid that pressure has added [m2]
+      real(rk), intent(inout) :: balance  !< [m2]
+      real(rk) :: filled(size(length)), into_joints(paths%joints%n)
 
-      pressure = 0.0_rk
-      if (allocated(eq%cells%pressure_in_situ)) pressure = eq%cells%pressure_in_situ(cell)
-   end function in_situ_at
-
-   !> mu/(mu_0 r) in a cell, for the way between its middle and a well at its end, and its
-   !! derivative by the unknown of its pressure.
-   pure subroutine flow_thickness(i, x, law, eq, thickness, slope)
-      integer(ik), intent(in) :: i
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      type(fluid_law_t), intent(in) :: law
-      class(fracture_system_t), intent(in) :: eq
-      real(rk), intent(out) :: thickness  !< [-]
-      real(rk), intent(out) :: slope  !< [1/Pa]
-      type(cell_fluid_t) :: fluid
-
-      fluid = eq%fluid_at(x, i)
-      associate (pressure => fluid%pressure + in_situ_at(eq, i))
-         thickness = law%thickness_at(pressure)
-         slope = law%thickness_slope(pressure)*fluid%pressure_slope
-      end associate
-   end subroutine flow_thickness
+      filled = after%aperture - after%void
+      compressed = sum(length*filled*paths%settings%compressibility &
+                       *(after%pressure - before%pressure))
+      if (allocated(paths%settings%fluid_law)) then
+         compressed = compressed + fluid_gained(paths%settings%fluid_law, cells, length, before, &
+                                                after)
+      end if
+      filled = filled - (before%aperture - before%void)
+      balance = balance + sum(length*filled) + compressed - dt*sum(after%injection)
+      if (paths%joints%n == 0) return
+      into_joints = paths%joints%injection
+      if (paths%wells%n > 0) then
+         into_joints = into_joints + matmul(paths%wells%joint_share, &
+                                            after%well_flow(:paths%wells%n))
+      end if
+      balance = balance - dt*sum(into_joints) + dt*paths%joints%outflow(after%branch_flow)
+   end subroutine add_fracture_balance
 
    !> What density has added to the fluid of the fractures, at that of the reference pressure [m2].
    pure real(rk) function fluid_gained(law, cells, length, before, after) result(gained)

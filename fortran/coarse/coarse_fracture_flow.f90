@@ -25,19 +25,18 @@
 !! the pressure of the first.
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
-   use coarse_fractures, only: cell_fluid_t, fracture_system_t, most_of_rock
+   use coarse_fractures, only: cell_fluid_t, conducting_aperture, fracture_system_t, most_of_rock
    implicit none(type, external)
    private
 
-   public :: conducting_aperture, fill_balance, fill_branch, fill_equilibrium, fill_exchange
-   public :: fill_flow, fill_joint
+   public :: fill_balance, fill_branch, fill_equilibrium, fill_exchange, fill_flow, fill_joint
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides of a cell
 
 contains
 
    !> Flux between the rock and cell i on both sides: lambda = (kappa/mu)(p - p_F)/(a/2), kappa =
-   !! a^2/12, in a row with the skin; at a tip with what the flux there needs (coarse_tips). Its
+   !! a^2/12, in series with the skin and, at a tip, with the correction of coarse_tips. The
    !! equations are those of p+ and p-.
    pure subroutine fill_exchange(i, x, eq)
       integer(ik), intent(in) :: i
@@ -108,8 +107,8 @@ contains
       end associate
    end subroutine fill_balance
 
-   !> Initial state, instead of exchange and balance: nothing flows, and cell i has the pressure of
-   !! the rock around it, unless its fluid does not bear that (fluid_at).
+   !> Initial state, instead of exchange and balance: no flow, and cell i has the pressure of the
+   !! adjacent rock, unless that is below the vapour pressure (fluid_at).
    pure subroutine fill_equilibrium(i, x, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -137,8 +136,8 @@ contains
       end do
    end subroutine fill_equilibrium
 
-   !> Flow from the first to the second cell of pair k: cubic law between their middles; and its
-   !! part in the balances of both.
+   !> Flow from the first to the second cell of pair k by the cubic law between their middles, and
+   !! its terms in the balances of both.
    pure subroutine fill_flow(k, x, eq)
       integer(ik), intent(in) :: k
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -178,14 +177,15 @@ contains
       end do
    end subroutine fill_flow
 
-   !> The way of the fluid from the middle of each of two neighbours to where they meet, as a length
-   !! with the opening there, and that opening as a sum over the mean openings of both.
+   !> Flow path from the middle of each of two neighbours to their common point: an equivalent
+   !! length with the opening at this point, and this opening as a sum over the mean openings of
+   !! both.
    !!
    !! In the cell of a grown tip, and in the one behind it, the opening is k sqrt(d), d the distance
-   !! from the tip. Their volumes give k, 2/3 k d^(3/2) behind d. The tip goes on at the speed V,
-   !! and the fluid with it, V w through each section, at a pressure whose slope is 12 mu V/(k^2 d):
-   !! this is the flow V w at d_0, where the cells meet, through a length d_0 ln(d/d_0) as open as
-   !! there.
+   !! from the tip. Their volumes give k, 2/3 k d^(3/2) behind d. The tip advances at the speed V,
+   !! and the flow through each section is V w, with the pressure gradient 12 mu V/(k^2 d): this is
+   !! the flow V w at d_0, where the cells meet, through a length d_0 ln(d/d_0) with the opening at
+   !! d_0.
    pure subroutine find_way(cells, eq, length, weight)
       integer(ik), intent(in) :: cells(2)
       class(fracture_system_t), intent(in) :: eq
@@ -206,26 +206,6 @@ contains
          weight = 1.5_rk*eq%condensed%length(cells)*sqrt(reach(tip))/sum(reach)**1.5_rk
       end if
    end subroutine find_way
-
-   !> Aperture that conducts fluid. Roughness keeps the faces apart where they are nearer than that,
-   !! and is lost in what they are open beyond; iterates with overlapping faces keep a hundredth of
-   !! a0.
-   pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
-      real(rk), intent(in) :: residual  !< a0 [m]
-      real(rk), intent(in) :: roughness  !< the part of it that is one [m]
-      real(rk), intent(in) :: opening  !< [u]_n [m]
-      real(rk), intent(out) :: aperture  !< [m]
-      real(rk), intent(out) :: slope  !< its derivative by [u]_n [-]
-      real(rk) :: least
-
-      aperture = residual - roughness + opening
-      least = merge(residual, 0.01_rk*residual, roughness > 0.0_rk)
-      slope = 1.0_rk
-      if (.not. aperture > least) then
-         aperture = least
-         slope = 0.0_rk
-      end if
-   end subroutine conducting_aperture
 
    !> Balance of joint j, without the flows of its branches; its equation is that of p_J.
    pure subroutine fill_joint(j, x, eq)
@@ -255,8 +235,8 @@ contains
       call eq%slopes%add(row, at, slope(2))
    end subroutine fill_joint
 
-   !> Flow of branch b into its joint, and its part in the balances of the cell and, unless that is
-   !! an outlet, of the joint, whose balance must be there already.
+   !> Flow of branch b into its joint, and its terms in the balances of the cell and, except at an
+   !! outlet, of the joint, which must be set already.
    pure subroutine fill_branch(b, x, eq)
       integer(ik), intent(in) :: b
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -305,13 +285,13 @@ contains
       call eq%slopes%add(joint, row, merge(-1.0_rk, 0.0_rk, ends_in_joint))
    end subroutine fill_branch
 
-   !> The way of the fluid from the middle of a branch's cell to the joint, as a length with the
-   !! opening there, and that opening as a sum over the mean openings of two cells.
+   !> Flow path from the middle of a branch's cell to the joint: its length, and the opening as a
+   !! sum over the mean openings of two cells.
    pure subroutine find_branch_way(b, eq, length, cells, weight)
       integer(ik), intent(in) :: b  !< branch
       class(fracture_system_t), intent(in) :: eq
       real(rk), intent(out) :: length  !< [m]
-      integer(ik), intent(out) :: cells(2)  !< its own, and the one beyond or again its own
+      integer(ik), intent(out) :: cells(2)  !< the branch's, and that beyond the joint or the same
       real(rk), intent(out) :: weight(2)  !< [-]
       real(rk) :: reach(2)
 

@@ -1,30 +1,26 @@
-!> Data of the equations of one time step on the fractures: the unknowns and their units, the
-!! condensed body and its forces, the state before. The equations are those of contact
-!! (coarse_newton) and of the fluid (coarse_fracture_flow).
+!> Data of the equations of one time step on the fractures: unknowns and units, the condensed body
+!! and its forces, the last state. The equations are those of contact (coarse_newton) and of the
+!! fluid (coarse_fracture_flow).
 !!
 !! All unknowns x and equations are scaled to Pa: jumps by a stiffness, flows and volumes by a unit.
 module coarse_fractures
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_joints, only: joints_t
-   use coarse_layout, only: fracture_layout, fracture_layout_t
+   use coarse_layout, only: fracture_layout_t
    use coarse_slopes, only: slopes_t
-   use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, guess_t, state_t
    use coarse_wells, only: wells_t
-   use contact_law, only: contact_law_t
-   use contact_newton, only: contact_system_t, step_quality_t
-   use contact_pairs, only: weaken
+   use contact_newton, only: contact_system_t
    use scene_fluid_law, only: fluid_law_t
    implicit none(type, external)
    private
 
-   public :: cell_fluid_t, flow_paths_t, fracture_problem_t, fracture_system_t, most_of_rock
+   public :: cell_fluid_t, conducting_aperture, flow_paths_t, fracture_system_t, most_of_rock
    public :: newton_settings_t, prepare
 
-   !> What the iteration needs to know.
+   !> Settings of the iteration, and constants of fluid and rock.
    type :: newton_settings_t
       real(rk) :: tolerance = 1.0e-9_rk  !< residuals relative to the largest stress [-]
       integer(ik) :: iterations_max = 30
@@ -32,82 +28,62 @@ module coarse_fractures
       real(rk) :: mobility = 0.0_rk  !< of the rock, mean of K/mu [m2/(Pa s)]
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: young = 0.0_rk  !< [Pa]
-      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< that of the fluid is no less [Pa]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure of the fluid [Pa]
       real(rk) :: damping = 0.0_rk  !< eta of radiation damping [Pa s/m]
       !> initial state: no exchange, p_F = (p+ + p-)/2 but not below vapour, no fluid balance
       logical :: equilibrate = .false.
-      type(fluid_law_t), allocatable :: fluid_law  !< of viscosity and density, if there is one
+      type(fluid_law_t), allocatable :: fluid_law  !< pressure dependence, if any
    end type newton_settings_t
 
-   !> How the fluid of fractures flows in a step, and what is solved for.
+   !> Settings of a step, and where fluid flows along fractures.
    type :: flow_paths_t
       type(newton_settings_t) :: settings
-      integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
-      type(joints_t) :: joints
-      type(wells_t) :: wells
+      integer(ik), allocatable :: connections(:, :)  !< (2, m) neighbouring cells of one fracture
+      type(joints_t) :: joints  !< intersections and outlets of fractures
+      type(wells_t) :: wells  !< wells whose rate depends on pressures; set by the caller
    end type flow_paths_t
 
-   !> What the equations of the fractures of one mesh are made of, from step to step.
-   type :: fracture_problem_t
-      type(condensed_t) :: condensed
-      type(sparse_step_t) :: factors  !< of the fractures' equations where these are many
-      type(newton_settings_t) :: settings
-      type(fracture_cells_t) :: cells  !< to be kept in step with the mesh by the caller
-      integer(ik), allocatable :: connections(:, :)  !< (2, m) fracture cells that exchange fluid
-      type(joints_t) :: joints  !< where they exchange it otherwise
-      type(wells_t) :: wells  !< whose rate depends on pressures; likewise
-   end type fracture_problem_t
-
-   !> One step's equations in scaled unknowns. What they are made of is referred to, not copied, and
-   !! must outlive them. The points of contact are the starts and ends of the cells in turn.
+   !> Equations of one step in scaled unknowns. Their data are referenced, not copied, and must
+   !! outlive them. Contact points are the start and the end of each cell in turn.
    type, abstract, extends(contact_system_t) :: fracture_system_t
       type(condensed_t), pointer :: condensed => null()
       type(fracture_cells_t), pointer :: cells => null()
       type(flow_paths_t), pointer :: paths => null()  !< of this step
-      !> Factors of the linear step where the condensed matrix is not formed
-      type(sparse_step_t), pointer :: factors => null()
       real(rk), pointer :: g(:) => null()  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), pointer :: before => null()  !< at the last accepted time
       type(fracture_layout_t) :: layout  !< of x
       real(rk) :: dt = 0.0_rk  !< [s]
-      real(rk) :: stiffness = 0.0_rk  !< jumps are multiplied by it [Pa/m]
       real(rk) :: unit = 0.0_rk  !< fluid volumes are divided by it [m2/Pa]
-      real(rk), allocatable :: lowest(:)  !< (n) pressure that the fluid bears, as x counts it [Pa]
+      real(rk), allocatable :: lowest(:)  !< (n) vapour pressure less that in situ [Pa]
       real(rk) :: load_stress = 0.0_rk  !< traction of the faces without jumps and fluid [Pa]
       real(rk), allocatable :: q(:)  !< (6 n) unknowns of the condensed system [m], [Pa]
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g [N/m], volumes [m2]
-      logical :: has_failed = .false.  !< the condensed body could not answer
+      logical :: has_failed = .false.  !< whether a solution with the factors of the body has failed
       type(slopes_t) :: slopes  !< derivatives of the residuals where last evaluated
       real(rk), allocatable :: start(:)  !< unknowns where the step starts [Pa]
-      type(kinds_t) :: kinds  !< which of them may leave the full matrix
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)
-      real(rk), allocatable :: traction(:, :, :)  !< (2, 2, n) f_n, f_tau at start, end [Pa]
-      type(contact_law_t), allocatable :: law_held(:, :)  !< (2, n) see hold_strength
-      logical :: holds_strength = .false.
-      !> Share of the rock's pressure in that of the fluid, in the initial state; the rest is held
+      !> Share of the rock's pressure in that of the fluid, in the initial state; the remaining
+      !! share is that of held_pressure
       real(rk) :: share_of_rock = 1.0_rk
       real(rk), allocatable :: held_pressure(:)  !< (n) with a share below 1 [Pa]
-      !> Contact's equations are that the tractions are zero
+      !> Replace the contact equations by zero tractions
       logical :: is_without_contact = .false.
    contains
-      procedure :: may_wear
-      procedure :: hold_strength
-      procedure :: let_wear
+      procedure :: at_point
       procedure :: find_forces
-      procedure :: find_step
       procedure :: size_of_terms
       procedure :: is_balanced
-      procedure :: law_at
       procedure :: opening
       procedure :: fluid_at
       procedure :: unknown_of_fluid
+      procedure :: in_situ_at
+      procedure :: find_thickness
    end type fracture_system_t
 
-   !> The fluid of a cell: it has the pressure that its unknown says, or where that is less than the
-   !! vapour pressure it has this one, and the rest of the unknown says how wide the void is that
-   !! vapour fills. So one of the two holds, p > p_v or a void, whatever the unknown. In the initial
-   !! state, which has no fluid balance, the fracture is full, at p_v where the rock draws on it.
+   !> Fluid of a cell as a function of its unknown: the unknown is the pressure, or, below the
+   !! vapour pressure p_v, the pressure is p_v and the difference gives the width of the void filled
+   !! by vapour. In the initial state, which has no fluid balance, there is no void.
    type :: cell_fluid_t
       real(rk) :: pressure = 0.0_rk  !< [Pa]
       real(rk) :: pressure_slope = 1.0_rk  !< by the unknown [-]
@@ -115,50 +91,56 @@ module coarse_fractures
       real(rk) :: void_slope = 0.0_rk  !< by the unknown [m/Pa]
    end type cell_fluid_t
 
-   !> The resistance to leak-off at a tip takes this much of the rock's own away, and no more [-].
+   !> Largest reduction of the rock's resistance to leak-off at a tip, as a share of this resistance
+   !! [-].
    real(rk), parameter :: most_of_rock = 0.8_rk
 
 contains
 
-   !> Units, and what does not change within the step.
-   subroutine prepare(problem, paths, dt, g, before, eq)
-      type(fracture_problem_t), intent(inout), target :: problem
+   !> Set the units and all data that are constant within the step.
+   subroutine prepare(condensed, cells, paths, dt, g, before, eq)
+      type(condensed_t), intent(inout), target :: condensed
+      type(fracture_cells_t), intent(in), target :: cells
       type(flow_paths_t), intent(in), target :: paths  !< of this step
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in), target :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
       type(state_t), intent(in), target :: before
       class(fracture_system_t), intent(out) :: eq
       real(rk) :: reference
-      integer(ik) :: n, n_all, n_condensed
+      integer(ik) :: i, n, n_condensed
 
-      n = problem%condensed%n
-      reference = sum(problem%condensed%length)/real(n, rk)
-      eq%condensed => problem%condensed
-      eq%cells => problem%cells
+      n = condensed%n
+      reference = sum(condensed%length)/real(n, rk)
+      eq%condensed => condensed
+      eq%cells => cells
       eq%paths => paths
       eq%g => g
       eq%before => before
-      eq%layout = fracture_layout(n, size(paths%connections, 2, kind=ik), &
-                                  paths%joints%branch_count(), paths%wells%n, paths%joints%n)
+      eq%layout = fracture_layout_t(n_cells=n, per_cell=7_ik, &
+                                    n_flows=size(paths%connections, 2, kind=ik), &
+                                    n_branches=paths%joints%branch_count(), &
+                                    n_wells=paths%wells%n, n_joints=paths%joints%n)
       eq%dt = dt
       eq%stiffness = paths%settings%young/reference
       eq%unit = reference**2/paths%settings%young
       allocate (eq%lowest(n), source=paths%settings%vapour_pressure)
-      if (allocated(problem%cells%pressure_in_situ)) then
-         eq%lowest = eq%lowest - problem%cells%pressure_in_situ
-      end if
-      eq%load_stress = stress_without_jumps(problem%condensed, g)
+      if (allocated(cells%pressure_in_situ)) eq%lowest = eq%lowest - cells%pressure_in_situ
+      eq%load_stress = stress_without_jumps(condensed, g)
       eq%state = reshape(before%contact, [2*n])
-      n_all = eq%layout%count()
-      n_condensed = problem%condensed%layout%count()
-      allocate (eq%way(2*n), source=0_ik)
-      allocate (eq%q(n_condensed), eq%force(n_condensed), eq%traction(2, 2, n))
-      allocate (eq%residual(n_all))
+      eq%slip_before = reshape(before%jump(2, :, :), [2*n])
+      allocate (eq%law, source=[(cells%law((i + 1)/2), i=1, 2*n)])
+      if (allocated(before%slip_path)) then
+         eq%law = eq%law%aged(reshape(before%slip_path, [2*n]), reshape(before%opened, [2*n]))
+      end if
+      allocate (eq%slip_sign(2*n), source=0_ik)
+      n_condensed = condensed%layout%count()
+      allocate (eq%q(n_condensed), eq%force(n_condensed), eq%traction(2, 2*n))
+      allocate (eq%residual(eq%layout%count()))
       call link_unknowns(eq)
       call find_volume_slopes(eq)
    end subroutine prepare
 
-   !> Which of the unknowns are those of q.
+   !> Find the unknowns of q among those of x, and their units.
    pure subroutine link_unknowns(eq)
       class(fracture_system_t), intent(inout) :: eq
       integer(ik) :: at, i, k
@@ -175,35 +157,14 @@ contains
             end do
          end do
       end associate
-      allocate (eq%kinds%is_flow(eq%layout%count()), source=.false.)
-      eq%kinds%is_flow(eq%layout%at_flow(1_ik):eq%layout%at_well(eq%layout%n_wells)) = .true.
-      call find_kinds(eq)
    end subroutine link_unknowns
 
-   !> Which of the unknowns may leave the full matrix. Along a fracture flows follow each other from
-   !! the last cell to the first.
-   pure subroutine find_kinds(eq)
-      class(fracture_system_t), intent(inout) :: eq
-      integer(ik) :: end, flow_to(eq%layout%n_cells), i, k
-
-      associate (layout => eq%layout, kinds => eq%kinds, n => eq%layout%n_cells)
-         kinds%jump = [((layout%at_jump(i, end), end=1, 2), i=1, n)]
-         kinds%face = [((layout%at_face_pressure(i, end), end=1, 2), i=1, n)]
-         kinds%fluid = layout%at_pressure([(i, i=1, n)])
-         flow_to = 0
-         do k = 1, layout%n_flows
-            flow_to(maxval(eq%paths%connections(:, k))) = k
-         end do
-         kinds%flow = layout%at_flow(pack(flow_to(n:1:-1), flow_to(n:1:-1) > 0))
-         kinds%end_of_flow = layout%at_pressure(pack([(i, i=n, 1, -1)], flow_to(n:1:-1) > 0))
-      end associate
-   end subroutine find_kinds
-
-   !> How much the rock lets through, where the leak-off at a tip is bounded by it; for the initial
-   !! state everywhere, but as a unit of the equations only.
+   !> Derivatives of the leak-off of the faces by their pressures, which limit the correction of
+   !! leak-off at tips; in the initial state for all faces, as units of the equations.
    !!
-   !! The pressure of one face alone, all other unknowns fixed, moves more fluid than it does where
-   !! the rock answers. That is known at once, and where it bounds nothing, nothing does.
+   !! With all other unknowns fixed, the derivative is larger than with the response of the rock,
+   !! and known without a solution: where it does not limit the correction, the exact one does not
+   !! either.
    subroutine find_volume_slopes(eq)
       class(fracture_system_t), intent(inout) :: eq
       type(error_t), allocatable :: error
@@ -233,7 +194,7 @@ contains
       end associate
    end subroutine find_volume_slopes
 
-   !> The resistance to leak-off at a tip would be less than minus the most of the rock's own.
+   !> Whether the correction of leak-off at a tip exceeds the limit `most_of_rock`.
    elemental logical function is_beyond(leak_resistance, rock, slope)
       real(rk), intent(in) :: leak_resistance  !< times the rock's mobility [-]
       real(rk), intent(in) :: rock  !< mobility times the step [m2/Pa]
@@ -242,9 +203,8 @@ contains
       is_beyond = leak_resistance*abs(slope) < -most_of_rock*rock
    end function is_beyond
 
-   !> The largest traction on the fractures if they had neither jumps nor fluid [Pa]: open faces
-   !! without fluid carry none, and yet rounding errors are relative to what has been released
-   !! there.
+   !> Largest traction on the fractures without jumps and fluid [Pa]. Open faces without fluid carry
+   !! none, but rounding errors are relative to the traction released there.
    pure function stress_without_jumps(condensed, g) result(stress)
       type(condensed_t), intent(in) :: condensed
       real(rk), intent(in) :: g(:)  !< (6 n) [N/m], [m2]
@@ -272,22 +232,6 @@ contains
       self%has_failed = self%has_failed .or. allocated(error)
       self%force = self%force - self%g
    end subroutine find_forces
-
-   !> The linear step, by the full condensed matrix or with the factors of a sparse one.
-   subroutine find_step(self, with_condition, step, quality)
-      class(fracture_system_t), intent(inout) :: self
-      logical, intent(in) :: with_condition
-      real(rk), intent(out) :: step(:)  !< [Pa]
-      type(step_quality_t), intent(out) :: quality
-
-      if (self%condensed%is_full) then
-         call find_full_step(self%condensed%stiffness, self%slopes, self%kinds, self%residual, &
-                             self%stress_scale, with_condition, step, quality)
-      else
-         call self%factors%find_step(self%condensed, self%slopes, self%kinds%is_flow, &
-                                     self%residual, self%stress_scale, step, quality)
-      end if
-   end subroutine find_step
 
    !> The sum of the sizes of a residual's terms. Where the condensed matrix is not formed, forces
    !! are sums over the cells around.
@@ -319,7 +263,8 @@ contains
       total = total + dot_product(abs(slope), abs(x))
    end function size_of_terms
 
-   !> Fluid that the step makes or loses is nothing beside what flows in it and what is there.
+   !> Whether the error of the fluid balance is negligible compared with the fluid that flows or is
+   !! stored.
    logical function is_balanced(self)
       class(fracture_system_t), intent(in) :: self
       real(rk), parameter :: least = 1.0e-12_rk
@@ -339,7 +284,7 @@ contains
                  + self%dt*abs(self%cells%injection(i)) + sum(abs(self%force(at)))
       end do
       do i = 1, self%paths%joints%n
-         ! At an outlet, and where all branches are shut, the equation is not a balance.
+         ! The equations of outlets and of joints with only shut branches are not balances.
          if (self%paths%joints%is_outlet(i)) cycle
          if (all(self%paths%joints%is_shut(self%paths%joints%branches%of(i)))) cycle
          balance = balance + self%residual(self%layout%at_joint(i))*self%unit
@@ -351,69 +296,13 @@ contains
       is_balanced = abs(balance) <= least*fluid
    end function is_balanced
 
-   !> The law at an end of a cell, as its faces have slipped so far.
-   pure type(contact_law_t) function law_at(self, cell, end) result(law)
+   !> The number of the unknown [u]_n of a point of contact.
+   pure integer(ik) function at_point(self, point)
       class(fracture_system_t), intent(in) :: self
-      integer(ik), intent(in) :: cell
-      integer(ik), intent(in) :: end  !< 1 start, 2 end
+      integer(ik), intent(in) :: point
 
-      if (self%holds_strength) then
-         law = self%law_held(end, cell)
-         return
-      end if
-      law = self%cells%law(cell)
-      if (allocated(self%before%slip_path)) then
-         law = law%aged(self%before%slip_path(end, cell), self%before%opened(end, cell))
-      end if
-   end function law_at
-
-   !> Friction may weaken or a bond break within the step.
-   pure logical function may_wear(self)
-      class(fracture_system_t), intent(in) :: self
-
-      may_wear = any(self%cells%law%ages())
-   end function may_wear
-
-   !> Hold the strength: as before the step, or as it has become where last evaluated.
-   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
-      class(fracture_system_t), intent(inout) :: self
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      logical, intent(in) :: is_first
-      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
-      logical, intent(out) :: is_worn
-      real(rk) :: jump(2), lost
-      integer(ik) :: end, i, row
-
-      self%holds_strength = .false.
-      is_worn = .false.
-      if (is_first .and. .not. allocated(self%law_held)) then
-         allocate (self%law_held(2, self%layout%n_cells))
-      end if
-      do i = 1, self%layout%n_cells
-         do end = 1, 2
-            associate (law => self%law_at(i, end), held => self%law_held(end, i))
-               if (is_first) then
-                  held = law
-                  held%wears = .false.
-                  cycle
-               end if
-               row = self%layout%at_jump(i, end)
-               jump = x(row:row + 1)/self%stiffness
-               call weaken(law, self%traction(:, end, i), jump, &
-                           jump(2) - self%before%jump(2, end, i), held, lost)
-               is_worn = is_worn .or. lost > tolerance*self%stress_scale
-            end associate
-         end do
-      end do
-      self%holds_strength = .true.
-   end subroutine hold_strength
-
-   !> Let it fall from what it was before the step.
-   subroutine let_wear(self)
-      class(fracture_system_t), intent(inout) :: self
-
-      self%holds_strength = .false.
-   end subroutine let_wear
+      at_point = self%layout%at_jump((point + 1)/2, 2 - mod(point, 2_ik))
+   end function at_point
 
    !> Opening of a cell, the mean of its ends' [u]_n.
    pure function opening(self, x, cell) result(mean)
@@ -426,7 +315,7 @@ contains
              /self%stiffness
    end function opening
 
-   !> The fluid of a cell.
+   !> Fluid of a cell at x.
    pure type(cell_fluid_t) function fluid_at(self, x, cell) result(fluid)
       class(fracture_system_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -444,7 +333,7 @@ contains
       end associate
    end function fluid_at
 
-   !> The unknown that says so.
+   !> The unknown of a cell for a pressure and a void, inverse to fluid_at.
    pure real(rk) function unknown_of_fluid(self, cell, pressure, void) result(unknown)
       class(fracture_system_t), intent(in) :: self
       integer(ik), intent(in) :: cell
@@ -454,5 +343,51 @@ contains
       unknown = pressure
       if (void > 0.0_rk) unknown = self%lowest(cell) - void*self%stiffness
    end function unknown_of_fluid
+
+   !> Pressure in situ of a cell, to which pressures are relative [Pa].
+   pure real(rk) function in_situ_at(self, cell) result(pressure)
+      class(fracture_system_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      pressure = 0.0_rk
+      if (allocated(self%cells%pressure_in_situ)) pressure = self%cells%pressure_in_situ(cell)
+   end function in_situ_at
+
+   !> mu/(mu_0 r) of the fluid law in a cell, for the flow between its middle and a well at its end,
+   !! and the derivative by the unknown of the pressure.
+   pure subroutine find_thickness(self, x, cell, thickness, slope)
+      class(fracture_system_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(out) :: thickness  !< [-]
+      real(rk), intent(out) :: slope  !< [1/Pa]
+      type(cell_fluid_t) :: fluid
+
+      fluid = self%fluid_at(x, cell)
+      associate (law => self%paths%settings%fluid_law, &
+                 pressure => fluid%pressure + self%in_situ_at(cell))
+         thickness = law%thickness_at(pressure)
+         slope = law%thickness_slope(pressure)*fluid%pressure_slope
+      end associate
+   end subroutine find_thickness
+
+   !> Hydraulic aperture. Roughness is the least aperture, and does not add to larger openings;
+   !! overlapping faces in the iteration keep a hundredth of a0.
+   pure subroutine conducting_aperture(residual, roughness, opening, aperture, slope)
+      real(rk), intent(in) :: residual  !< a0 [m]
+      real(rk), intent(in) :: roughness  !< the part of it that is one [m]
+      real(rk), intent(in) :: opening  !< [u]_n [m]
+      real(rk), intent(out) :: aperture  !< [m]
+      real(rk), intent(out) :: slope  !< its derivative by [u]_n [-]
+      real(rk) :: least
+
+      aperture = residual - roughness + opening
+      least = merge(residual, 0.01_rk*residual, roughness > 0.0_rk)
+      slope = 1.0_rk
+      if (.not. aperture > least) then
+         aperture = least
+         slope = 0.0_rk
+      end if
+   end subroutine conducting_aperture
 
 end module coarse_fractures

@@ -11,7 +11,6 @@ module coarse_full_step
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use coarse_slopes, only: slopes_t
-   use coarse_sparse_matrix, only: apply_rows
    use contact_dense, only: factorize_full, solve_factorized
    use contact_newton, only: step_quality_t
    implicit none(type, external)
@@ -31,7 +30,7 @@ module coarse_full_step
       integer(ik) :: many = 1000  !< unknowns: elimination of fewer costs milliseconds
    end type kinds_t
 
-   !> The equations that links leave.
+   !> Equations that remain after elimination of the links.
    type :: reduced_t
       type(links_t) :: links
       integer(ik) :: n_faces = 0  !< so many links, the first, are not exact
@@ -41,7 +40,7 @@ module coarse_full_step
       integer(ik), allocatable :: pivots(:)
    end type reduced_t
 
-   !> So much of a face's pressure may come from its own volume if it is to be linked [-].
+   !> Largest share of a face's pressure due to its own volume, for which it is linked [-].
    real(rk), parameter :: little = 1.0e-4_rk
 
    integer(ik), parameter :: rounds_max = 6  !< of improvement
@@ -49,8 +48,8 @@ module coarse_full_step
 
 contains
 
-   !> Solve for the step. The condition is that of the equations which are left. Faces are linked
-   !! where there are many unknowns, if the step can be improved until it fulfils all equations.
+   !> Solve for the step. The condition is that of the remaining equations. Faces are linked if
+   !! there are many unknowns and the step can be improved until it satisfies all equations.
    subroutine find_full_step(stiffness, slopes, kinds, residual, stress_scale, with_condition, &
                              step, quality)
       real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
@@ -80,7 +79,7 @@ contains
       end do
    end subroutine find_full_step
 
-   !> The equations that links leave, factorized.
+   !> Factorize the equations that remain after elimination of the links.
    subroutine reduce(stiffness, slopes, kinds, with_faces, residual, with_condition, reduced, &
                      quality)
       real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
@@ -112,7 +111,7 @@ contains
                           kinds%is_flow(reduced%unknowns))
    end subroutine reduce
 
-   !> The step that the equations which are left and the links give.
+   !> The step from the remaining equations and the links.
    subroutine solve_reduced(reduced, step)
       type(reduced_t), intent(in) :: reduced
       real(rk), intent(inout) :: step(:)  !< (n) [Pa]
@@ -123,7 +122,7 @@ contains
       call reduced%links%complete(step)
    end subroutine solve_reduced
 
-   !> Improve a step by links that are not exact until it fulfils the equations as they are.
+   !> Improve a step with approximate links until it satisfies the complete equations.
    subroutine improve(stiffness, slopes, residual, reduced, step, worst, is_good)
       real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
       type(slopes_t), intent(in) :: slopes
@@ -160,12 +159,12 @@ contains
          real(rk), intent(in) :: x(:)  !< [Pa]
          real(rk) :: answer(size(x))  !< [Pa]
 
-         call apply_rows(slopes, x, matmul(stiffness, x(slopes%x_of_q)*slopes%q_per_x), answer)
+         call slopes%apply(x, matmul(stiffness, x(slopes%x_of_q)*slopes%q_per_x), answer)
       end function matrix_product
 
    end subroutine improve
 
-   !> What can be linked: faces, the first of all, then exactly pressures of fluid, then jumps.
+   !> Find the links: faces first, then, exactly, pressures of the fluid, then jumps.
    subroutine find_links(stiffness, slopes, kinds, with_faces, links, n_faces)
       real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
       type(slopes_t), intent(in) :: slopes
@@ -209,7 +208,7 @@ contains
       end do
    end subroutine find_links
 
-   !> The volume that leaves through a face has next to no part in the equation of its pressure.
+   !> Whether the volume that leaves through a face is negligible in the equation of its pressure.
    pure logical function is_little(stiffness, slopes, face)
       real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
       type(slopes_t), intent(in) :: slopes
@@ -230,8 +229,8 @@ contains
       end associate
    end function is_little
 
-   !> Link an unknown by the local part of an equation, if it has the largest entry there, and
-   !! the others have not left.
+   !> Link an unknown by the local part of an equation, if its entry there is the largest and the
+   !! others are not linked.
    subroutine link_by(slopes, equation, unknown, entry, links)
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: equation, unknown

@@ -22,14 +22,15 @@ module coarse_in_situ
 
    public :: find_in_situ, in_situ_state_t, weight_of_scene
 
-   !> Where pressures and stresses count from.
+   !> State to which pressures and stresses are relative.
    type :: in_situ_state_t
       real(rk) :: stress(3) = 0.0_rk  !< xx, yy, xy at the datum [Pa]
       real(rk) :: stress_per_y(2) = 0.0_rk  !< xx, yy: rise per metre upwards [Pa/m]
       real(rk) :: pressure = 0.0_rk  !< at the datum [Pa]
       real(rk) :: pressure_per_y = 0.0_rk  !< rise per metre upwards [Pa/m]
       real(rk) :: y_datum = 0.0_rk  !< [m]
-      !> The sides bear the stress, beside the tractions of the scene; else these are all there is.
+      !> Whether the sides bear the stress in addition to the tractions of the scene; else these are
+      !! the total ones.
       logical :: is_held = .false.
    contains
       procedure :: stress_at
@@ -68,8 +69,8 @@ contains
       end associate
    end subroutine find_in_situ
 
-   !> The weight of the rock with what fills its pores [N/m3]. A stress in situ that changes with y
-   !! carries it, so it is what that says: the scene's numbers may be rounded.
+   !> Weight of the rock with its pore fluid [N/m3]. A stress in situ that varies with y balances it
+   !! and therefore defines it, since the scene's numbers may be rounded.
    pure function weight_of_scene(scene) result(weight)
       type(scene_t), intent(in) :: scene
       real(rk) :: weight(2)
@@ -96,7 +97,7 @@ contains
       pressure_at = self%pressure + self%pressure_per_y*(y - self%y_datum)
    end function pressure_at
 
-   !> What acts on the outer boundary beyond the state in situ, of a traction of the scene [Pa].
+   !> Traction on the outer boundary relative to the state in situ, from that of the scene [Pa].
    pure function side_traction(self, given, outward, y) result(traction)
       class(in_situ_state_t), intent(in) :: self
       real(rk), intent(in) :: given(2)  !< [Pa]
@@ -112,8 +113,9 @@ contains
                              dot_product(stress([3, 2]), outward)]
    end function side_traction
 
-   !> Add to the load on the condensed fractures what gives them the contact tractions of the whole
-   !! stress. The tractions of the coarse level are linear along a face and known at its ends.
+   !> Add the tractions of the state in situ to the load on the condensed fractures, so that contact
+   !! tractions are total. Tractions of the coarse level are linear along a face and known at its
+   !! ends.
    pure subroutine add_contact_tractions(self, fracture, length, normal, layout, g)
       class(in_situ_state_t), intent(in) :: self
       type(fracture_mesh_t), intent(in) :: fracture
@@ -139,8 +141,7 @@ contains
       end do
    end subroutine add_contact_tractions
 
-   !> What presses the faces of a fracture cell on each other in its middle, beyond the pressure; no
-   !! less than nothing [Pa].
+   !> Compressive stress across a fracture cell at its middle less the pressure, at least 0 [Pa].
    pure real(rk) function contact_pressure(self, fracture, cell) result(pressure)
       class(in_situ_state_t), intent(in) :: self
       type(fracture_mesh_t), intent(in) :: fracture

@@ -43,7 +43,7 @@ module coarse_joints
       !> (branches) the cell beyond the joint in which the fracture, or in a V the way, goes on; 0:
       !! none
       integer(ik), allocatable :: beyond(:)
-      !> (branches) the crack has not come to the joint yet: nothing flows
+      !> (branches) no flow, since the crack has not reached the joint
       logical, allocatable :: is_shut(:)
    contains
       procedure :: shut_only
@@ -101,8 +101,7 @@ contains
       end associate
    end subroutine find_joints
 
-   !> Shut the branches that some cells, which cracks have not come to the ends of, reach joints
-   !! with, and no others.
+   !> Shut the branches at some ends of cells that cracks have not reached, and open all others.
    pure subroutine shut_only(self, cell, end)
       class(joints_t), intent(inout) :: self
       integer(ik), intent(in) :: cell(:)  !< fracture cells
@@ -114,8 +113,8 @@ contains
       end do
    end subroutine shut_only
 
-   !> Where the way goes on beyond the joint of a branch; 0 if it does not. Cells are stored along
-   !! each fracture.
+   !> The cell in which the flow path continues beyond the joint of a branch; 0: none. Cells are
+   !! stored along each fracture.
    pure integer(ik) function cell_beyond(fracture, joints, branch) result(cell)
       type(fracture_mesh_t), intent(in) :: fracture
       type(joints_t), intent(in) :: joints
@@ -134,7 +133,7 @@ contains
       end do
    end function cell_beyond
 
-   !> Whether fluid takes more ways at a fracture point than along one fracture.
+   !> Whether flow at a fracture point is not only that along one fracture.
    pure logical function is_joint(kind, n_cells, is_given)
       integer(ik), intent(in) :: kind  !< of the point
       integer(ik), intent(in) :: n_cells  !< that meet there
@@ -150,7 +149,7 @@ contains
       end select
    end function is_joint
 
-   !> Take other pressures of the sides.
+   !> Update the pressures of the sides.
    pure subroutine renew_outlets(mesh, sides, joints)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
@@ -162,7 +161,7 @@ contains
       joints%side_pressure = given(joints%point)
    end subroutine renew_outlets
 
-   !> The fracture points on sides whose pressure is given; in a corner the mean of two.
+   !> Prescribed pressures of the sides at fracture points; in a corner the mean of two.
    pure subroutine find_side_pressures(mesh, sides, is_given, given)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
@@ -194,7 +193,7 @@ contains
       given = given/max(around, 1_ik)
    end subroutine find_side_pressures
 
-   !> The fracture points at which the nodes of both faces of a fracture cell lie.
+   !> Assign the nodes of both faces of a fracture cell to fracture points.
    pure subroutine name_nodes(mesh, cell, point_of_node)
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: cell  !< fracture cell
@@ -215,7 +214,7 @@ contains
       end associate
    end subroutine name_nodes
 
-   !> How many cells reach a joint; one that does so at both ends counts twice.
+   !> Number of branches; a cell between two joints has two.
    pure integer(ik) function branch_count(self)
       class(joints_t), intent(in) :: self
 
@@ -237,7 +236,7 @@ contains
       end if
    end function mean_pressure
 
-   !> What leaves the body through the ends of fractures [m2/s].
+   !> Outflow of the body through the ends of fractures [m2/s].
    pure real(rk) function outflow(self, flow)
       class(joints_t), intent(in) :: self
       real(rk), intent(in) :: flow(:)  !< (branches) into the joints [m2/s]
@@ -246,8 +245,9 @@ contains
       if (self%n > 0) outflow = sum(flow, mask=self%is_outlet(self%joint))
    end function outflow
 
-   !> Which flows are in networks that hold a loop: those between pairs of cells, then those of the
-   !! branches. All outlets are one place: between two of them flow is as free as in a loop.
+   !> Whether flows belong to a network with a loop: those between pairs of cells, then those of the
+   !! branches. All outlets count as one point, since the flow between two of them is as
+   !! undetermined as in a loop.
    pure function flows_in_loops(n_cells, connections, joints) result(in_loop)
       integer(ik), intent(in) :: n_cells  !< fracture cells
       integer(ik), intent(in) :: connections(:, :)  !< (2, pairs) cells that exchange fluid
@@ -276,8 +276,8 @@ contains
       in_loop = has_loop(number(edge(1, :)))
    end function flows_in_loops
 
-   !> The largest flow round a loop that a difference of pressures drives which is not known [Pa],
-   !! in the unit of the flows.
+   !> The largest flow round a loop driven by an unknown pressure difference, in the unit of the
+   !! flows [Pa].
    pure function unknown_flow(slopes, at_first, in_loop, difference) result(flow)
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: at_first  !< the number of the first flow

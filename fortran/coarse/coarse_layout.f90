@@ -16,7 +16,7 @@ module coarse_layout
    private
 
    public :: at_component, block_count, end_block, end_of_block, fracture_cell_of_block
-   public :: condensed_layout, condensed_layout_t, fracture_layout, fracture_layout_t
+   public :: condensed_layout_t, fracture_layout_t
 
    !> Numbers in q.
    type :: condensed_layout_t
@@ -45,30 +45,6 @@ module coarse_layout
    end type fracture_layout_t
 
 contains
-
-   !> The layout of q.
-   pure type(condensed_layout_t) function condensed_layout(n_cells)
-      integer(ik), intent(in) :: n_cells  !< fracture cells
-
-      condensed_layout%n_cells = n_cells
-   end function condensed_layout
-
-   !> The layout of x.
-   pure type(fracture_layout_t) function fracture_layout(n_cells, n_flows, n_branches, n_wells, &
-                                                         n_joints)
-      integer(ik), intent(in) :: n_cells  !< fracture cells
-      integer(ik), intent(in) :: n_flows  !< pairs of cells that exchange fluid
-      integer(ik), intent(in) :: n_branches  !< flows into joints
-      integer(ik), intent(in) :: n_wells  !< whose flow is an unknown
-      integer(ik), intent(in) :: n_joints
-
-      fracture_layout%n_cells = n_cells
-      fracture_layout%per_cell = 7
-      fracture_layout%n_flows = n_flows
-      fracture_layout%n_branches = n_branches
-      fracture_layout%n_wells = n_wells
-      fracture_layout%n_joints = n_joints
-   end function fracture_layout
 
    !> How many unknowns there are.
    pure integer(ik) function condensed_count(self)

@@ -17,8 +17,8 @@ module coarse_loads
 
    public :: add_point_forces, find_weight, hold_points
 
-   !> Force on a held point per its displacement, over Young's modulus of the rock [-]: where what
-   !! holds it bears nothing, as it should, any value gives the same.
+   !> Stiffness of the springs at restrained points over Young's modulus of the rock [-]: without
+   !! force in the restraint, as intended, the result does not depend on it.
    real(rk), parameter :: support = 1.0e3_rk
 
 contains
@@ -112,16 +112,13 @@ contains
 
       do k = 1, size(cells, kind=ik)
          if (cells(k) > row) cycle
-         entry = matrix%columns%first(row)
-         do while (matrix%columns%item(entry) /= cells(k))
-            entry = entry + 1
-         end do
+         entry = matrix%entry_at(row, cells(k))
          matrix%elastic(axis, axis, entry) = matrix%elastic(axis, axis, entry) + factor*weight(k)
       end do
    end subroutine add_products
 
-   !> Shares of cells in the displacement of a point: exact for linear fields where there are three
-   !! cells or more, their squares as small as can be; else equal.
+   !> Weights of cells in the displacement of a point: exact for linear fields with at least three
+   !! cells, with the least sum of squares; else equal.
    pure function weights_at(mesh, cells, xy) result(weight)
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: cells(:)

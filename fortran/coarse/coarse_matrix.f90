@@ -5,47 +5,13 @@
 !! step [m2]. The matrix is symmetric and quasi-definite: positive for displacements, negative for
 !! pressures. It is kept as elastic - and - flow parts, so that a new time step needs no new
 !! discretization: matrix = elastic + dt*flow.
-!!
-!! Multi-point stress stencil around one vertex.
-!!
-!! Multi-point stress approximation with weakly symmetric stress (Nordbotten 2016; Keilegavlen and
-!! Nordbotten 2017), in its mixed form on triangles: each face has, at each of its two ends,
-!! its own traction [Pa]; around a vertex these are found from the displacements and pressures of
-!! the cells there, so that the displacement is continuous at a third of each face, and that the
-!! stress is symmetric in the mean over the vertex (a rotation is the multiplier). With the corners'
-!! areas as weights this is a lumped mixed method (Wheeler and Yotov 2006; Ambartsumyan, Khattatov,
-!! Nordbotten and Yotov 2020): the matrix is symmetric, and stable for nearly incompressible rock.
-!!
-!! The pressure enters the stress-strain relation itself, eps = A (sigma + alpha p I), and the fluid
-!! content takes its volume change from the same tractions: these are the stabilizing terms, for
-!! vanishing permeability and time steps.
-!!
-!! The local system (coarse_elimination) is
-!!   A t + C r + G d = given displacements,  C^T t = 0
-!! with tractions t, rotations r and the unknowns d (displacements, jumps, pressures) around the
-!! vertex. The rotations times 2 G are the unknowns, of the size of a traction, so that pivots stay
-!! comparable: G of one of the cells that share the rotation.
-!!
-!! Where rocks of several stiffnesses meet at a vertex each has a rotation of its own
-!! (coarse_regions). With tractions given on both sides of an interface that ends on the boundary,
-!! two of them can ask the same of the traction on the interface; one of them is left out then.
 module coarse_matrix
-   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
-   use coarse_diffusion, only: set_flux_equations
-   use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
-                                 response_t, share_t
-   use coarse_in_situ, only: in_situ_state_t
-   use coarse_layout, only: at_component, end_of_block, fracture_cell_of_block
-   use coarse_regions, only: find_regions, fracture_end_region, regions_t, rock_t, traction_face
-   use mesh_geometry, only: cell_area, corner_geometry, face_length, outward_normal
-   use mesh_types, only: mesh_t
-   use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
 
-   public :: discretize, matrix_t, renew_sides
+   public :: matrix_t
 
    !> Lower triangle in blocks, by rows; the diagonal block is the last one of its row.
    type :: matrix_t
@@ -62,20 +28,34 @@ module coarse_matrix
       !> (n_cells) content per pressure at fixed traction [m2/Pa]
       real(rk), allocatable :: storage(:)
    contains
+      procedure :: block_at
+      procedure :: entry_at
       procedure :: elastic_forces
    end type matrix_t
 
-   !> What one vertex adds.
-   type :: stencil_t
-      type(share_t) :: elastic, flow
-      integer(ik) :: info = 0  !< not 0: it has none (degenerate cells)
-   end type stencil_t
-
-   !> Vertices whose stencils are found one after another by one thread, and those that are kept
-   !! until they are added, in the order of the vertices whatever the threads do.
-   integer(ik), parameter :: slice = 64, batch = 8*slice
-
 contains
+
+   !> One block for a time step, for rows [N/m], [N/m], [m2] and unknowns [m], [m], [Pa].
+   pure function block_at(self, entry, dt) result(block)
+      class(matrix_t), intent(in) :: self
+      integer(ik), intent(in) :: entry
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk) :: block(3, 3)
+
+      block = self%elastic(:, :, entry)
+      block(3, 3) = block(3, 3) + dt*self%flow(entry)
+   end function block_at
+
+   !> The number of the entry in a row and column, which must exist.
+   pure integer(ik) function entry_at(self, row, col) result(entry)
+      class(matrix_t), intent(in) :: self
+      integer(ik), intent(in) :: row, col  !< blocks, col <= row
+
+      entry = self%columns%first(row)
+      do while (self%columns%item(entry) /= col)
+         entry = entry + 1
+      end do
+   end function entry_at
 
    !> What the elastic part makes of unknowns: the left-hand side but for the flow.
    pure function elastic_forces(self, unknowns) result(force)
@@ -98,404 +78,5 @@ contains
          end do
       end do
    end function elastic_forces
-
-   !> Discretize Biot's equations on the mesh: responses in the regions and the global matrix.
-   subroutine discretize(mesh, rock, sides, regions, matrix, error, in_situ)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(boundary_side_t), intent(in) :: sides(:)
-      type(regions_t), intent(out) :: regions
-      type(matrix_t), intent(out) :: matrix
-      type(error_t), allocatable, intent(out) :: error
-      type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      type(stencil_t), allocatable :: stencil(:)
-      integer(ik) :: at, c, first, i, k, n
-
-      call find_regions(mesh, regions, rock%stiffness)
-      call find_pattern(mesh, regions, matrix)
-      allocate (stencil(min(batch, regions%n_regions)))
-      do first = 1, regions%n_regions, batch
-         n = min(batch, regions%n_regions - first + 1)
-         !$omp parallel do
-         do k = 1, n, slice
-            call find_stencils(mesh, rock, sides, regions, first + k - 1, &
-                               stencil(k:min(k + slice - 1, n)), in_situ)
-         end do
-         !$omp end parallel do
-         do i = 1, n
-            if (stencil(i)%info /= 0) then
-               call refuse_place(mesh%xy(:, regions%nodes%at(first + i - 1, 1_ik)), error)
-               return
-            end if
-            call add_region(regions, first + i - 1, stencil(i), matrix)
-            call add_known(regions, first + i - 1, stencil(i), matrix)
-         end do
-      end do
-      do c = 1, mesh%n_cells
-         at = min(c, size(rock%shear, kind=ik))
-         matrix%storage(c) = cell_area(mesh, c)*(rock%storage(at) + rock%biot(at)**2 &
-                                                 /(rock%lame(at) + rock%shear(at)))
-         associate (diagonal => matrix%columns%last(c))
-            matrix%elastic(3, 3, diagonal) = matrix%elastic(3, 3, diagonal) - matrix%storage(c)
-         end associate
-      end do
-   end subroutine discretize
-
-   !> Take other values on the sides, of the same kinds: what is known around the vertices there.
-   subroutine renew_sides(mesh, rock, sides, regions, matrix, error, in_situ)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(boundary_side_t), intent(in) :: sides(:)
-      type(regions_t), intent(inout) :: regions
-      type(matrix_t), intent(inout) :: matrix
-      type(error_t), allocatable, intent(out) :: error
-      type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      type(stencil_t) :: stencil(1)
-      integer(ik) :: r
-
-      matrix%elastic_known = 0.0_rk
-      matrix%flow_known = 0.0_rk
-      do r = 1, regions%n_regions
-         associate (faces => regions%faces)
-            if (.not. any(mesh%face_side(faces%item(faces%first(r):faces%last(r))) > 0)) cycle
-         end associate
-         call find_stencils(mesh, rock, sides, regions, r, stencil, in_situ)
-         if (stencil(1)%info /= 0) then
-            call refuse_place(mesh%xy(:, regions%nodes%at(r, 1_ik)), error)
-            return
-         end if
-         call add_known(regions, r, stencil(1), matrix)
-      end do
-   end subroutine renew_sides
-
-   !> Stress and flow around vertices that follow each other.
-   subroutine find_stencils(mesh, rock, sides, regions, first, stencil, in_situ)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(boundary_side_t), intent(in) :: sides(:)
-      type(regions_t), intent(inout) :: regions
-      integer(ik), intent(in) :: first  !< region
-      type(stencil_t), intent(out) :: stencil(:)
-      type(in_situ_state_t), intent(in), optional :: in_situ
-      type(local_system_t) :: local
-      real(rk), allocatable :: doubled(:)
-      real(rk) :: given(size(sides))  ! [Pa] or [m/s]
-      integer(ik) :: i
-
-      given = merge(sides%pressure, -sides%inflow, sides%pressure_given)
-      do i = 1, size(stencil, kind=ik)
-         associate (r => first + i - 1, elastic => stencil(i)%elastic, flow => stencil(i)%flow, &
-                    info => stencil(i)%info)
-            call set_stress_equations(mesh, rock, sides, regions, r, local, doubled, in_situ)
-            call eliminate(local, regions%traction(r), elastic, info)
-            if (info /= 0) cycle
-            call divide_rotations(doubled, regions%traction(r))
-            call set_flux_equations(mesh, rock%resistivity, sides%pressure_given, given, regions, &
-                                    r, local)
-            call eliminate(local, regions%flux(r), flow, info)
-         end associate
-      end do
-   end subroutine find_stencils
-
-   !> The error of cells that no stencil can be found on.
-   subroutine refuse_place(xy, error)
-      real(rk), intent(in) :: xy(2)  !< [m]
-      type(error_t), allocatable, intent(out) :: error
-      character(len=80) :: place
-
-      write (place, "(a,es12.5,a,es12.5,a)") "(", xy(1), ",", xy(2), ")"
-      call raise_error(error, "coarse_matrix", "degenerate cells around the mesh node at "//place)
-   end subroutine refuse_place
-
-   !> Which blocks meet in some region.
-   subroutine find_pattern(mesh, regions, matrix)
-      type(mesh_t), intent(in) :: mesh
-      type(regions_t), intent(in) :: regions
-      type(matrix_t), intent(inout) :: matrix
-      integer(ik), allocatable :: last_row(:), found(:)
-      integer(ik) :: block, i, k, n, r, side
-
-      matrix%n_blocks = regions%n_blocks
-      matrix%n_cells = mesh%n_cells
-      allocate (matrix%columns%first(matrix%n_blocks + 1))
-      allocate (last_row(matrix%n_blocks), source=0_ik)
-      allocate (found(20*matrix%n_blocks))
-      n = 0
-      do i = 1, matrix%n_blocks
-         matrix%columns%first(i) = n + 1
-         last_row(i) = i
-         do side = 1, 3
-            r = regions%regions_of_block(side, i)
-            if (r == 0) cycle
-            do k = regions%blocks%first(r), regions%blocks%last(r)
-               block = regions%blocks%item(k)
-               if (block > i) cycle
-               if (last_row(block) == i) cycle
-               last_row(block) = i
-               n = n + 1
-               if (n + 1 > size(found)) found = [found, found]
-               found(n) = block
-            end do
-         end do
-         n = n + 1
-         found(n) = i
-      end do
-      matrix%columns%first(matrix%n_blocks + 1) = n + 1
-      matrix%columns%item = found(:n)
-      allocate (matrix%elastic(3, 3, n), matrix%flow(n), source=0.0_rk)
-      allocate (matrix%elastic_known(3, matrix%n_blocks), source=0.0_rk)
-      allocate (matrix%flow_known(matrix%n_blocks), matrix%storage(mesh%n_cells), source=0.0_rk)
-   end subroutine find_pattern
-
-   !> Add the shares of one region.
-   pure subroutine add_region(regions, region, stencil, matrix)
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(stencil_t), intent(in) :: stencil
-      type(matrix_t), intent(inout) :: matrix
-      integer(ik) :: a, at_a, at_b, b, col, entry, i, j, row
-
-      do a = 1, regions%blocks%length(region)
-         row = regions%blocks%at(region, a)
-         at_a = at_component(a, 1) - 1
-         do b = 1, regions%blocks%length(region)
-            col = regions%blocks%at(region, b)
-            if (col > row) cycle
-            at_b = at_component(b, 1) - 1
-            entry = matrix%columns%first(row)
-            do while (matrix%columns%item(entry) /= col)
-               entry = entry + 1
-            end do
-            do j = 1, 3
-               do i = 1, 3
-                  matrix%elastic(i, j, entry) = matrix%elastic(i, j, entry) &
-                                                + stencil%elastic%matrix(at_a + i, at_b + j)
-               end do
-            end do
-            matrix%flow(entry) = matrix%flow(entry) + stencil%flow%matrix(a, b)
-         end do
-      end do
-   end subroutine add_region
-
-   !> Add what the boundary data of one region give.
-   pure subroutine add_known(regions, region, stencil, matrix)
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(stencil_t), intent(in) :: stencil
-      type(matrix_t), intent(inout) :: matrix
-      integer(ik) :: a, at, row
-
-      do a = 1, regions%blocks%length(region)
-         at = at_component(a, 1)
-         row = regions%blocks%at(region, a)
-         matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
-                                        + stencil%elastic%known(at:at + 2)
-         matrix%flow_known(row) = matrix%flow_known(row) + stencil%flow%known(a)
-      end do
-   end subroutine add_known
-
-   !> The equations of the tractions and the rotations of one region.
-   pure subroutine set_stress_equations(mesh, rock, sides, regions, region, local, doubled, in_situ)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(boundary_side_t), intent(in) :: sides(:)
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local
-      real(rk), allocatable, intent(out) :: doubled(:)  !< factor of each rotation
-      type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
-      integer(ik) :: m, n, n_tractions
-
-      allocate (doubled(regions%nodes%length(region)))
-      n_tractions = 2*regions%faces%length(region)
-      n = n_tractions + regions%nodes%length(region)
-      m = 3*regions%blocks%length(region)
-      call new_local_system(n, m, local)
-      call add_corners(mesh, rock, regions, region, local, doubled)
-      call add_jumps(mesh, regions, region, local)
-      local%equations(n + 1:n + m, :n) = -local%coupling(:m, :n)
-      call apply_sides(mesh, sides, regions, region, local, in_situ)
-      if (regions%has_interface(region)) call leave_out_repeated(n_tractions, local)
-   end subroutine set_stress_equations
-
-   !> Take the factors of the rotations off the response of one region.
-   pure subroutine divide_rotations(doubled, response)
-      real(rk), intent(in) :: doubled(:)
-      type(response_t), intent(inout) :: response  !< tractions x, y [Pa], then rotations [-]
-      integer(ik) :: k, n_tractions
-
-      n_tractions = size(response%matrix, 2, kind=ik) - size(doubled, kind=ik)
-      do k = 1, size(doubled, kind=ik)
-         associate (rotation => response%matrix(:, n_tractions + k))
-            rotation = rotation/doubled(k)
-         end associate
-      end do
-   end subroutine divide_rotations
-
-   !> What the cells' corners around the vertex give.
-   pure subroutine add_corners(mesh, rock, regions, region, local, doubled)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local
-      real(rk), intent(out) :: doubled(:)  !< 2 G of each rotation [Pa]
-      integer(ik) :: at(2), c, cell, faces(2), first, here, i, j, k, rotation
-      real(rk) :: sign_out(2), length(2), lever(2, 2), area, nu, w
-
-      first = 2*regions%faces%length(region)
-      doubled = 0.0_rk
-      do c = 1, regions%cell_count(region)
-         cell = regions%blocks%at(region, c)
-         k = findloc(regions%regions_of_block(:, cell), region, dim=1)
-         here = min(cell, size(rock%shear, kind=ik))
-         rotation = first + regions%nodes%place(region, regions%rotation_of_corner(k, cell))
-         if (.not. doubled(rotation - first) > 0.0_rk) then
-            doubled(rotation - first) = 2.0_rk*rock%shear(here)
-         end if
-         nu = rock%lame(here)/(2.0_rk*(rock%lame(here) + rock%shear(here)))
-         call corner_geometry(mesh, cell, k, faces, sign_out, length, lever, area)
-         do j = 1, 2
-            call traction_face(mesh, faces(j), sign_out(j))
-            at(j) = 2*regions%faces%place(region, faces(j)) - 1
-         end do
-         do j = 1, 2
-            do i = 1, 2
-               w = area/3.0_rk*sign_out(i)*sign_out(j)/(2.0_rk*rock%shear(here))
-               call add_compliance(local%equations, at(i), at(j), w, nu, lever(:, i), lever(:, j))
-            end do
-            w = sign_out(j)*area/(3.0_rk*doubled(rotation - first))
-            call add_symmetric(local%equations, at(j), rotation, -w*lever(2, j))
-            call add_symmetric(local%equations, at(j) + 1, rotation, w*lever(1, j))
-            w = sign_out(j)*area/3.0_rk
-            local%coupling(at_component(c, 1), at(j)) = 0.5_rk*sign_out(j)*length(j)
-            local%coupling(at_component(c, 2), at(j) + 1) = 0.5_rk*sign_out(j)*length(j)
-            local%coupling(at_component(c, 3), at(j):at(j) + 1) = &
-               w*lever(:, j)*rock%biot(here)/(2.0_rk*(rock%lame(here) + rock%shear(here)))
-         end do
-      end do
-   end subroutine add_corners
-
-   !> Rotations whose equations, in the tractions that are not given, follow from those before:
-   !! fixed, so that the rotations before stand for them too.
-   pure subroutine leave_out_repeated(n_tractions, local)
-      integer(ik), intent(in) :: n_tractions
-      type(local_system_t), intent(inout) :: local
-      real(rk), parameter :: nothing = 1.0e-10_rk  !< what is left of a repeated row
-      real(rk) :: rows(n_tractions, local%n - n_tractions), left(n_tractions)
-      real(rk) :: whole
-      integer(ik) :: i, k
-
-      do k = 1, size(rows, 2, kind=ik)
-         left = local%equations(:n_tractions, n_tractions + k)
-         whole = norm2(left)
-         rows(:, k) = 0.0_rk
-         if (.not. whole > 0.0_rk) cycle
-         do i = 1, k - 1
-            left = left - dot_product(rows(:, i), left)*rows(:, i)
-         end do
-         if (norm2(left) > nothing*whole) then
-            rows(:, k) = left/norm2(left)
-         else
-            call fix_unknown(local, n_tractions + k, 0.0_rk)
-         end if
-      end do
-   end subroutine leave_out_repeated
-
-   !> Jumps of the fracture cells, which are unknowns: each end's acts in the region where it lies.
-   pure subroutine add_jumps(mesh, regions, region, local)
-      type(mesh_t), intent(in) :: mesh
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local
-      integer(ik) :: at, b, block, cell, f
-      real(rk) :: half_length
-
-      do b = regions%cell_count(region) + 1, regions%blocks%length(region)
-         block = regions%blocks%at(region, b)
-         cell = fracture_cell_of_block(mesh, block)
-         if (fracture_end_region(mesh, regions, cell, end_of_block(mesh, block)) /= region) cycle
-         f = mesh%fracture%cell_faces(1, cell)
-         half_length = 0.5_rk*face_length(mesh, f)
-         at = 2*regions%faces%place(region, f) - 1
-         local%coupling(at_component(b, 1), at) = half_length
-         local%coupling(at_component(b, 2), at + 1) = half_length
-      end do
-   end subroutine add_jumps
-
-   !> A t_j (x) m_j : t_i (x) m_i for unit tractions, A the isotropic compliance.
-   pure subroutine add_compliance(matrix, row, col, factor, nu, lever_i, lever_j)
-      real(rk), intent(inout) :: matrix(:, :)  !< [m2/Pa]
-      integer(ik), intent(in) :: row, col  !< of the x components
-      real(rk), intent(in) :: factor  !< weight/(2G) [m2/Pa]
-      real(rk), intent(in) :: nu  !< lambda/(2(lambda+G)) [-]
-      real(rk), intent(in) :: lever_i(2), lever_j(2)  !< m_i, m_j [-]
-      integer(ik) :: a, b
-
-      do b = 1, 2
-         do a = 1, 2
-            matrix(row + a - 1, col + b - 1) = matrix(row + a - 1, col + b - 1) &
-                                               - factor*nu*lever_i(a)*lever_j(b)
-         end do
-         matrix(row + b - 1, col + b - 1) = matrix(row + b - 1, col + b - 1) &
-                                            + factor*dot_product(lever_i, lever_j)
-      end do
-   end subroutine add_compliance
-
-   pure subroutine add_symmetric(matrix, row, col, value)
-      real(rk), intent(inout) :: matrix(:, :)  !< [m2/Pa]
-      integer(ik), intent(in) :: row, col
-      real(rk), intent(in) :: value  !< [m2/Pa]
-
-      matrix(row, col) = matrix(row, col) + value
-      matrix(col, row) = matrix(col, row) + value
-   end subroutine add_symmetric
-
-   !> Outer boundary: a component is displaced as given, loaded as given, or both on a spring.
-   pure subroutine apply_sides(mesh, sides, regions, region, local, in_situ)
-      type(mesh_t), intent(in) :: mesh
-      type(boundary_side_t), intent(in) :: sides(:)
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      type(local_system_t), intent(inout) :: local
-      type(in_situ_state_t), intent(in), optional :: in_situ
-      real(rk) :: traction(2)
-      integer(ik) :: axis, f, j, last, n
-
-      last = local%last()
-      do j = 1, regions%faces%length(region)
-         f = regions%faces%at(region, j)
-         if (mesh%face_side(f) == 0) cycle
-         associate (side => sides(mesh%face_side(f)), half_length => 0.5_rk*face_length(mesh, f), &
-                    outward => outward_normal(mesh, f))
-            traction = side%traction + side%normal_traction*outward &
-                       + side%shear_traction*[-outward(2), outward(1)]
-            if (present(in_situ)) then
-               traction = in_situ%side_traction(traction, outward, &
-                                                mesh%xy(2, regions%nodes%at(region, 1_ik)))
-            end if
-            do axis = 1, 2
-               n = 2*(j - 1) + axis
-               if (side%displacement_given(axis)) then
-                  local%equations(last, n) = local%equations(last, n) &
-                                             + half_length*side%displacement(axis)
-               else if (side%spring(axis) > 0.0_rk) then
-                  ! The side moves by what the traction lacks of the given one, over the spring.
-                  associate (give => half_length/side%spring(axis))
-                     local%equations(n, n) = local%equations(n, n) + give
-                     local%equations(last, n) = local%equations(last, n) + give*traction(axis)
-                  end associate
-               else
-                  call fix_unknown(local, n, traction(axis))
-               end if
-            end do
-         end associate
-      end do
-      ! Where all tractions are given, as in a loaded corner, the rotation is free and without
-      ! effect.
-      do n = 2*regions%faces%length(region) + 1, local%n
-         if (.not. any(abs(local%equations(:local%n, n)) > 0.0_rk)) local%equations(n, n) = 1.0_rk
-      end do
-   end subroutine apply_sides
 
 end module coarse_matrix

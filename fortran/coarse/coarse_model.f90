@@ -1,9 +1,6 @@
 !> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step
-!! at a time.
-!!
-!! The discretization is made once per mesh; the matrix is factorized once per length of the time
-!! step. A time step then costs one substitution in the factors and a few small dense Newton steps
-!! on the fractures.
+!! at a time. The rock is discretized once per mesh and factorized once per length of the time step;
+!! a step then costs one substitution and a few small Newton steps on the fractures.
 module coarse_model
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -14,18 +11,20 @@ module coarse_model
    use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
-   use coarse_fluid_law, only: fluid_gained
-   use coarse_fractures, only: flow_paths_t, fracture_problem_t, newton_settings_t
-   use mesh_geometry, only: cell_area
+   use coarse_fluid_law, only: add_fracture_balance
+   use coarse_fractures, only: flow_paths_t, newton_settings_t
+   use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
-   use coarse_matrix, only: discretize, matrix_t, renew_sides
-   use coarse_newton, only: solve_fractures
+   use coarse_matrix, only: matrix_t
+   use coarse_newton, only: fracture_problem_t, solve_fractures
    use coarse_loads, only: add_point_forces, find_weight, hold_points
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
-   use coarse_wells, only: choose_ways, control_rate, correct_ways, rock_wells_t, wells_t
+   use coarse_rock, only: new_rock, rock_t, solid_t
+   use coarse_wells, only: control_rate, rock_wells_t, wells_t
    use coarse_state, only: fracture_cells_t, go_back, state_t, step_report_t
+   use coarse_stencils, only: discretize, renew_sides
    use mesh_types, only: mesh_t, point_interior
    use scene_fluid_law, only: has_law, new_fluid_law
    use scene_outline, only: sides_of_scene
@@ -36,7 +35,7 @@ module coarse_model
 
    public :: coarse_model_t, new_state, rest_fluid
 
-   !> Everything that belongs to one mesh.
+   !> Discretized body on one mesh.
    type, extends(fracture_problem_t) :: coarse_model_t
       type(rock_t) :: rock
       type(boundary_side_t), allocatable :: sides(:)  !< pressures beyond those in situ
@@ -44,14 +43,14 @@ module coarse_model
       type(regions_t) :: regions
       type(matrix_t) :: matrix
       type(rock_wells_t) :: rock_wells  !< those of them in the rock
-      !> (fracture cells) resistance of the rock beside each over that of the scene's rock, where
-      !! regions differ [-]
+      !> (fracture cells) resistance of the adjacent rock over that of the scene's rock; allocated
+      !! with regions [-]
       real(rk), allocatable :: rock_resistance(:)
       type(crack_ends_t) :: ends  !< of the cracks
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
-      !> (2, n_cells) force that no stress in situ carries: weight, point loads [N/m]
+      !> (2, n_cells) forces not balanced by the stress in situ: weight, point loads [N/m]
       real(rk), allocatable :: weight(:, :)
    contains
       procedure :: set_mesh
@@ -92,7 +91,7 @@ contains
                                            young=scene%material%young)
          if (has_law(fluid)) then
             self%settings%fluid_law = new_fluid_law(fluid)
-            ! A density counts its compression itself.
+            ! A density law contains the compression.
             if (fluid%density_law /= "linear") self%settings%compressibility = 0.0_rk
          end if
       end associate
@@ -107,44 +106,38 @@ contains
          end if
       end if
       self%ends = free_ends(mesh%fracture)
-      call self%condensed%forget(is_full(mesh, scene%discretization%condensation))
+      call self%condensed%forget(mesh, scene%discretization%condensation)
       call self%factors%release()
       call timers%stop(phase_discretize)
    end subroutine set_mesh
 
-   !> The state in situ of a scene that has one, and the weight that it does not carry.
+   !> Set the state in situ, if the scene has one, and the weight that it does not balance.
    subroutine place_in_situ(self, mesh, scene)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(scene_t), intent(in) :: scene
+      real(rk) :: centre(2)
+      real(rk), allocatable :: height(:)
       integer(ik) :: c
 
       call find_in_situ(scene, self%rock%biot(1), self%in_situ)
       call take_sides(self, scene)
       if (allocated(self%in_situ)) then
-         self%cells%pressure_in_situ = [(self%in_situ%pressure_at(middle_height(c)), &
-                                         c=1, mesh%fracture%n_cells)]
+         allocate (height(mesh%fracture%n_cells))
+         do c = 1, mesh%fracture%n_cells
+            centre = fracture_cell_centre(mesh%fracture, c)
+            height(c) = centre(2)
+         end do
+         self%cells%pressure_in_situ = self%in_situ%pressure_at(height)
       end if
       call find_weight(mesh, scene, self%in_situ, self%weight)
       if (scene%has_points() .and. .not. allocated(self%weight)) then
          allocate (self%weight(2, mesh%n_cells), source=0.0_rk)
       end if
       if (scene%has_points()) call add_point_forces(scene, mesh, self%weight)
-
-   contains
-
-      !> Of a fracture cell [m].
-      pure real(rk) function middle_height(cell)
-         integer(ik), intent(in) :: cell
-
-         associate (points => mesh%fracture%cell_points(:, cell))
-            middle_height = 0.5_rk*sum(mesh%fracture%point_xy(2, points))
-         end associate
-      end function middle_height
-
    end subroutine place_in_situ
 
-   !> What the scene prescribes on the sides, beyond the state in situ.
+   !> Set the boundary conditions, relative to the state in situ.
    pure subroutine take_sides(self, scene)
       class(coarse_model_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -153,7 +146,7 @@ contains
       if (allocated(self%in_situ)) self%sides%pressure = self%sides%pressure - self%in_situ%pressure
    end subroutine take_sides
 
-   !> Take other values on the sides, of the same kinds, in the course of time.
+   !> Change the values of the boundary conditions; their kinds remain.
    subroutine change_sides(self, mesh, scene, timers, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -168,19 +161,6 @@ contains
       call timers%stop(phase_assemble)
    end subroutine change_sides
 
-   !> Whether the rock is condensed onto its fractures as a full matrix: as asked for, or where it
-   !! costs less: its elimination grows with the cube of the fracture cells, that of the sparse one
-   !! with the cells to the power 1.2, and growth and contact take about as many of both.
-   pure logical function is_full(mesh, condensation)
-      type(mesh_t), intent(in) :: mesh
-      character(len=*), intent(in) :: condensation  !< "auto", "full", "sparse"
-      real(rk), parameter :: cells_per_square = 30.0_rk  ! where both cost the same, measured
-
-      is_full = real(mesh%fracture%n_cells, rk)**2 <= cells_per_square*mesh%n_cells
-      if (condensation /= "auto") is_full = condensation == "full"
-      is_full = is_full .or. mesh%fracture%n_cells == 0
-   end function is_full
-
    !> The state before anything happens: no displacement, uniform pressure.
    subroutine new_state(mesh, cells, initial, model, state)
       type(mesh_t), intent(in) :: mesh
@@ -189,6 +169,7 @@ contains
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(out) :: state
       real(rk) :: pressure  ! [Pa]
+      type(solid_t) :: solid
       integer(ik) :: c, n
 
       n = mesh%fracture%n_cells
@@ -199,11 +180,8 @@ contains
       allocate (state%content(mesh%n_cells))
       do c = 1, mesh%n_cells
          ! Content at zero strain: S p
-         associate (rock => model%rock, at => min(c, size(model%rock%shear, kind=ik)))
-            state%content(c) = pressure*rock%storage(at)*model%matrix%storage(c) &
-                               /(rock%storage(at) + rock%biot(at)**2 &
-                                 /(rock%lame(at) + rock%shear(at)))
-         end associate
+         solid = model%rock%solid_at(c)
+         state%content(c) = pressure*solid%storage*model%matrix%storage(c)/solid%storage_at_stress()
       end do
       allocate (state%jump(2, 2, n), state%traction(2, 2, n), state%leakoff(n), source=0.0_rk)
       allocate (state%slip_before(2, n), source=0.0_rk)
@@ -220,7 +198,8 @@ contains
       call rest_fluid(model, state)
    end subroutine new_state
 
-   !> Nothing flows along the fractures, and joints have the pressures of the cells around them.
+   !> Set all flows along the fractures to zero and the pressures of joints to those of the adjacent
+   !! cells.
    subroutine rest_fluid(model, state)
       class(coarse_model_t), intent(in) :: model
       type(state_t), intent(inout) :: state
@@ -231,7 +210,7 @@ contains
       state%joint_pressure = [(model%joints%mean_pressure(j, state%pressure), j=1, model%joints%n)]
    end subroutine rest_fluid
 
-   !> Undrained response to the load, the fractures having the pressure of the rock around them: no
+   !> Undrained response to the load: the fractures have the pressure of the adjacent rock, and no
    !! fluid flows along them, through joints or wells.
    subroutine equilibrate(self, mesh, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
@@ -269,7 +248,7 @@ contains
 
       call timers%heed(error)
       if (allocated(error)) return
-      paths = flow_paths_t(self%settings, self%connections, self%joints, self%wells)
+      paths = self%flow_paths_t
       if (self%rock_wells%n > 0) then
          call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       else
@@ -277,8 +256,8 @@ contains
       end if
    end subroutine advance
 
-   !> The same with wells in the rock whose rate depends on pressures, repeated until these agree
-   !! with how they have been tried.
+   !> A step with pressure-controlled wells in the rock, repeated until the results agree with the
+   !! controls that have been tried.
    subroutine advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -289,52 +268,38 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: before
-      integer(ik), allocatable :: way(:)
       logical :: any_changed
       integer(ik) :: first, k, last, most
 
       before = state
-      way = state%rock_well_control
       first = self%wells%n + 1
       last = self%wells%n_all
-      call choose_ways(self%wells, way)
-      most = 3*self%rock_wells%n + 1
-      do k = 1, 2*most + 30
-         call self%rock_wells%set_terms(self%wells, way, dt, before%well_head(first:), &
-                                        self%matrix, any_changed)
-         if (any_changed) self%condensed%dt = -1.0_rk
-         call solve_step(self, mesh, paths, dt, state, timers, report, error)
-         if (allocated(error) .or. .not. report%converged) return
-         call self%rock_wells%find_flows(self%wells, way, dt, before%well_head(first:), &
-                                         state%unknowns(3, :mesh%n_cells), &
-                                         state%well_flow(first:last), state%well_head(first:last), &
-                                         state%well_rate(first:last))
-         ! The balance has counted what would flow into cells without pressure.
-         report%mass_error = report%mass_error + dt*sum(self%rock_wells%source &
-                                                        - state%well_flow(first:last))
-         call correct_ways(self%wells, state%well_head(first:last), state%well_rate(first:last), &
-                           k > most, way, any_changed)
-         if (.not. any_changed) exit
-         call go_back(state, before)
-      end do
-      state%rock_well_control = way
+      associate (wells => self%rock_wells, head_before => before%well_head(first:))
+         call wells%choose_controls(self%wells, state%rock_well_control)
+         most = 3*wells%n + 1
+         do k = 1, 2*most + 30
+            call wells%set_terms(self%wells, dt, head_before, self%matrix, any_changed)
+            if (any_changed) self%condensed%dt = -1.0_rk
+            call solve_step(self, mesh, paths, dt, state, timers, report, error)
+            if (allocated(error) .or. .not. report%converged) return
+            call wells%find_flows(self%wells, dt, head_before, state%unknowns(3, :mesh%n_cells), &
+                                  state%well_flow(first:last), state%well_head(first:last), &
+                                  state%well_rate(first:last))
+            ! The balance contains the sources at a pressure of zero in the cells.
+            report%mass_error = report%mass_error + dt*sum(wells%source &
+                                                           - state%well_flow(first:last))
+            call wells%correct_controls(self%wells, state%well_head(first:last), &
+                                        state%well_rate(first:last), k > most, any_changed)
+            if (.not. any_changed) exit
+            call go_back(state, before)
+         end do
+         state%rock_well_control = wells%control
+      end associate
       report%converged = .not. any_changed
       if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
    end subroutine advance_with_wells
 
-   !> Add values at places of which some may be the same.
-   pure subroutine add_at(place, value, sum)
-      integer(ik), intent(in) :: place(:)
-      real(rk), intent(in) :: value(:)
-      real(rk), intent(inout) :: sum(:)  !< in the unit of the values
-      integer :: k
-
-      do k = 1, size(place)
-         sum(place(k)) = sum(place(k)) + value(k)
-      end do
-   end subroutine add_at
-
-   !> What supports the faces of the fractures: springs at tips, dampers.
+   !> Set the springs on the faces of the fractures: at tips, and dampers.
    subroutine support_faces(self, mesh, settings, dt)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -353,7 +318,7 @@ contains
       end if
    end subroutine support_faces
 
-   !> Loads, sources and the fluid that is there.
+   !> Right-hand side of the body: loads, sources, stored fluid.
    subroutine find_load(self, mesh, wells, dt, content, load, fluid)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
@@ -362,6 +327,7 @@ contains
       real(rk), intent(in) :: content(:)  !< (cells) of fluid before the step [m2]
       real(rk), allocatable, intent(out) :: load(:, :)  !< (3, n_blocks) [N/m], [m2]
       real(rk), allocatable, intent(out) :: fluid(:)  !< (cells) injected, if any [m2/s]
+      integer(ik) :: w
 
       load = self%matrix%elastic_known
       load(3, :) = load(3, :) + dt*self%matrix%flow_known
@@ -369,7 +335,11 @@ contains
       if (allocated(self%source)) then
          fluid = self%source(3, :)
          if (wells%n_all > wells%n) then
-            call add_at(self%rock_wells%cell, self%rock_wells%source, fluid)
+            do w = 1, self%rock_wells%n
+               associate (into => fluid(self%rock_wells%cell(w)))
+                  into = into + self%rock_wells%source(w)
+               end associate
+            end do
          end if
          load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%source(:2, :)
          load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - dt*fluid
@@ -379,7 +349,7 @@ contains
       end if
    end subroutine find_load
 
-   !> Add what dampers and a stress in situ load the faces with.
+   !> Add the loads of dampers and of a stress in situ on the faces.
    subroutine add_face_loads(self, mesh, settings, dt, jump, load)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
@@ -398,7 +368,7 @@ contains
       end if
    end subroutine add_face_loads
 
-   !> The step with sources and matrix as they are.
+   !> Solve a step with the present sources and matrix.
    subroutine solve_step(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -459,15 +429,15 @@ contains
       end if
    end subroutine solve_step
 
-   !> Fast slip radiates energy. Not in the initial state, which takes no time.
+   !> Whether slip radiates energy; not in the initial state, which takes no time.
    pure logical function is_damped(settings)
       type(newton_settings_t), intent(in) :: settings
 
       is_damped = settings%damping > 0.0_rk .and. .not. settings%equilibrate
    end function is_damped
 
-   !> Where the fluid of the step went, and what appeared or vanished: what is stored less what came
-   !! in.
+   !> The fluid balance of the step: what is stored less what has been supplied, and the parts of
+   !! it that are reported.
    subroutine book_fluid(self, mesh, paths, fluid, dt, before, after, report)
       class(coarse_model_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
@@ -476,26 +446,15 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(in) :: before, after
       type(step_report_t), intent(inout) :: report
-      real(rk), allocatable :: held(:), outflow(:)
+      real(rk), allocatable :: outflow(:)
 
       report%compressed = 0.0_rk
       report%rock_outflow = 0.0_rk
       associate (balance => report%mass_error)
          balance = sum(after%content - before%content)
          if (mesh%fracture%n_cells > 0) then
-            held = after%aperture - after%void
-            report%compressed = sum(self%condensed%length*held*self%settings%compressibility &
-                                    *(after%pressure - before%pressure))
-            if (allocated(self%settings%fluid_law)) then
-               report%compressed = report%compressed &
-                                   + fluid_gained(self%settings%fluid_law, self%cells, &
-                                                  self%condensed%length, before, after)
-            end if
-            held = held - (before%aperture - before%void)
-            balance = balance + sum(self%condensed%length*held) + report%compressed &
-                      - dt*sum(after%injection)
-            if (paths%joints%n > 0) balance = balance - dt*sum(into_joints(paths, after)) &
-                                              + dt*paths%joints%outflow(after%branch_flow)
+            call add_fracture_balance(paths, self%cells, self%condensed%length, dt, before, after, &
+                                      report%compressed, balance)
          end if
          if (allocated(fluid)) balance = balance - dt*sum(fluid)
          if (self%drained) then
@@ -503,7 +462,7 @@ contains
             call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
             report%rock_outflow = dt*sum(outflow)
             if (mesh%fracture%n_cells > 0) then
-               ! Through the faces of fractures fluid stays inside.
+               ! Fluid that crosses the faces of fractures remains in the body.
                report%rock_outflow = report%rock_outflow &
                                      + dt*sum(self%condensed%length*after%leakoff)
             end if
@@ -511,18 +470,6 @@ contains
          end if
       end associate
    end subroutine book_fluid
-
-   !> What wells feed into the joints themselves [m2/s].
-   pure function into_joints(paths, state) result(injection)
-      type(flow_paths_t), intent(in) :: paths
-      type(state_t), intent(in) :: state
-      real(rk) :: injection(paths%joints%n)
-
-      injection = paths%joints%injection
-      if (paths%wells%n > 0) then
-         injection = injection + matmul(paths%wells%joint_share, state%well_flow(:paths%wells%n))
-      end if
-   end function into_joints
 
    !> Free what gfortran 12 does not free by itself where the model is a component: arrays of the
    !! types that its components extend.
@@ -538,16 +485,16 @@ contains
    subroutine find_connections(mesh, connections)
       type(mesh_t), intent(in) :: mesh
       integer(ik), allocatable, intent(out) :: connections(:, :)
-      integer(ik) :: n, point
+      integer(ik), allocatable :: inside(:)
+      integer(ik) :: i
 
-      allocate (connections(2, mesh%fracture%n_points))
-      n = 0
-      do point = 1, mesh%fracture%n_points
-         if (mesh%fracture%point_kind(point) /= point_interior) cycle
-         n = n + 1
-         connections(:, n) = mesh%fracture%point_cells%of(point)
-      end do
-      connections = connections(:, :n)
+      associate (fracture => mesh%fracture)
+         inside = pack([(i, i=1, fracture%n_points)], fracture%point_kind == point_interior)
+         allocate (connections(2, size(inside)))
+         do i = 1, size(inside, kind=ik)
+            connections(:, i) = fracture%point_cells%of(inside(i))
+         end do
+      end associate
    end subroutine find_connections
 
 end module coarse_model

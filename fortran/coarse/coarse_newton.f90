@@ -6,27 +6,39 @@
 module coarse_newton
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
+   use coarse_condensed, only: condensed_t
    use coarse_fluid_law, only: add_fluid_law
    use coarse_fracture_flow, only: fill_balance, fill_branch, fill_equilibrium, fill_exchange, &
                                    fill_flow, fill_joint
-   use coarse_fractures, only: cell_fluid_t, flow_paths_t, fracture_problem_t, fracture_system_t, &
-                               prepare
+   use coarse_fractures, only: cell_fluid_t, flow_paths_t, fracture_system_t, prepare
+   use coarse_full_step, only: find_full_step, kinds_t
    use coarse_joints, only: flows_in_loops, unknown_flow
    use coarse_pivoting, only: pivot_fractures
-   use coarse_state, only: state_t, step_report_t
+   use coarse_sparse_step, only: sparse_step_t
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_well_flow, only: fill_well, find_well
-   use contact_law, only: contact_equations, contact_equations_t, contact_residual
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged, &
-                             outcome_not_a_number, outcome_singular
+                             outcome_not_a_number, outcome_singular, step_quality_t
+   use contact_point, only: contact_equations, contact_equations_t, contact_residual
    implicit none(type, external)
    private
 
-   public :: equations_t, solve_fractures
+   public :: equations_t, fracture_problem_t, solve_fractures
 
-   !> The whole system.
+   !> Data of the equations of the fractures of one mesh, from step to step.
+   type, extends(flow_paths_t) :: fracture_problem_t
+      type(condensed_t) :: condensed
+      type(sparse_step_t) :: factors  !< of the linear step unless the condensed matrix is full
+      type(fracture_cells_t) :: cells  !< set by the caller for each mesh
+   end type fracture_problem_t
+
+   !> The equations of one step.
    type, extends(fracture_system_t) :: equations_t
+      type(sparse_step_t), pointer :: factors => null()  !< needed unless the matrix is full
+      type(kinds_t) :: kinds  !< unknowns by their meaning; see find_kinds
    contains
       procedure :: evaluate
+      procedure :: find_step
       procedure :: restart
    end type equations_t
 
@@ -34,8 +46,8 @@ module coarse_newton
 
 contains
 
-   !> One time step of the fractures, the rock condensed. `state` holds the state before and is
-   !! replaced only if the iteration converges.
+   !> Solve one time step of the fractures, with the rock condensed. `state` is that before the step
+   !! and is replaced only if the iteration converges.
    subroutine solve_fractures(problem, paths, dt, g, state, q, report)
       type(fracture_problem_t), intent(inout), target :: problem
       type(flow_paths_t), intent(in), target :: paths
@@ -50,7 +62,7 @@ contains
       real(rk), allocatable :: start(:), x(:)
       integer(ik) :: spent
 
-      call prepare(problem, paths, dt, g, state, eq)
+      call prepare(problem%condensed, problem%cells, paths, dt, g, state, eq)
       eq%factors => problem%factors
       how = iteration_settings_t(tolerance=paths%settings%tolerance, &
                                  iterations_max=paths%settings%iterations_max, &
@@ -69,7 +81,7 @@ contains
             spent = found%iterations
             x = start
             eq%state = reshape(state%contact, [size(eq%state)])
-            eq%way = 0
+            eq%slip_sign = 0
          end if
       end if
       if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
@@ -97,7 +109,7 @@ contains
       if (report%converged) call accept(eq, x, state, report)
    end subroutine solve_fractures
 
-   !> The cell whose equations are missed most at x; 0: none is known.
+   !> The cell with the largest residual at x; 0: none.
    integer(ik) function worst_cell(eq, x) result(worst)
       type(equations_t), intent(inout) :: eq
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -121,7 +133,8 @@ contains
       end do
    end function worst_cell
 
-   !> The state before, the rock at the fractures having their pressure, without flow.
+   !> Initial guess: the last state without flow, the rock at the faces at the pressure of the
+   !! fluid.
    pure subroutine find_start(eq, state, x)
       type(equations_t), intent(in) :: eq
       type(state_t), intent(in) :: state
@@ -156,7 +169,7 @@ contains
       integer(ik) :: i
 
       call check_fluid(eq, x, aperture, fluid, report)
-      if (report%converged) call check_contact(eq, state, report)
+      if (report%converged) call check_contact(eq, report)
       if (.not. report%converged) return
       call keep_contact(eq, state)
       associate (at => eq%condensed%layout, length => eq%condensed%length)
@@ -180,7 +193,7 @@ contains
       end associate
    end subroutine accept
 
-   !> Faces are apart everywhere, and no more fluid is drawn than there is.
+   !> Check that apertures are positive and that no more fluid is extracted than there is.
    subroutine check_fluid(eq, x, aperture, fluid, report)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -209,32 +222,27 @@ contains
       report%converged = .not. allocated(report%reason)
    end subroutine check_fluid
 
-   !> The law of contact is fulfilled.
-   subroutine check_contact(eq, state, report)
+   !> Check the contact law at all points.
+   subroutine check_contact(eq, report)
       type(equations_t), intent(in) :: eq
-      type(state_t), intent(in) :: state  !< before the step
       type(step_report_t), intent(inout) :: report
-      real(rk) :: residual
-      integer(ik) :: at, end, i, worst
+      real(rk) :: residual(size(eq%law))
+      integer(ik) :: at, i
 
-      worst = 0
-      do i = 1, eq%layout%n_cells
-         do end = 1, 2
-            at = eq%condensed%layout%at_jump(i, end)
-            residual = contact_residual(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
-                                        eq%q(at:at + 1), state%jump(2, end, i))
-            if (residual > report%contact_residual*report%stress_scale) worst = i
-            report%contact_residual = max(report%contact_residual, residual/report%stress_scale)
-         end do
+      do i = 1, size(eq%law, kind=ik)
+         at = eq%condensed%layout%at_jump((i + 1)/2, 2 - mod(i, 2_ik))
+         residual(i) = contact_residual(eq%law(i), eq%stiffness, eq%traction(:, i), &
+                                        eq%q(at:at + 1), eq%slip_before(i))
       end do
+      report%contact_residual = maxval(residual)/report%stress_scale
       if (.not. report%contact_residual <= contact_residual_max) then
          report%converged = .false.
          report%reason = "the contact law is violated in a fracture cell"
-         report%cell = worst
+         report%cell = (maxloc(residual, dim=1, kind=ik) + 1)/2
       end if
    end subroutine check_contact
 
-   !> Jumps, tractions, contact and what the faces have been through.
+   !> Store jumps, tractions, contact states and the history of the faces.
    subroutine keep_contact(eq, state)
       type(equations_t), intent(in) :: eq
       type(state_t), intent(inout) :: state
@@ -255,17 +263,17 @@ contains
          do i = 1, eq%layout%n_cells
             do end = 1, 2
                state%opened(end, i) = max(state%opened(end, i), &
-                                          eq%cells%law(i)%apart(eq%traction(:, end, i), &
+                                          eq%cells%law(i)%apart(eq%traction(:, 2*i - 2 + end), &
                                                                 state%jump(:, end, i)))
             end do
          end do
       end if
-      state%traction = eq%traction
+      state%traction = reshape(eq%traction, shape(state%traction))
       state%contact = reshape(eq%state, shape(state%contact))
    end subroutine keep_contact
 
-   !> How little is known of flows round loops, over the largest flow, or one that exchanges the
-   !! fluid of a cell in the step [-].
+   !> Uncertainty of flows round loops, over the largest flow or the flow that exchanges the fluid
+   !! of a cell in the step [-].
    pure function loop_flow_error(eq, x, aperture, report) result(error)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -277,7 +285,8 @@ contains
       error = 0.0_rk
       if (eq%paths%settings%equilibrate .or. eq%layout%n_joints == 0) return
       if (.not. report%condition > 0.0_rk) return
-      associate (flow => pack(x, eq%kinds%is_flow), at_first => eq%layout%at_flow(1_ik))
+      associate (flow => x(eq%layout%at_flow(1_ik):eq%layout%at_well(eq%layout%n_wells)), &
+                 at_first => eq%layout%at_flow(1_ik))
          largest = max(maxval(abs(flow)), maxval(aperture*eq%condensed%length)/eq%unit)
          unsolved = report%error_bound/report%condition*report%stress_scale
          error = unknown_flow(eq%slopes, at_first, &
@@ -286,8 +295,8 @@ contains
       end associate
    end function loop_flow_error
 
-   !> A joint, which holds no fluid that could become vapour, would have a pressure below that of
-   !! vapour: only a well can draw it so low.
+   !> Whether a well lowers the pressure of a joint below that of vapour; a joint holds no fluid
+   !! that could evaporate.
    pure logical function is_overdrawn(eq, x)
       type(equations_t), intent(in) :: eq
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -347,7 +356,45 @@ contains
       if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
    end subroutine evaluate
 
-   !> Contact by pivoting, from where the step started.
+   !> The linear step, by the full condensed matrix or with the factors of a sparse one.
+   subroutine find_step(self, with_condition, step, quality)
+      class(equations_t), intent(inout) :: self
+      logical, intent(in) :: with_condition
+      real(rk), intent(out) :: step(:)  !< [Pa]
+      type(step_quality_t), intent(out) :: quality
+
+      if (.not. allocated(self%kinds%is_flow)) call find_kinds(self)
+      if (self%condensed%is_full) then
+         call find_full_step(self%condensed%stiffness, self%slopes, self%kinds, self%residual, &
+                             self%stress_scale, with_condition, step, quality)
+      else
+         call self%factors%find_step(self%condensed, self%slopes, self%kinds%is_flow, &
+                                     self%residual, self%stress_scale, step, quality)
+      end if
+   end subroutine find_step
+
+   !> Find the unknowns that may be eliminated from the full matrix first. Flows along a fracture
+   !! are listed from its last cell to its first.
+   pure subroutine find_kinds(eq)
+      class(equations_t), intent(inout) :: eq
+      integer(ik) :: end, flow_to(eq%layout%n_cells), i, k
+
+      associate (layout => eq%layout, kinds => eq%kinds, n => eq%layout%n_cells)
+         allocate (kinds%is_flow(layout%count()), source=.false.)
+         kinds%is_flow(layout%at_flow(1_ik):layout%at_well(layout%n_wells)) = .true.
+         kinds%jump = [((layout%at_jump(i, end), end=1, 2), i=1, n)]
+         kinds%face = [((layout%at_face_pressure(i, end), end=1, 2), i=1, n)]
+         kinds%fluid = layout%at_pressure([(i, i=1, n)])
+         flow_to = 0
+         do k = 1, layout%n_flows
+            flow_to(maxval(eq%paths%connections(:, k))) = k
+         end do
+         kinds%flow = layout%at_flow(pack(flow_to(n:1:-1), flow_to(n:1:-1) > 0))
+         kinds%end_of_flow = layout%at_pressure(pack([(i, i=n, 1, -1)], flow_to(n:1:-1) > 0))
+      end associate
+   end subroutine find_kinds
+
+   !> Initial guess by pivoting, from the start of the step.
    subroutine restart(self, x, has_start)
       class(equations_t), intent(inout) :: self
       real(rk), intent(inout) :: x(:)  !< [Pa]
@@ -375,12 +422,12 @@ contains
       row = eq%layout%at_jump(i, end)
       fluid = eq%fluid_at(x, i)
       point = 2*(i - 1) + end
-      eq%traction(:, end, i) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
-      call contact_equations(eq%law_at(i, end), eq%stiffness, eq%traction(:, end, i), &
-                             eq%q(at:at + 1), eq%before%jump(2, end, i), eq%way(point), found)
+      eq%traction(:, point) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
+      call contact_equations(eq%law(point), eq%stiffness, eq%traction(:, point), eq%q(at:at + 1), &
+                             eq%slip_before(point), eq%slip_sign(point), found)
       eq%state(point) = found%state
       if (eq%is_without_contact) then
-         found%residual = eq%traction(:, end, i)
+         found%residual = eq%traction(:, point)
          found%by_traction = reshape([1.0_rk, 0.0_rk, 0.0_rk, 1.0_rk], [2, 2])
          found%by_jump = 0.0_rk
       end if

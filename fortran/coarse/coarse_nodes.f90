@@ -3,64 +3,41 @@ module coarse_nodes
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_fields, only: corner_gradients, displacement_gradients
-   use coarse_regions, only: regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_centre
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
 
-   public :: curved_displacement, nodal_fields, nodal_values, node_values
+   public :: nodal_fields, node_values
 
 contains
 
-   !> Displacement and pressure at the mesh's nodes: mean of what the cells around extrapolate.
-   subroutine nodal_values(mesh, rock, regions, unknowns, tractions, values)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(regions_t), intent(in) :: regions
-      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
-      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
-      real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
-      real(rk), allocatable :: at_corners(:, :, :, :)
-
-      call displacement_gradients(mesh, rock, regions, unknowns, tractions, at_corners)
-      call extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
-   end subroutine nodal_values
-
-   !> Displacement at the mesh's nodes, and its gradient there, for an interpolation that is exact
-   !! for quadratic fields: from a cell's centre to a node with the mean of the gradients of both.
-   subroutine curved_displacement(mesh, rock, regions, unknowns, tractions, values, gradients)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(regions_t), intent(in) :: regions
-      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
-      real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
-      real(rk), intent(out) :: values(:, :)  !< (2, n_nodes) [m]
-      real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) d u_i / d x_j [-]
-      real(rk), allocatable :: at_corners(:, :, :, :)
-
-      call displacement_gradients(mesh, rock, regions, unknowns, tractions, at_corners)
-      call curve_to_nodes(mesh, unknowns, at_corners, values, gradients)
-   end subroutine curved_displacement
-
-   !> Both of these, which have the gradients in common.
+   !> Fields at the mesh's nodes. `values`: displacement and pressure, the mean of what the cells
+   !! around a node extrapolate. `curved` and `gradients`: displacement and its gradient for an
+   !! interpolation that is exact for quadratic fields; from a cell's centre to a node with the mean
+   !! of the gradients at both.
    subroutine nodal_fields(mesh, rock, regions, unknowns, tractions, values, curved, gradients)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), intent(in) :: tractions(:)  !< of corner_tractions [Pa]
-      real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) of nodal_values [m], [m], [Pa]
-      real(rk), intent(out) :: curved(:, :)  !< (2, n_nodes) of curved_displacement [m]
-      real(rk), intent(out) :: gradients(:, :, :)  !< (2, 2, n_nodes) of curved_displacement [-]
+      real(rk), intent(out), optional :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
+      real(rk), intent(out), optional :: curved(:, :)  !< (2, n_nodes) with `gradients` [m]
+      !> (2, 2, n_nodes) d u_i / d x_j [-]
+      real(rk), intent(out), optional :: gradients(:, :, :)
       real(rk), allocatable :: at_corners(:, :, :, :)
 
       call displacement_gradients(mesh, rock, regions, unknowns, tractions, at_corners)
-      call extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
-      call curve_to_nodes(mesh, unknowns, at_corners, curved, gradients)
+      if (present(values)) then
+         call extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
+      end if
+      if (present(curved)) call curve_to_nodes(mesh, unknowns, at_corners, curved, gradients)
    end subroutine nodal_fields
 
-   !> See nodal_values. Each node has the cells of one region around it, those on its side of a
+   !> Mean of the extrapolations to each node, from the cells of one region on its side of a
    !! fracture.
    subroutine extrapolate_to_nodes(mesh, rock, regions, unknowns, at_corners, values)
       type(mesh_t), intent(in) :: mesh
@@ -95,7 +72,7 @@ contains
       integer(ik), intent(in) :: region
       real(rk), intent(inout) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
       real(rk), intent(inout) :: weight(:)  !< (n_nodes) their number [-]
-      real(rk) :: flux(regions%flow_faces%length(region)), value(3)
+      real(rk) :: flux(regions%flow_faces%length(region)), pressure_gradient(2), value(3)
       integer(ik) :: c, cell, k, v
 
       call region_fluxes(regions, regions%flux, unknowns(3, :), region, flux)
@@ -105,14 +82,16 @@ contains
             if (regions%regions_of_block(k, cell) == region) exit
          end do
          v = mesh%cell_nodes(k, cell)
-         call extrapolate(mesh, rock, regions, unknowns, cell, k, at_corners(:, :, k, cell), flux, &
+         call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
+         call extrapolate(mesh, unknowns, cell, k, at_corners(:, :, k, cell), pressure_gradient, &
                           value)
          values(:, v) = values(:, v) + value
          weight(v) = weight(v) + 1.0_rk
       end do
    end subroutine extrapolate_around
 
-   !> See curved_displacement.
+   !> Displacement at the nodes for an interpolation that is exact for quadratic fields, and its
+   !! gradient.
    pure subroutine curve_to_nodes(mesh, unknowns, at_corners, values, gradients)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
@@ -144,7 +123,7 @@ contains
       end do
    end subroutine curve_to_nodes
 
-   !> Displacement and pressure at one node, as nodal_values finds them.
+   !> Displacement and pressure at one node, as nodal_fields finds them.
    pure function node_values(mesh, rock, regions, unknowns, tractions, node) result(mean)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
@@ -154,7 +133,7 @@ contains
       integer(ik), intent(in) :: node
       real(rk) :: mean(3)  !< [m], [m], [Pa]
       real(rk) :: flux(regions%flow_faces%length(regions%region_of_node(node)))
-      real(rk) :: gradient(2, 2, 3), value(3)
+      real(rk) :: gradient(2, 2, 3), pressure_gradient(2), value(3)
       integer(ik) :: c, cell, k, n, region
 
       mean = 0.0_rk
@@ -166,7 +145,8 @@ contains
          k = findloc(mesh%cell_nodes(:, cell), node, dim=1)
          if (k == 0) cycle  ! on another side of a fracture
          call corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
-         call extrapolate(mesh, rock, regions, unknowns, cell, k, gradient(:, :, k), flux, value)
+         call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
+         call extrapolate(mesh, unknowns, cell, k, gradient(:, :, k), pressure_gradient, value)
          mean = mean + value
          n = n + 1
       end do
@@ -174,19 +154,16 @@ contains
    end function node_values
 
    !> Displacement and pressure at a corner, from those of the cell and its gradients.
-   pure subroutine extrapolate(mesh, rock, regions, unknowns, cell, k, gradient, flux, value)
+   pure subroutine extrapolate(mesh, unknowns, cell, k, gradient, pressure_gradient, value)
       type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(regions_t), intent(in) :: regions
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
-      integer(ik), intent(in) :: cell, k
+      integer(ik), intent(in) :: cell, k  !< corner k of the cell
       real(rk), intent(in) :: gradient(2, 2)  !< of the displacement at the corner [-]
-      real(rk), intent(in) :: flux(:)  !< of region_fluxes around it [m/s]
+      real(rk), intent(in) :: pressure_gradient(2)  !< [Pa/m]
       real(rk), intent(out) :: value(3)  !< [m], [m], [Pa]
-      real(rk) :: offset(2), pressure_gradient(2)
+      real(rk) :: offset(2)
 
       offset = mesh%xy(:, mesh%cell_nodes(k, cell)) - cell_centre(mesh, cell)
-      call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
       value(1:2) = unknowns(1:2, cell) + matmul(gradient, offset)
       value(3) = unknowns(3, cell) + dot_product(pressure_gradient, offset)
    end subroutine extrapolate

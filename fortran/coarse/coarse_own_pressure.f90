@@ -20,9 +20,9 @@ module coarse_own_pressure
 
 contains
 
-   !> The pressure at nodes: the mean of the cells around, and from there as far as two
-   !! extrapolations agree (minmod): one with the gradient of the cells' means, and the one that
-   !! knows the fluid's pressure at faces. Tips are drained. Exact where the pressure is linear.
+   !> Pressure at nodes: the mean of the adjacent cells plus the smaller of two extrapolations
+   !! (minmod), one with the gradient of the cells' means, one that contains the fluid's pressure at
+   !! faces. Tips are drained. Exact for linear pressures.
    pure function own_pressure(mesh, means, extrapolated, fluid) result(values)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: means(:)  !< (n_cells) [Pa]
@@ -128,7 +128,7 @@ contains
                  m(6) + 2.0_rk*m(3)*by(2) + m(1)*by(2)**2, m(7), m(8:9) + m(7)*by]
    end function shifted
 
-   !> Slope of the plane that fits best; zero if the points lie in a line.
+   !> Gradient of the least-squares plane; zero if the points lie on a line.
    pure function gradient_of(m) result(gradient)
       real(rk), intent(in) :: m(9)
       real(rk) :: gradient(2), xx, xy, yy, right(2), determinant
@@ -143,7 +143,7 @@ contains
       gradient = [yy*right(1) - xy*right(2), xx*right(2) - xy*right(1)]/determinant
    end function gradient_of
 
-   !> The smaller of two changes where both have one sign, else none.
+   !> The smaller of two numbers of the same sign, else 0.
    elemental real(rk) function minmod(a, b)
       real(rk), intent(in) :: a, b
 

@@ -20,8 +20,8 @@
 module coarse_permeability
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, left_part, polygon_area, triangle_area, turned_left
-   use coarse_regions, only: mean_mobility, new_rock, resistivity_of, rock_t
-   use coarse_solid, only: any_differ, make_room, number_stiffnesses, set_solid, solid_of, solid_t
+   use coarse_rock, only: any_differ, make_room, mean_mobility, new_rock, number_stiffnesses, &
+                          resistivity_of, rock_t, set_solid, solid_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use scene_check_permeability, only: most_anisotropic
@@ -33,12 +33,12 @@ module coarse_permeability
    public :: bearable, conduction_t, layered, mean_of_regions, place_regions
    public :: relative_resistance, share_of_cell
 
-   !> How a rock conducts, each xx, yy, xy.
+   !> Permeability and resistivity of a rock, each xx, yy, xy.
    type :: conduction_t
       real(rk) :: permeability(3) = 0.0_rk  !< [m2]
       real(rk) :: resistivity(3) = 0.0_rk  !< [Pa s/m2]
-      !> Of a cell with several rocks: how much better they conduct along their layers than across,
-      !! also where the cell is taken for less than that (`bearable`).
+      !> Of a cell with several rocks: ratio of the permeabilities along and across the layers,
+      !! before the limit of `bearable`.
       real(rk) :: layering = 0.0_rk
    end type conduction_t
 
@@ -46,7 +46,7 @@ module coarse_permeability
 
 contains
 
-   !> Give each cell of the mesh its rock.
+   !> Set the rock of each cell of the mesh.
    pure subroutine place_regions(mesh, regions, domain, fluid, rock)
       type(mesh_t), intent(in) :: mesh
       type(region_t), intent(in) :: regions(:)
@@ -55,6 +55,7 @@ contains
       type(rock_t), intent(inout) :: rock  !< uniform before
       type(outline_t) :: outlines(size(regions))
       type(conduction_t) :: at_cell, own(0:size(regions))  ! of the scene's rock first
+      type(rock_t) :: own_rock
       type(solid_t) :: solid(0:size(regions))
       real(rk) :: along(2, size(regions)), part(0:size(regions))
       logical :: differ
@@ -63,13 +64,14 @@ contains
 
       associate (viscosity => fluid%viscosity)
          own(0) = conduction(rock%permeability(:, 1), viscosity)
-         solid(0) = solid_of(rock)
+         solid(0) = rock%solid_at(1_ik)
          do i = 1, size(regions)
             outlines(i)%corners = region_outline(regions(i), domain)
             associate (m => regions(i)%material)
                own(i) = conduction([m%permeability_xx, m%permeability_yy, m%permeability_xy], &
                                    viscosity)
-               solid(i) = solid_of(new_rock(m, fluid))
+               own_rock = new_rock(m, fluid)
+               solid(i) = own_rock%solid_at(1_ik)
             end associate
          end do
          call number_stiffnesses(solid)
@@ -102,7 +104,7 @@ contains
       conduction%resistivity = [resistivity(1, 1), resistivity(2, 2), resistivity(1, 2)]
    end function conduction
 
-   !> The mean over each cell of what the scene's rock and each region have.
+   !> Mean over each cell of a property of the scene's rock and of each region.
    pure function mean_of_regions(mesh, regions, domain, values) result(mean)
       type(mesh_t), intent(in) :: mesh
       type(region_t), intent(in) :: regions(:)
@@ -142,7 +144,7 @@ contains
       end do
    end function relative_resistance
 
-   !> What a cell has of each region, from the last one, which counts most, to the rock around.
+   !> Areas of a cell in each region and in the surrounding rock; later regions have priority.
    pure subroutine parts_of_cell(cell, outlines, part, along)
       real(rk), intent(in) :: cell(2, 3)  !< corners, counter-clockwise [m]
       type(outline_t), intent(in) :: outlines(:)
@@ -201,8 +203,8 @@ contains
       if (is_mixed) mixed = bearable(mixed, viscosity)
    end function mixed_conduction
 
-   !> The same, or if it conducts more than `most_anisotropic` times better along than across, less
-   !! well along: by most_anisotropic**2 over this ratio, or as well as across.
+   !> Limit the conduction along layers: if the ratio along and across exceeds `most_anisotropic`,
+   !! it becomes most_anisotropic**2 over this ratio, at least 1.
    pure function bearable(layers, viscosity) result(limited)
       type(conduction_t), intent(in) :: layers
       real(rk), intent(in) :: viscosity  !< [Pa s]
@@ -225,7 +227,7 @@ contains
       limited%resistivity = resistance*([1.0_rk, 1.0_rk, 0.0_rk] + (1.0_rk/ratio - 1.0_rk)*dyad)
    end function bearable
 
-   !> The part of a cell in a region, and a line with the region on its left that cuts it off.
+   !> Share of a cell in a region, and a line that cuts it off, with the region on its left.
    pure subroutine share_of_cell(cell, outline, share, line)
       real(rk), intent(in) :: cell(2, 3)  !< corners, counter-clockwise [m]
       real(rk), intent(in) :: outline(:, :)  !< corners of the region, counter-clockwise [m]
@@ -251,7 +253,7 @@ contains
       line(:, 2) = line(:, 1) + along
    end subroutine share_of_cell
 
-   !> An edge of the outline comes near the cell: their boxes overlap.
+   !> Whether the bounding box of an edge of the outline overlaps that of the cell.
    pure logical function may_cut(outline, cell)
       real(rk), intent(in) :: outline(:, :), cell(2, 3)  !< [m]
       real(rk) :: high(2), low(2)
@@ -269,8 +271,8 @@ contains
       may_cut = .false.
    end function may_cut
 
-   !> The direction of the outline within a cell, the region on its left: the principal one of the
-   !! edges that do not lie on the cell's own, so that both sides of a thin region count alike.
+   !> Direction of the outline within a cell, the region on its left: the principal direction of the
+   !! edges that do not lie on the cell's own, so that both sides of a thin region count equally.
    pure function mean_direction(cell, part) result(along)
       real(rk), intent(in) :: cell(2, 3)  !< [m]
       real(rk), intent(in) :: part(:, :)  !< what of the region lies in the cell [m]

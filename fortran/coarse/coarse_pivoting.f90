@@ -15,7 +15,6 @@ module coarse_pivoting
    use base_kinds, only: ik, rk
    use coarse_fractures, only: fracture_system_t
    use coarse_full_step, only: full_slopes
-   use contact_law, only: contact_law_t
    use contact_newton, only: iterate_from, iteration_report_t, iteration_settings_t, &
                              outcome_converged
    use contact_pivoting, only: pivot_to_solution, slips_t
@@ -54,10 +53,10 @@ contains
          call condense(eq, x, fluid, body, has_start)
          if (has_start) call pivot(eq, body, x, has_start)
       end if
-      eq%way = 0
+      eq%slip_sign = 0
       call let_free(eq, fluid, x, has_start)
       eq%share_of_rock = 1.0_rk
-      eq%way = 0
+      eq%slip_sign = 0
    end subroutine pivot_fractures
 
    !> Let the share of the rock in the pressure of the fluid rise to one, from the state without.
@@ -83,7 +82,7 @@ contains
       do k = 1, most_steps
          if (.not. has_start .or. reached >= 1.0_rk) return
          eq%share_of_rock = min(1.0_rk, reached + step)
-         eq%way = 0
+         eq%slip_sign = 0
          trial = x
          call iterate_from(eq, trial, how, report)
          if (report%outcome == outcome_converged) then
@@ -148,13 +147,11 @@ contains
       type(condensed_jumps_t), intent(in) :: body
       real(rk), intent(inout) :: x(:)  !< where the body was condensed [Pa]; replaced if solved
       logical, intent(out) :: is_solved
-      type(contact_law_t) :: law(2*eq%layout%n_cells)
       real(rk) :: found(4*eq%layout%n_cells), share(2*eq%layout%n_cells)  ! of the mean length [-]
       real(rk) :: load(size(found)), stiffness(size(found), size(found))
       integer(ik) :: end, i, n
 
       n = 2*eq%layout%n_cells
-      law = [((eq%law_at(i, end), end=1, 2), i=1, eq%layout%n_cells)]
       share = [((eq%condensed%length(i), end=1, 2), i=1, eq%layout%n_cells)]
       share = share*n/sum(share)
       found = x(body%jumps)
@@ -163,9 +160,8 @@ contains
          stiffness(:, i) = -share((i + 1)/2)*body%slope(:, i)
          load(i) = share((i + 1)/2)*load(i)
       end do
-      call pivot_to_solution(stiffness, load, law, eq%stiffness*law%compliance/share, &
-                             slips_t(spread(.false., 1, n), &
-                                     eq%stiffness*reshape(eq%before%jump(2, :, :), [n]), &
+      call pivot_to_solution(stiffness, load, eq%law, eq%stiffness*eq%law%compliance/share, &
+                             slips_t(spread(.false., 1, n), eq%stiffness*eq%slip_before, &
                                      spread(0.0_rk, 1, n)), found, is_solved)
       if (.not. is_solved) return
       x(body%others) = x(body%others) + matmul(body%response(:, :2*n), found - x(body%jumps)) &

@@ -6,26 +6,21 @@
 !! varies linearly along the cell. Each node has a separate rotation. A node at which rocks of
 !! several stiffnesses meet has one rotation for each of them: on their interface the shear strain
 !! jumps, and with it the rotation, while the displacement is continuous.
-!!
-!! Poroelastic constants of the rock in the form that the discretization uses.
 module coarse_regions
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use base_lists, only: inverted, lists_t
    use coarse_elimination, only: response_t
    use coarse_layout, only: block_count, end_block
-   use mesh_geometry, only: corner_geometry
+   use mesh_geometry, only: corner_geometry, split_by_kind
    use mesh_types, only: mesh_t
-   use scene_fluid_law, only: storage
-   use scene_types, only: fluid_t, material_t
    implicit none(type, external)
    private
 
-   public :: find_regions, fracture_end_region, mean_mobility, new_rock, regions_t, resistivity_of
-   public :: rock_t, traction_face
+   public :: find_regions, fracture_end_region, regions_t, traction_face
 
-   !> What meets around each vertex (a list per region); and how tractions and fluxes there follow
-   !! from the unknowns, whose blocks are those of coarse_layout.
+   !> Nodes, faces and blocks around each vertex (a list per region), and the responses of tractions
+   !! and fluxes to the unknowns, whose blocks are those of coarse_layout.
    type :: regions_t
       integer(ik) :: n_regions = 0
       integer(ik) :: n_blocks = 0
@@ -55,28 +50,6 @@ module coarse_regions
       procedure :: at_traction
       procedure :: at_rotation
    end type regions_t
-
-   !> Isotropic elastic, anisotropic permeable rock; two-dimensional constants. The lists hold one
-   !! item if the rock is uniform, else one per cell: what cell c has is at min(c, size).
-   type :: rock_t
-      real(rk), allocatable :: shear(:)  !< shear modulus G [Pa]
-      real(rk), allocatable :: lame(:)  !< first Lame constant, reduced for plane stress [Pa]
-      real(rk), allocatable :: biot(:)  !< alpha of the stress in the plane [-]
-      real(rk), allocatable :: storage(:)  !< S at fixed strain in the plane [1/Pa]
-      !> Rocks of one stiffness have one number: across an outline between two of them, the rotation
-      !! jumps (coarse_regions).
-      integer(ik), allocatable :: stiffness(:)
-      real(rk) :: mobility = 0.0_rk  !< mean of K/mu of the scene's rock [m2/(Pa s)]
-      ! (.., 1) of a uniform rock, (.., n_cells) where regions differ (coarse_permeability):
-      real(rk), allocatable :: permeability(:, :)  !< (3, ..) K_xx, K_yy, K_xy [m2]
-      real(rk), allocatable :: resistivity(:, :, :)  !< (2, 2, ..) inverse of K/mu [Pa s/m2]
-      !> How much better a cell that outlines of regions cut conducts along them than across, at the
-      !! most, and which one; 0: no cell is cut.
-      real(rk) :: most_layered = 0.0_rk
-      integer(ik) :: most_layered_cell = 0
-   contains
-      procedure :: mobility_at
-   end type rock_t
 
 contains
 
@@ -108,7 +81,6 @@ contains
             end do
          end do
          regions%blocks = inverted(regions%regions_of_block, n)
-         region_of_rotation = region
          call number_rotations(mesh, stiffness, regions, region_of_rotation)
          regions%nodes = inverted(reshape(region_of_rotation, [1, size(region_of_rotation)]), n)
 
@@ -132,42 +104,20 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in), optional :: stiffness(:)  !< (n_cells), or 1 for all
       type(regions_t), intent(inout) :: regions
-      integer(ik), allocatable, intent(inout) :: region_of_rotation(:)  !< those of nodes, at first
-      integer(ik) :: c, k, last, n, node
-      integer(ik), allocatable :: next(:), own(:), more(:)
+      integer(ik), allocatable, intent(out) :: region_of_rotation(:)
+      integer(ik), allocatable :: node(:)
+      integer(ik) :: i
 
-      allocate (regions%has_interface(regions%n_regions), source=.false.)
+      node = [(i, i=1, mesh%n_nodes)]
       regions%rotation_of_corner = mesh%cell_nodes
-      if (.not. present(stiffness)) return
-      if (size(stiffness) < mesh%n_cells) return
-      ! The rotations of a node as a chain, each with the stiffness that it is for.
-      n = mesh%n_nodes
-      allocate (next(n), own(n), source=-1_ik)
-      do c = 1, mesh%n_cells
-         do k = 1, 3
-            node = mesh%cell_nodes(k, c)
-            last = node
-            if (own(node) < 0) own(node) = stiffness(c)
-            do while (own(last) /= stiffness(c) .and. next(last) > 0)
-               last = next(last)
-            end do
-            if (own(last) /= stiffness(c)) then
-               if (n == size(next)) then
-                  allocate (more(n), source=-1_ik)
-                  next = [next, more]
-                  own = [own, more]
-                  deallocate (more)
-               end if
-               n = n + 1
-               next(last) = n
-               own(n) = stiffness(c)
-               region_of_rotation = [region_of_rotation, regions%region_of_node(node)]
-               regions%has_interface(regions%region_of_node(node)) = .true.
-               last = n
-            end if
-            regions%rotation_of_corner(k, c) = last
-         end do
-      end do
+      if (present(stiffness)) then
+         if (size(stiffness) == mesh%n_cells) then
+            call split_by_kind(stiffness, regions%rotation_of_corner, node)
+         end if
+      end if
+      region_of_rotation = regions%region_of_node(node)
+      allocate (regions%has_interface(regions%n_regions), source=.false.)
+      regions%has_interface(region_of_rotation(mesh%n_nodes + 1:)) = .true.
    end subroutine number_rotations
 
    !> Where the tractions and rotations at all corners of cells stand.
@@ -239,18 +189,15 @@ contains
       integer(ik) :: region
 
       real(rk) :: distance(2)
-      integer(ik) :: k
 
       associate (nodes => mesh%face_nodes(:, mesh%fracture%cell_faces(1, cell)), &
                  point => mesh%fracture%point_xy(:, mesh%fracture%cell_points(end, cell)))
-         do k = 1, 2
-            distance(k) = norm2(mesh%xy(:, nodes(k)) - point)
-         end do
-         region = regions%region_of_node(nodes(merge(1, 2, distance(1) < distance(2))))
+         distance = norm2(mesh%xy(:, nodes) - spread(point, 2, 2), dim=1)
+         region = regions%region_of_node(nodes(minloc(distance, dim=1)))
       end associate
    end function fracture_end_region
 
-   !> How many numbers the tractions and rotations of all regions are.
+   !> Number of tractions and rotations of all regions.
    pure integer(ik) function traction_count(self)
       class(regions_t), intent(in) :: self
 
@@ -278,76 +225,5 @@ contains
       at_rotation = self%at_traction(region) + 2*self%faces%length(region) &
                     + self%nodes%place(region, rotation) - 1
    end function at_rotation
-
-   !> Constants from the scene (docs/theory.md).
-   pure function new_rock(material, fluid) result(rock)
-      type(material_t), intent(in) :: material
-      type(fluid_t), intent(in) :: fluid
-      type(rock_t) :: rock
-
-      real(rk) :: modulus
-
-      allocate (rock%shear(1), rock%lame(1), rock%biot(1), rock%storage(1))
-      allocate (rock%stiffness(1), source=0_ik)
-      associate (e => material%young, nu => material%poisson)
-         rock%shear = shear_of(material)
-         rock%lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu))
-         if (material%plane_stress) rock%lame = e*nu/(1.0_rk - nu**2)
-      end associate
-      rock%biot = material%biot
-      rock%storage = storage(material, fluid)
-      if (material%plane_stress) then
-         ! Without stress across the plane, strain follows there: e_zz = (alpha p - lambda (e_xx +
-         ! e_yy))/(lambda + 2 G), lambda that of the solid.
-       modulus = 2.0_rk*rock%shear(1)*(1.0_rk - material%poisson)/(1.0_rk - 2.0_rk*material%poisson)
-         rock%biot = material%biot*2.0_rk*rock%shear/modulus
-         rock%storage = rock%storage + material%biot**2/modulus
-      end if
-      allocate (rock%permeability(3, 1), rock%resistivity(2, 2, 1))
-      rock%permeability(:, 1) = [material%permeability_xx, material%permeability_yy, &
-                                 material%permeability_xy]
-      rock%resistivity(:, :, 1) = resistivity_of(rock%permeability(:, 1), fluid%viscosity)
-      rock%mobility = mean_mobility(rock%permeability(:, 1), fluid%viscosity)
-   end function new_rock
-
-   !> Shear modulus G [Pa].
-   pure real(rk) function shear_of(material)
-      type(material_t), intent(in) :: material
-
-      shear_of = material%young/(2.0_rk*(1.0_rk + material%poisson))
-   end function shear_of
-
-   !> The mean of K/mu in a cell [m2/(Pa s)].
-   pure real(rk) function mobility_at(self, cell)
-      class(rock_t), intent(in) :: self
-      integer(ik), intent(in) :: cell
-
-      associate (r => self%resistivity(:, :, min(int(cell), size(self%resistivity, 3))))
-         mobility_at = 1.0_rk/sqrt(r(1, 1)*r(2, 2) - r(1, 2)*r(2, 1))
-      end associate
-   end function mobility_at
-
-   !> The inverse of K/mu.
-   pure function resistivity_of(permeability, viscosity) result(resistivity)
-      real(rk), intent(in) :: permeability(3)  !< K_xx, K_yy, K_xy [m2]
-      real(rk), intent(in) :: viscosity  !< [Pa s]
-      real(rk) :: resistivity(2, 2)  !< [Pa s/m2]
-      real(rk) :: determinant
-
-      determinant = permeability(1)*permeability(2) - permeability(3)**2
-      resistivity(1, 1) = permeability(2)
-      resistivity(2, 2) = permeability(1)
-      resistivity(1, 2) = -permeability(3)
-      resistivity(2, 1) = -permeability(3)
-      resistivity = resistivity*(viscosity/determinant)
-   end function resistivity_of
-
-   !> The geometric mean of K/mu over directions [m2/(Pa s)].
-   pure real(rk) function mean_mobility(permeability, viscosity) result(mobility)
-      real(rk), intent(in) :: permeability(3)  !< K_xx, K_yy, K_xy [m2]
-      real(rk), intent(in) :: viscosity  !< [Pa s]
-
-      mobility = sqrt(permeability(1)*permeability(2) - permeability(3)**2)/viscosity
-   end function mean_mobility
 
 end module coarse_regions

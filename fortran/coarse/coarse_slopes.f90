@@ -31,6 +31,8 @@ module coarse_slopes
       procedure :: add_force
       procedure :: by_row
       procedure :: has_forces
+      procedure :: apply
+      procedure :: apply_transposed
    end type slopes_t
 
 contains
@@ -114,5 +116,47 @@ contains
       self%force(m, row) = force
       self%weight(m, row) = weight
    end subroutine add_force
+
+   !> The product with unknowns and the forces that belong to them.
+   pure subroutine apply(self, x, force, y)
+      class(slopes_t), intent(in) :: self
+      real(rk), intent(in) :: x(:)  !< (n) [Pa]
+      real(rk), intent(in) :: force(:)  !< (6 n) [N/m], [m2]
+      real(rk), intent(out) :: y(:)  !< (n) [Pa]
+      integer(ik) :: k, m, row
+
+      y = 0.0_rk
+      do k = 1, self%n_local
+         y(self%row(k)) = y(self%row(k)) + self%value(k)*x(self%col(k))
+      end do
+      do row = 1, self%n
+         do m = 1, forces_max
+            associate (i => self%force(m, row))
+               if (i > 0) y(row) = y(row) + self%weight(m, row)*force(i)
+            end associate
+         end do
+      end do
+   end subroutine apply
+
+   !> The product of the transpose.
+   pure subroutine apply_transposed(self, y, x, force)
+      class(slopes_t), intent(in) :: self
+      real(rk), intent(in) :: y(:)  !< (n)
+      real(rk), intent(out) :: x(:), force(:)  !< (n) of local entries, (6 n) of the forces
+      integer(ik) :: k, m, row
+
+      x = 0.0_rk
+      force = 0.0_rk
+      do k = 1, self%n_local
+         x(self%col(k)) = x(self%col(k)) + self%value(k)*y(self%row(k))
+      end do
+      do row = 1, self%n
+         do m = 1, forces_max
+            associate (i => self%force(m, row))
+               if (i > 0) force(i) = force(i) + self%weight(m, row)*y(row)
+            end associate
+         end do
+      end do
+   end subroutine apply_transposed
 
 end module coarse_slopes

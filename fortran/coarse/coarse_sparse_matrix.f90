@@ -8,49 +8,9 @@ module coarse_sparse_matrix
    implicit none(type, external)
    private
 
-   public :: apply_columns, apply_rows, assemble_rock, assemble_rows
+   public :: assemble_rock, assemble_rows
 
 contains
-
-   !> What the fractures' rows make of unknowns and of the forces that belong to them.
-   pure subroutine apply_rows(slopes, x, force, answer)
-      type(slopes_t), intent(in) :: slopes
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      real(rk), intent(in) :: force(:)  !< [N/m], [m2]
-      real(rk), intent(out) :: answer(:)  !< [Pa]
-      integer(ik) :: k, m, row
-
-      answer = 0.0_rk
-      do k = 1, slopes%n_local
-         answer(slopes%row(k)) = answer(slopes%row(k)) + slopes%value(k)*x(slopes%col(k))
-      end do
-      do row = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, row) > 0) answer(row) = answer(row) + slopes%weight(m, row) &
-                                                        *force(slopes%force(m, row))
-         end do
-      end do
-   end subroutine apply_rows
-
-   !> The same with the transpose.
-   pure subroutine apply_columns(slopes, y, x, force)
-      type(slopes_t), intent(in) :: slopes
-      real(rk), intent(in) :: y(:)
-      real(rk), intent(out) :: x(:), force(:)  !< by local entries, by the forces
-      integer(ik) :: k, m, row
-
-      x = 0.0_rk
-      force = 0.0_rk
-      do k = 1, slopes%n_local
-         x(slopes%col(k)) = x(slopes%col(k)) + slopes%value(k)*y(slopes%row(k))
-      end do
-      do row = 1, slopes%n
-         do m = 1, size(slopes%force, 1)
-            if (slopes%force(m, row) == 0) cycle
-            force(slopes%force(m, row)) = force(slopes%force(m, row)) + slopes%weight(m, row)*y(row)
-         end do
-      end do
-   end subroutine apply_columns
 
    !> The equations of the cells as triplets, for scaled equations and unknowns.
    subroutine assemble_rock(condensed, slopes, col_scale, row, col, values)
@@ -106,7 +66,7 @@ contains
 
    end subroutine assemble_rock
 
-   !> Those of the fractures.
+   !> The equations of the fractures as triplets.
    subroutine assemble_rows(condensed, slopes, col_scale, row_scale, row_factor, row, col, values)
       type(condensed_t), intent(in) :: condensed
       type(slopes_t), intent(in) :: slopes
@@ -145,7 +105,7 @@ contains
          values(n) = value*col_scale(j)
       end subroutine add
 
-      !> A force, as the sum over the cells around.
+      !> Add a force, as the sum over the surrounding cells.
       subroutine add_force(i, force, weight)
          integer(ik), intent(in) :: i, force
          real(rk), intent(in) :: weight
@@ -174,7 +134,7 @@ contains
       real(rk), intent(in) :: col_scale(:)  !< of the fractures' unknowns
       real(rk), intent(inout) :: values(:)
       real(rk), intent(out) :: row_scale(:)  !< largest coefficient by such an unknown, unscaled
-      real(rk), intent(out) :: row_factor(:)  !< what the equations are multiplied by
+      real(rk), intent(out) :: row_factor(:)  !< factors of the equations
       integer(ik) :: k
 
       row_scale = 0.0_rk

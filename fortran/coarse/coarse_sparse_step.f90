@@ -23,7 +23,7 @@ module coarse_sparse_step
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_slopes, only: slopes_t
-   use coarse_sparse_matrix, only: apply_columns, apply_rows, assemble_rock, assemble_rows
+   use coarse_sparse_matrix, only: assemble_rock, assemble_rows
    use contact_newton, only: step_quality_t
    implicit none(type, external)
    private
@@ -35,8 +35,8 @@ module coarse_sparse_step
    integer(ik), parameter :: most_kept = 32  !< directions
    integer(ik), parameter :: estimate_every = 10  !< factorizations
    real(rk), parameter :: reduction = 1.0e-8_rk  !< of the residuals
-   real(rk), parameter :: most = 1.0e-11_rk  !< of the stress scale: no more is left
-   real(rk), parameter :: least = 1.0e-13_rk  !< of the stress scale: less is not asked for
+   real(rk), parameter :: most = 1.0e-11_rk  !< of the stress scale, the largest tolerance
+   real(rk), parameter :: least = 1.0e-13_rk  !< of the stress scale, the least tolerance
 
    type :: sparse_step_t
       private
@@ -52,7 +52,8 @@ module coarse_sparse_step
       real(rk), allocatable :: weight(:, :)  !< of the forces in the factors' rows
       integer(ik) :: n_kept = 0
       real(rk), allocatable :: direction(:, :)  !< (unknowns, kept) p of the fractures
-      real(rk), allocatable :: force(:, :)  !< (6 n, kept) the forces that belong to them
+      real(rk), allocatable :: force(:, :)  !< (6 n, kept) forces of the directions
+      real(rk), allocatable :: product(:, :)  !< (equations, kept) of scaled rows and directions
       real(rk) :: condition = 0.0_rk
       integer(ik) :: estimated_for = 0  !< factorization of the rock
       integer(ik) :: estimated_at = 0  !< factorization
@@ -100,7 +101,8 @@ contains
       quality%rest = maxval(abs(left)/self%row_scale)/stress_scale
    end subroutine find_step
 
-   !> There are none, those of another time step, or of other contact at too many points.
+   !> Whether there are no factors, those of another time step, or too many points have changed
+   !! their state.
    pure logical function needs_factors(self, condensed, slopes)
       class(sparse_step_t), intent(in) :: self
       type(condensed_t), intent(in) :: condensed
@@ -115,8 +117,8 @@ contains
       end if
    end function needs_factors
 
-   !> Conjugate residuals: add to the step what makes less of what is left, first of the directions
-   !! that are known.
+   !> Conjugate residuals: improve the step along the known directions first, then along those that
+   !! the factors give.
    subroutine reduce(self, condensed, slopes, enough, step, left, is_done, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
@@ -126,8 +128,7 @@ contains
       real(rk), intent(inout) :: left(:)  !< minus the residuals after the step [Pa]
       logical, intent(out) :: is_done
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: independent = 1.0e-6_rk  ! so much is left of a known direction
-      real(rk) :: answer(size(step), most_kept), before, share
+      real(rk), parameter :: independent = 1.0e-6_rk  ! least part of a known direction that is new
       integer(ik) :: k, known
       logical :: is_used
 
@@ -136,7 +137,7 @@ contains
       do k = 1, known
          self%direction(:, self%n_kept + 1) = self%direction(:, k)
          self%force(:, self%n_kept + 1) = self%force(:, k)
-         call use_direction(self%n_kept + 1, independent, is_used)
+         call use_direction(self, condensed, slopes, independent, step, left, is_used)
       end do
       is_done = maxval(abs(left)) <= enough
       do k = 1, most_directions
@@ -144,60 +145,51 @@ contains
          call precondition(self, condensed, slopes, left, self%direction(:, self%n_kept + 1), &
                            self%force(:, self%n_kept + 1), error)
          if (allocated(error)) return
-         call use_direction(self%n_kept + 1, 0.0_rk, is_used)
+         call use_direction(self, condensed, slopes, 0.0_rk, step, left, is_used)
          if (.not. is_used) return
          is_done = maxval(abs(left)) <= enough
       end do
-
-   contains
-
-      !> Make the answer to a direction orthogonal to those before, and go along it. What is left is
-      !! formed anew from the answer, not from the factors.
-      subroutine use_direction(place, least_share, is_used)
-         integer(ik), value :: place
-         real(rk), intent(in) :: least_share
-         logical, intent(out) :: is_used
-
-         associate (p => self%direction(:, place), f => self%force(:, place))
-            call apply_rows(slopes, p, f + condensed%spring*p(slopes%x_of_q)*slopes%q_per_x, &
-                            answer(:, place))
-            answer(:, place) = answer(:, place)/self%row_scale
-            before = norm2(answer(:, place))
-            call make_orthogonal(self, place, answer)
-            share = norm2(answer(:, place))
-            is_used = share > least_share*before .and. share > 0.0_rk
-            if (.not. is_used) return
-            self%n_kept = place
-            answer(:, place) = answer(:, place)/share
-            p = p/share
-            f = f/share
-            share = dot_product(answer(:, place), left/self%row_scale)
-            step = step + share*p
-            left = left - share*answer(:, place)*self%row_scale
-         end associate
-      end subroutine use_direction
-
    end subroutine reduce
 
-   !> Make the answer to a direction orthogonal to those before, twice because of rounding.
-   subroutine make_orthogonal(self, place, answer)
+   !> Make the product of the direction after the kept ones orthogonal to theirs, improve the step
+   !! along it, and keep it. The remaining residual follows from the product, not from the factors.
+   subroutine use_direction(self, condensed, slopes, least_share, step, left, is_used)
       class(sparse_step_t), intent(inout) :: self
-      integer(ik), intent(in) :: place  !< of the direction
-      real(rk), intent(inout) :: answer(:, :)  !< to all of them
-      real(rk) :: share
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: least_share  !< of the product that must remain [-]
+      real(rk), intent(inout) :: step(:), left(:)  !< as in `reduce` [Pa]
+      logical, intent(out) :: is_used
+      real(rk) :: before, share
       integer(ik) :: j, pass
 
-      associate (p => self%direction(:, place), f => self%force(:, place))
-         do pass = 1, 2
-            do j = 1, place - 1
-               share = dot_product(answer(:, j), answer(:, place))
-               answer(:, place) = answer(:, place) - share*answer(:, j)
-               p = p - share*self%direction(:, j)
-               f = f - share*self%force(:, j)
+      associate (place => self%n_kept + 1)
+         associate (p => self%direction(:, place), f => self%force(:, place), &
+                    product => self%product(:, place))
+            call slopes%apply(p, f + condensed%spring*p(slopes%x_of_q)*slopes%q_per_x, product)
+            product = product/self%row_scale
+            before = norm2(product)
+            do pass = 1, 2  ! twice because of rounding
+               do j = 1, place - 1
+                  share = dot_product(self%product(:, j), product)
+                  product = product - share*self%product(:, j)
+                  p = p - share*self%direction(:, j)
+                  f = f - share*self%force(:, j)
+               end do
             end do
-         end do
+            share = norm2(product)
+            is_used = share > least_share*before .and. share > 0.0_rk
+            if (.not. is_used) return
+            product = product/share
+            p = p/share
+            f = f/share
+            share = dot_product(product, left/self%row_scale)
+            step = step + share*p
+            left = left - share*product*self%row_scale
+         end associate
       end associate
-   end subroutine make_orthogonal
+      self%n_kept = self%n_kept + 1
+   end subroutine use_direction
 
    !> The unknowns of the fractures that the factors give for a right-hand side of their rows, and
    !! the forces that belong to them, without springs.
@@ -222,7 +214,7 @@ contains
       call condensed%coupling%forces(all(:n, 1), x(slopes%x_of_q)*slopes%q_per_x, force)
    end subroutine precondition
 
-   !> Factors of the system with the rows of now.
+   !> Factorize the system with the present equations.
    subroutine renew(self, condensed, slopes, is_flow, error)
       class(sparse_step_t), intent(inout) :: self
       type(condensed_t), intent(inout) :: condensed
@@ -233,22 +225,7 @@ contains
       real(rk), allocatable :: values(:)
       logical :: is_known
 
-      is_known = allocated(self%row)
-      if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
-      if (.not. is_known .or. self%of /= condensed%factorizations) then
-         call assemble_rock(condensed, slopes, self%col_scale, row, col, values)
-         if (is_known) is_known = size(row) == self%n_rock
-         if (is_known) is_known = all(self%row(:self%n_rock) == row)
-         if (is_known) is_known = all(self%col(:self%n_rock) == col)
-         if (is_known) then
-            self%values(:size(values)) = values
-         else
-            call move_alloc(row, self%row)
-            call move_alloc(col, self%col)
-            call move_alloc(values, self%values)
-            self%n_rock = size(self%row, kind=ik)
-         end if
-      end if
+      call renew_rock(self, condensed, slopes, is_known)
       self%is_ready = .false.
       call assemble_rows(condensed, slopes, self%col_scale, self%row_scale, self%row_factor, row, &
                          col, values)
@@ -261,8 +238,9 @@ contains
             self%row = [self%row(:n), row]
             self%col = [self%col(:n), col]
             self%values = [self%values(:n), values]
+            self%solver%ordering = mumps_pord
             call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
-                                     mumps_unsymmetric, error, ordering=mumps_pord)
+                                     mumps_unsymmetric, error)
             if (allocated(error)) then
                deallocate (self%row, self%col, self%values)
                return
@@ -275,13 +253,40 @@ contains
       self%of = condensed%factorizations
       self%weight = slopes%weight
       self%n_kept = 0
-      if (allocated(self%direction)) deallocate (self%direction, self%force)
-      allocate (self%direction(slopes%n, most_kept), self%force(size(slopes%x_of_q), most_kept))
+      if (allocated(self%direction)) deallocate (self%direction, self%force, self%product)
+      allocate (self%direction(slopes%n, most_kept), self%product(slopes%n, most_kept))
+      allocate (self%force(size(slopes%x_of_q), most_kept))
       self%is_ready = .true.
       if (self%estimated_for == self%of .and. &
           self%factorizations < self%estimated_at + estimate_every) return
       call estimate_condition(self, condensed, slopes, is_flow, error)
    end subroutine renew
+
+   !> Assemble the equations of the cells, if those of another factorization are stored.
+   subroutine renew_rock(self, condensed, slopes, is_known)
+      class(sparse_step_t), intent(inout) :: self
+      type(condensed_t), intent(in) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      logical, intent(out) :: is_known  !< their pattern is that of the last analysis
+      integer(ik), allocatable :: col(:), row(:)
+      real(rk), allocatable :: values(:)
+
+      is_known = allocated(self%row)
+      if (is_known) is_known = size(self%col_scale) == condensed%coupling%n_bulk + slopes%n
+      if (is_known .and. self%of == condensed%factorizations) return
+      call assemble_rock(condensed, slopes, self%col_scale, row, col, values)
+      if (is_known) is_known = size(row) == self%n_rock
+      if (is_known) is_known = all(self%row(:self%n_rock) == row)
+      if (is_known) is_known = all(self%col(:self%n_rock) == col)
+      if (is_known) then
+         self%values(:size(values)) = values
+      else
+         call move_alloc(row, self%row)
+         call move_alloc(col, self%col)
+         call move_alloc(values, self%values)
+         self%n_rock = size(self%row, kind=ik)
+      end if
+   end subroutine renew_rock
 
    !> The condition of the condensed matrix with its equations scaled, in the 1-norm of its
    !! transpose: the norms of both that matrix and its inverse, estimated; of the inverse without
@@ -303,59 +308,69 @@ contains
          do
             call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
             if (kase == 0) exit
-            if (part == 1) call multiply(kase == 1)
-            if (part == 2) call solve(kase == 1)
+            if (part == 1) call multiply(self, condensed, slopes, kase == 1, x, error)
+            if (part == 2) call solve(self, is_flow, kase == 1, x, error)
             if (allocated(error)) return
          end do
       end do
       self%condition = norm(1)*norm(2)
-
-   contains
-
-      subroutine multiply(transposed)
-         logical, intent(in) :: transposed
-         real(rk) :: force(size(slopes%x_of_q)), moved(size(slopes%x_of_q)), y(size(x))
-
-         if (transposed) then
-            y = x/self%row_scale
-            call apply_columns(slopes, y, x, moved)
-            call condensed%find_forces(moved, force, error)
-            x(slopes%x_of_q) = x(slopes%x_of_q) + force*slopes%q_per_x
-         else
-            call condensed%find_forces(x(slopes%x_of_q)*slopes%q_per_x, force, error)
-            call apply_rows(slopes, x, force, y)
-            x = y/self%row_scale
-         end if
-      end subroutine multiply
-
-      subroutine solve(transposed)
-         logical, intent(in) :: transposed
-         real(rk), allocatable :: all(:, :)
-
-         allocate (all(size(self%col_scale), 1), source=0.0_rk)
-         associate (n => condensed%coupling%n_bulk)
-            if (transposed) then
-               all(n + 1:, 1) = merge(0.0_rk, x*self%col_scale(n + 1:), is_flow)
-               call self%solver%solve(all, error, transposed=.true.)
-               x = all(n + 1:, 1)*self%row_factor*self%row_scale
-            else
-               all(n + 1:, 1) = x*self%row_factor*self%row_scale
-               call self%solver%solve(all, error)
-               x = merge(0.0_rk, all(n + 1:, 1)*self%col_scale(n + 1:), is_flow)
-            end if
-         end associate
-      end subroutine solve
-
    end subroutine estimate_condition
 
-   !> Give all memory back.
+   !> The product of the condensed matrix with scaled equations, or of its transpose, with x.
+   subroutine multiply(self, condensed, slopes, transposed, x, error)
+      class(sparse_step_t), intent(in) :: self
+      type(condensed_t), intent(inout) :: condensed
+      type(slopes_t), intent(in) :: slopes
+      logical, intent(in) :: transposed
+      real(rk), intent(inout) :: x(:)  !< (n) replaced by the product
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), dimension(size(slopes%x_of_q)) :: force, moved
+      real(rk) :: y(size(x))
+
+      if (transposed) then
+         y = x/self%row_scale
+         call slopes%apply_transposed(y, x, moved)
+         call condensed%find_forces(moved, force, error)
+         x(slopes%x_of_q) = x(slopes%x_of_q) + force*slopes%q_per_x
+      else
+         call condensed%find_forces(x(slopes%x_of_q)*slopes%q_per_x, force, error)
+         call slopes%apply(x, force, y)
+         x = y/self%row_scale
+      end if
+   end subroutine multiply
+
+   !> The product of the inverse of that matrix, or of the transpose, with x; without the rows of
+   !! flows.
+   subroutine solve(self, is_flow, transposed, x, error)
+      class(sparse_step_t), intent(inout) :: self
+      logical, intent(in) :: is_flow(:)  !< (n)
+      logical, intent(in) :: transposed
+      real(rk), intent(inout) :: x(:)  !< (n) replaced by the product
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: all(size(self%col_scale), 1)
+      integer(ik) :: n
+
+      n = size(all, 1) - size(x)
+      all(:n, 1) = 0.0_rk
+      if (transposed) then
+         all(n + 1:, 1) = merge(0.0_rk, x*self%col_scale(n + 1:), is_flow)
+         call self%solver%solve(all, error, transposed=.true.)
+         x = all(n + 1:, 1)*self%row_factor*self%row_scale
+      else
+         all(n + 1:, 1) = x*self%row_factor*self%row_scale
+         call self%solver%solve(all, error)
+         x = merge(0.0_rk, all(n + 1:, 1)*self%col_scale(n + 1:), is_flow)
+      end if
+   end subroutine solve
+
+   !> Release all memory.
    subroutine release(self)
       class(sparse_step_t), intent(inout) :: self
 
       call self%solver%release()
       self%is_ready = .false.
       if (allocated(self%row)) deallocate (self%row, self%col, self%values)
-      if (allocated(self%direction)) deallocate (self%direction, self%force)
+      if (allocated(self%direction)) deallocate (self%direction, self%force, self%product)
    end subroutine release
 
 end module coarse_sparse_step

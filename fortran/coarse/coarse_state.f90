@@ -1,8 +1,8 @@
 !> The state of the coarse level at one time, and the properties of its fracture cells.
 !!
-!! The initial guess of the iteration of a time step: the state before, with all unknowns
-!! extrapolated with their change in the last step that was solved. That is the step before, or a
-!! try of the same step with other tips or another length.
+!! The initial guess of the iteration of a time step: the last state, with all unknowns extrapolated
+!! by their change in the last converged step. This is the previous step, or a trial of the same
+!! step with other tips or another length.
 !!
 !! A point that slips lies on the bound of friction when a step begins, and rounding would determine
 !! whether it continues to slip: with the guess it does.
@@ -14,24 +14,24 @@ module coarse_state
 
    public :: fracture_cells_t, go_back, guess_t, state_t, step_report_t
 
-   !> What each fracture cell is made of.
+   !> Properties of the fracture cells.
    type :: fracture_cells_t
       type(contact_law_t), allocatable :: law(:)  !< (n)
       real(rk), allocatable :: residual_aperture(:)  !< a0 [m]
       real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
-      real(rk), allocatable :: share(:)  !< of its length that lies behind the tip [-]
-      logical, allocatable :: has_tip(:)  !< a tip lies in it
-      !> (n) between its fluid and the rock on either side, times the rock's mobility [-]
+      real(rk), allocatable :: share(:)  !< of the cell's length behind the tip [-]
+      logical, allocatable :: has_tip(:)  !< whether a tip lies in the cell
+      !> (n) resistance between fluid and rock on each side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)
       real(rk), allocatable :: skin(:)  !< (n) on each face; unallocated: none has any [Pa s/m]
-      real(rk), allocatable :: injection(:)  !< Q asked for in the present step [m2/s]
-      !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
+      real(rk), allocatable :: injection(:)  !< Q prescribed for the present step [m2/s]
+      !> (n) pressure in situ, to which pressures are relative (coarse_in_situ); unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
    end type fracture_cells_t
 
-   real(rk), parameter :: farthest = 4.0_rk  !< that is gone on, over the last step's length [-]
+   real(rk), parameter :: farthest = 4.0_rk  !< extrapolation, over the last step's length [-]
 
-   !> What is remembered of the last solution.
+   !> The change of the unknowns in the last converged step.
    type :: guess_t
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk), allocatable :: change(:)  !< of the unknowns in that time [Pa]
@@ -42,7 +42,7 @@ module coarse_state
       procedure :: from
    end type guess_t
 
-   !> Unknowns and what is remembered of them.
+   !> Unknowns and history of the coarse level at one time.
    type :: state_t
       real(rk) :: time = 0.0_rk  !< [s]
       !> (3, n_blocks) in blocks as in coarse_layout [m], [m], [Pa]
@@ -52,18 +52,17 @@ module coarse_state
       ! Fracture cells; at their two ends where the law of contact is fulfilled:
       real(rk), allocatable :: jump(:, :, :)  !< (2, 2, n) [u]_n, [u]_tau [m] at start, end
       real(rk), allocatable :: slip_before(:, :)  !< (2, n) [u]_tau at the last accepted time [m]
-      !> (2, n) path that the faces have slipped; unallocated: no law ages [m]
+      !> (2, n) slip path; unallocated: no law depends on history [m]
       real(rk), allocatable :: slip_path(:, :)
-      !> (2, n) how far the faces have been apart at most, and before the last step; allocated as
-      !! slip_path [m]
+      !> (2, n) largest opening so far, and before the last step; allocated like slip_path [m]
       real(rk), allocatable :: opened(:, :), opened_before(:, :)
       !> (2, 2, n) contact traction f_n, f_tau [Pa] at start, end
       real(rk), allocatable :: traction(:, :, :)
       integer(ik), allocatable :: contact(:, :)  !< (2, n) state_stick, state_slip, state_open
       real(rk), allocatable :: pressure(:)  !< (n) p_F [Pa]
-      !> (n) a [m]; below a0 only where fluid has yet to fill a new cell
+      !> (n) a [m]; below a0 only in new cells that are not filled yet
       real(rk), allocatable :: aperture(:)
-      !> (n) part of a that vapour fills, where the pressure is that of vapour [m]
+      !> (n) part of a filled by vapour, at the vapour pressure [m]
       real(rk), allocatable :: void(:)
       ! Flow along the fractures, of the pairs and branches of the mesh:
       real(rk), allocatable :: flow(:)  !< (pairs) from the first cell to the second [m2/s]
@@ -76,10 +75,10 @@ module coarse_state
       integer(ik), allocatable :: rock_well_control(:)  !< of coarse_wells: of those in rock
       real(rk), allocatable :: injection(:)  !< (n) of wells into the cells in the last step [m2/s]
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
-      type(guess_t) :: guess  !< what the next step will probably lead to
+      type(guess_t) :: guess  !< extrapolation to the next step
    end type state_t
 
-   !> How a step was found.
+   !> Result of a step besides the state.
    type :: step_report_t
       integer(ik) :: iterations = 0
       logical :: converged = .false.
@@ -89,23 +88,23 @@ module coarse_state
       real(rk) :: loop_flow_error = 0.0_rk  !< of flows round loops of fractures, relative [-]
       real(rk) :: stress_scale = 0.0_rk  !< [Pa]
       real(rk) :: mass_error = 0.0_rk  !< [m2]
-      real(rk) :: compressed = 0.0_rk  !< fluid that pressure added to the fractures [m2]
+      real(rk) :: compressed = 0.0_rk  !< fluid in fractures by compression [m2]
       real(rk) :: rock_outflow = 0.0_rk  !< fluid out of the rock through the boundary [m2]
-      character(len=:), allocatable :: reason  !< why it did not converge
-      integer(ik) :: cell = 0  !< fracture cell where it did not; 0: none in particular
-      logical :: is_drained = .false.  !< for more fluid is drawn from that than it has
+      character(len=:), allocatable :: reason  !< reason of a failure
+      integer(ik) :: cell = 0  !< fracture cell of the failure; 0: none
+      logical :: is_drained = .false.  !< fluid is extracted that the cell lacks
    end type step_report_t
 
 contains
 
-   !> The unknowns are others now.
+   !> Forget the last step, since the unknowns have changed.
    pure subroutine forget(self)
       class(guess_t), intent(inout) :: self
 
       if (allocated(self%change)) deallocate (self%change)
    end subroutine forget
 
-   !> A step has been solved.
+   !> Store the change of a converged step.
    pure subroutine remember(self, dt, start, x)
       class(guess_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -115,7 +114,7 @@ contains
       self%change = x - start
    end subroutine remember
 
-   !> There is a solution to go on from.
+   !> Whether an extrapolation of n unknowns is possible.
    pure logical function is_known(self, n)
       class(guess_t), intent(in) :: self
       integer(ik), intent(in) :: n  !< unknowns
@@ -124,7 +123,7 @@ contains
       if (is_known) is_known = size(self%change) == n
    end function is_known
 
-   !> The unknowns after a step from those before it.
+   !> Extrapolate the unknowns over a step.
    pure function from(self, start, dt) result(x)
       class(guess_t), intent(in) :: self
       real(rk), intent(in) :: start(:)  !< [Pa]
@@ -134,8 +133,8 @@ contains
       x = start + min(dt/self%dt, farthest)*self%change
    end function from
 
-   !> The state before a step again, for another try of it; what its first iteration starts from is
-   !! what the last try has found.
+   !> Restore the state before a step for another trial, except for the guess, which is that of the
+   !! last trial.
    pure subroutine go_back(state, before)
       type(state_t), intent(inout) :: state
       type(state_t), intent(in) :: before

@@ -1,4 +1,5 @@
-!> Fracture cells at a tip, whose jumps the finite volumes do not resolve.
+!> Corrections of fracture cells at tips, where finite volumes do not resolve the jumps; radiation
+!! damping.
 !!
 !! Toward a tip the jump falls with the square root of the distance; in a fracture cell it is
 !! linear. A crack then slips and opens as if it were longer or shorter by a share of its tip cells
@@ -30,8 +31,7 @@
 module coarse_tips
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_regions, only: rock_t
-   use coarse_solid, only: mean_solid, solid_t
+   use coarse_rock, only: mean_solid, rock_t, solid_t
    use coarse_state, only: fracture_cells_t
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
@@ -39,15 +39,15 @@ module coarse_tips
 
    public :: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
 
-   !> Ends of cracks: those of the mesh, or before them in cells that are closed. A crack can also
-   !! come to its end short of a joint that the mesh has already.
+   !> Ends of cracks: tips of the mesh, or points behind them if the last cells are closed. A crack
+   !! may also end before a joint that the mesh contains.
    type :: crack_ends_t
       integer(ik), allocatable :: cell(:)  !< fracture cell that the fracture ends with
       integer(ik), allocatable :: inwards(:)  !< 1 or -1: from a cell to the next one behind it
-      real(rk), allocatable :: ahead(:)  !< how far the mesh goes on beyond each, closed [m]
+      real(rk), allocatable :: ahead(:)  !< closed length of the mesh beyond each [m]
    end type crack_ends_t
 
-   real(rk), parameter :: least = 1.0e-3_rk  !< share of its cell where a tip is at its start [-]
+   real(rk), parameter :: least = 1.0e-3_rk  !< least share of the tip cell behind the tip [-]
 
    !> Resistances to leak-off as the stiffnesses of the springs below: at the end of the cell, in
    !! the cell, times the rock's mobility [-].
@@ -69,8 +69,8 @@ contains
       ends%inwards = merge(1_ik, -1_ik, fracture%tip_end == 1)
    end function free_ends
 
-   !> Fracture cells whose nodes are joined by an edge to a node of another fracture, or are its
-   !! own: their jumps act on the same triangles.
+   !> Fracture cells with nodes on another fracture, or on an edge to it: their jumps act on the
+   !! same triangles.
    pure function lie_beside_another(mesh) result(is_beside)
       type(mesh_t), intent(in) :: mesh
       logical :: is_beside(mesh%fracture%n_cells)
@@ -109,7 +109,7 @@ contains
       end do
    end function lie_beside_another
 
-   !> Stiffness added to that of the condensed body, by unknown of q.
+   !> Stiffness of the springs at tips for the unknowns of q.
    pure function tip_springs(ends, rock, mesh, condensed) result(spring)
       type(crack_ends_t), intent(in) :: ends
       type(rock_t), intent(in) :: rock
@@ -145,7 +145,7 @@ contains
 
    contains
 
-      !> The rock on both sides of a fracture cell, as one.
+      !> Mean rock of both sides of a fracture cell.
       pure function beside(cell) result(solid)
          integer(ik), intent(in) :: cell
          type(solid_t) :: solid
@@ -168,8 +168,7 @@ contains
 
    end function tip_springs
 
-   !> In which cells the tips lie, what share of each cell's length is behind them, and what keeps
-   !! its fluid from the rock.
+   !> Set the cells of the tips, the share of each cell behind them, and the correction of leak-off.
    pure subroutine place_tips(ends, length, cells)
       type(crack_ends_t), intent(in) :: ends
       real(rk), intent(in) :: length(:)  !< (cells) [m]
@@ -199,7 +198,7 @@ contains
       end do
    end subroutine place_tips
 
-   !> Where a tip is at the end of its cell: stiffness at either end of the cell [Pa].
+   !> Stiffness at either end of a tip cell with the tip at its end [Pa].
    pure function in_tip_cell(solid) result(spring)
       type(solid_t), intent(in) :: solid
       real(rk) :: spring(2)  !< n, tau
@@ -210,8 +209,8 @@ contains
       end associate
    end function in_tip_cell
 
-   !> Where a tip is in its cell: what is added there, over what the tip lacks to the cell's end in
-   !! terms of what it has [Pa].
+   !> Additional stiffness of a tip cell with the tip inside, per ratio of the lengths ahead of and
+   !! behind the tip [Pa].
    pure function within(solid) result(spring)
       type(solid_t), intent(in) :: solid
       real(rk) :: spring(2)  !< n, tau
@@ -221,7 +220,7 @@ contains
       end associate
    end function within
 
-   !> Where a tip is at the start of its cell: what is added in the cell behind it [Pa].
+   !> Additional stiffness of the cell behind a tip at the start of its cell [Pa].
    pure function in_cell_behind(solid) result(spring)
       type(solid_t), intent(in) :: solid
       real(rk) :: spring(2)  !< n, tau

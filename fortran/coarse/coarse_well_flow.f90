@@ -16,9 +16,7 @@
 !! and no flow without end.
 module coarse_well_flow
    use base_kinds, only: ik, rk
-   use coarse_fluid_law, only: flow_thickness
-   use coarse_fracture_flow, only: conducting_aperture
-   use coarse_fractures, only: fracture_system_t
+   use coarse_fractures, only: conducting_aperture, fracture_system_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    implicit none(type, external)
    private
@@ -29,8 +27,8 @@ module coarse_well_flow
 
 contains
 
-   !> The equation of a well, and its part in the balances of what it feeds, which must be there
-   !! already.
+   !> The equation of a well, and its terms in the balances of the cells and joints that it
+   !! supplies, which must be set already.
    pure subroutine fill_well(w, x, eq)
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -67,8 +65,8 @@ contains
       end do
    end subroutine fill_well
 
-   !> Which of the conditions holds: control_rate, control_pressure, or control_shut where nothing
-   !! goes into the well.
+   !> The active condition: control_rate, control_pressure, or control_shut without flow into the
+   !! well.
    pure integer(ik) function condition_of(w, eq, flow, head) result(condition)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
@@ -90,7 +88,7 @@ contains
       end associate
    end function condition_of
 
-   !> Its residual, and its derivatives.
+   !> Residual of the active condition, and its derivatives.
    pure subroutine find_residual(w, eq, flow, head, residual, per_flow, per_head)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
@@ -118,8 +116,8 @@ contains
       end associate
    end subroutine find_residual
 
-   !> What a well does in a solution. What its equation gives is not left to rounding: else flows of
-   !! wells that are shut would be followed in time.
+   !> Flow, head and rate of a well in a solution. Prescribed values are exact: flows of shut wells
+   !! of the size of rounding errors would otherwise affect the time steps.
    pure subroutine find_well(w, x, eq, flow, head, rate)
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -187,13 +185,14 @@ contains
                                eq%opening(x, i), aperture, slope)
       resistance = 6.0_rk*eq%paths%settings%viscosity*eq%condensed%length(i)/aperture**3
       if (allocated(eq%paths%settings%fluid_law)) then
-         call flow_thickness(i, x, eq%paths%settings%fluid_law, eq, thickness, unused)
+         call eq%find_thickness(x, i, thickness, unused)
          resistance = resistance*thickness
       end if
       slope = -3.0_rk*resistance/aperture*slope
    end subroutine half_cell
 
-   !> How the resistance of half a cell follows its opening, and its pressure if the fluid does.
+   !> Derivatives of the resistance of half a cell by its opening, and by its pressure with a fluid
+   !! law.
    pure subroutine add_opening(w, i, x, per_head, eq)
       integer(ik), intent(in) :: w
       integer(ik), intent(in) :: i  !< cell
@@ -212,7 +211,7 @@ contains
          call eq%slopes%add(eq%layout%at_well(w), jumps(end), per_head*by_jump)
       end do
       if (.not. allocated(eq%paths%settings%fluid_law)) return
-      call flow_thickness(i, x, eq%paths%settings%fluid_law, eq, thickness, by_pressure)
+      call eq%find_thickness(x, i, thickness, by_pressure)
       by_pressure = eq%paths%wells%share(i, w)**2*resistance*by_pressure/thickness &
                     *x(eq%layout%at_well(w))*eq%unit/eq%dt
       call eq%slopes%add(eq%layout%at_well(w), eq%layout%at_pressure(i), per_head*by_pressure)

@@ -20,7 +20,6 @@ module coarse_wells
    implicit none(type, external)
    private
 
-   public :: choose_ways, correct_ways
    public :: control_limited, control_pressure, control_rate, control_shut, rock_wells_t
    public :: well_index, wells_t
 
@@ -40,34 +39,38 @@ module coarse_wells
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
       real(rk), allocatable :: turbulence(:)  !< (n_all) and per its square [Pa s2/m4]
-      !> (n_all) in situ, beyond which its pressures count; unallocated: 0 [Pa]
+      !> (n_all) pressure in situ, to which pressures are relative; unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
       ! In the present step:
       integer(ik), allocatable :: control(:)  !< (n_all)
-      real(rk), allocatable :: rate(:)  !< (n_all) asked for; negative: extraction [m2/s]
-      real(rk), allocatable :: pressure(:)  !< (n_all) asked for, or the limit [Pa]
+      real(rk), allocatable :: rate(:)  !< (n_all) prescribed; negative: extraction [m2/s]
+      real(rk), allocatable :: pressure(:)  !< (n_all) prescribed, or the limit [Pa]
    contains
       procedure :: lost
       procedure :: is_at_limit
    end type wells_t
 
-   !> The last ones of all controlled wells (wells_t).
+   !> Pressure-controlled wells in the rock, the last ones of wells_t.
    type :: rock_wells_t
       integer(ik) :: n = 0
       integer(ik), allocatable :: cell(:)  !< (n)
       real(rk), allocatable :: index(:)  !< (n) flow per p_w - p_c [m2/(Pa s)]
       real(rk), allocatable :: source(:)  !< (n) q of the step where p_c is 0 [m2/s]
-      !> (n) what q loses per p_c, as the matrix has it [m2/(Pa s)]
+      !> (n) decrease of q per p_c, part of the matrix [m2/(Pa s)]
       real(rk), allocatable :: conductance(:)
-      real(rk), allocatable :: rock(:)  !< (n) what the matrix has without wells [m2/(Pa s)]
+      real(rk), allocatable :: rock(:)  !< (n) entries of the matrix without wells [m2/(Pa s)]
+      !> (n) control that is tried: control_shut, _rate or _pressure
+      integer(ik), allocatable :: control(:)
    contains
+      procedure :: choose_controls
       procedure :: set_terms
       procedure :: find_flows
+      procedure :: correct_controls
    end type rock_wells_t
 
 contains
 
-   !> Pressure that a flow loses on its way through the well, and its derivative.
+   !> Pressure loss in the well at a flow, and its derivative.
    pure subroutine lost(self, well, flow, pressure, slope)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well
@@ -79,7 +82,7 @@ contains
       slope = self%friction(well) + 2.0_rk*self%turbulence(well)*abs(flow)
    end subroutine lost
 
-   !> A limited well has the pressure of its limit, and less than its rate.
+   !> Whether a limited well is at its pressure limit, with less than its rate.
    pure logical function is_at_limit(self, well, rate, head)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well
@@ -111,20 +114,21 @@ contains
       well_index = 2.0_rk*pi*mobility/log(radius_of_cell*sqrt(area)/radius)
    end function well_index
 
-   !> How each well is tried first: as it is asked for, or under a limit as it was in the step
-   !! before.
-   pure subroutine choose_ways(wells, way)
-      type(wells_t), intent(in) :: wells
-      integer(ik), intent(inout) :: way(:)  !< (n) control_shut, _rate or _pressure
-
-      way = merge(wells%control(wells%n + 1:), way, wells%control(wells%n + 1:) /= control_limited)
-   end subroutine choose_ways
-
-   !> Sources of a step of length dt, and conductances in the matrix.
-   pure subroutine set_terms(self, wells, way, dt, head_before, matrix, any_changed)
+   !> The controls that are tried first: those prescribed, or under a limit those of the last step.
+   pure subroutine choose_controls(self, wells, last)
       class(rock_wells_t), intent(inout) :: self
       type(wells_t), intent(in) :: wells
-      integer(ik), intent(in) :: way(:)  !< (n) how each is tried
+      integer(ik), intent(in) :: last(:)  !< (n) of the last step
+
+      associate (control => wells%control(wells%n + 1:))
+         self%control = merge(control, last, control /= control_limited)
+      end associate
+   end subroutine choose_controls
+
+   !> Sources of a step of length dt, and conductances in the matrix.
+   pure subroutine set_terms(self, wells, dt, head_before, matrix, any_changed)
+      class(rock_wells_t), intent(inout) :: self
+      type(wells_t), intent(in) :: wells
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: head_before(:)  !< (n) p_w before it [Pa]
       type(matrix_t), intent(inout) :: matrix
@@ -142,12 +146,12 @@ contains
          conductance = 0.0_rk
          if (wells%control(at) /= control_shut) then
             associate (index => self%index(w))
-               if (way(w) == control_pressure) then
+               if (self%control(w) == control_pressure) then
                   self%source(w) = index*wells%pressure(at)
                   conductance = index
                else
                   ! Under a limit nothing may flow.
-                  rate = merge(wells%rate(at), 0.0_rk, way(w) == control_rate)
+                  rate = merge(wells%rate(at), 0.0_rk, self%control(w) == control_rate)
                   stored = wells%storage(at)/dt
                   self%source(w) = index*(rate + stored*head_before(w))/(stored + index)
                   conductance = index*stored/(stored + index)
@@ -165,11 +169,10 @@ contains
       end do
    end subroutine set_terms
 
-   !> What flows at the cells' pressures.
-   pure subroutine find_flows(self, wells, way, dt, head_before, pressure, flow, head, rate)
+   !> Flows, heads and rates at the pressures of the cells.
+   pure subroutine find_flows(self, wells, dt, head_before, pressure, flow, head, rate)
       class(rock_wells_t), intent(in) :: self
       type(wells_t), intent(in) :: wells
-      integer(ik), intent(in) :: way(:)  !< (n) how each was tried
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: head_before(:)  !< (n) p_w before the step [Pa]
       real(rk), intent(in) :: pressure(:)  !< (cells) [Pa]
@@ -180,42 +183,44 @@ contains
       flow = self%source - self%conductance*pressure(self%cell)
       head = pressure(self%cell) + flow/self%index
       rate = flow + wells%storage(wells%n + 1:)*(head - head_before)/dt
-      ! What is asked for is not left to rounding.
-      where (way == control_shut) rate = 0.0_rk
-      where (way == control_rate) rate = wells%rate(wells%n + 1:)
+      ! Prescribed rates are exact.
+      where (self%control == control_shut) rate = 0.0_rk
+      where (self%control == control_rate) rate = wells%rate(wells%n + 1:)
    end subroutine find_flows
 
-   !> Wells whose way contradicts what it has led to, by more than rounding, take another one: all
-   !! of them at once, or where that does not end the first one (Murty 1974).
-   pure subroutine correct_ways(wells, head, rate, one_by_one, way, any_changed)
+   !> Change the controls that the result of the step contradicts by more than rounding: all of them
+   !! at once, or where that does not end the first one (Murty 1974).
+   pure subroutine correct_controls(self, wells, head, rate, one_by_one, any_changed)
+      class(rock_wells_t), intent(inout) :: self
       type(wells_t), intent(in) :: wells
       real(rk), intent(in) :: head(:), rate(:)  !< of find_flows [Pa], [m2/s]
       logical, intent(in) :: one_by_one
-      integer(ik), intent(inout) :: way(:)  !< (n)
       logical, intent(out) :: any_changed
       integer(ik) :: at, before, w
       real(rk) :: beyond, share
 
       any_changed = .false.
-      do w = 1, size(way, kind=ik)
+      do w = 1, self%n
          at = wells%n + w
          if (wells%control(at) /= control_limited) cycle
-         before = way(w)
+         before = self%control(w)
          beyond = sign(1.0_rk, wells%rate(at))*(head(w) - wells%pressure(at)) &
                   /max(abs(head(w)), abs(wells%pressure(at)), tiny(1.0_rk))
          share = rate(w)/wells%rate(at)
-         select case (before)
-         case (control_rate)
-            if (beyond > same_value) way(w) = control_pressure
-         case (control_pressure)
-            if (share > 1.0_rk + same_value) way(w) = control_rate
-            if (share < -same_value) way(w) = control_shut
-         case default
-            if (beyond < -same_value) way(w) = control_pressure
-         end select
-         any_changed = any_changed .or. way(w) /= before
+         associate (control => self%control(w))
+            select case (before)
+            case (control_rate)
+               if (beyond > same_value) control = control_pressure
+            case (control_pressure)
+               if (share > 1.0_rk + same_value) control = control_rate
+               if (share < -same_value) control = control_shut
+            case default
+               if (beyond < -same_value) control = control_pressure
+            end select
+            any_changed = any_changed .or. control /= before
+         end associate
          if (any_changed .and. one_by_one) return
       end do
-   end subroutine correct_ways
+   end subroutine correct_controls
 
 end module coarse_wells

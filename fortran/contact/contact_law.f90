@@ -1,59 +1,41 @@
-!> Contact with Coulomb friction and shear dilation at one point of a fracture, as equations for
-!! Newton's method.
+!> Law of a fracture at one point: Coulomb friction with weakening, shear dilation, closure under
+!! pressure, and a bond. Contact without these is the special case of zero parameters.
 !!
-!! Complementarity functions of a primal-dual active set (Hueeber and Wohlmuth 2005; docs/theory.md)
-!! in their scalar form, each divided by its positive factor so that it is a stress [Pa] or,
-!! times the stiffness c, a displacement. With the trial pressure z = -f_n - c ([u]_n - g) and the
-!! trial shear q = f_tau + c d[u]_tau:
-!!   open   z <= 0:             f_n = 0,               f_tau = 0
-!!   stick  |q| < mu_s z:       c ([u]_n - g) = 0,     c d[u]_tau = 0
-!!   slip   |q| >= mu_s z > 0:  c ([u]_n - g) = 0,     f_tau - mu_s z sign(q) = 0
-!! The gap g = tan(psi) |[u]_tau|, up to a slip at which dilation ends; without slip it rises
-!! whichever way the shear drives. What rounding has left of a slip that is none counts as none:
-!! with its sign the gap would fall the other way, and a step could take the point nowhere but back,
-!! again and again.
-!! Friction may weaken with slip (slip weakening, Ida 1972; Palmer and Rice 1973), linearly with the
-!! path D that the faces have slipped:
+!! Signs: contact_point. [u]_n is the normal jump, [u]_tau the slip, f_n and f_tau the contact
+!! traction.
+!!
+!! Dilation: the gap g = tan(psi) |[u]_tau|, up to a slip at which dilation ends.
+!!
+!! Slip weakening (Ida 1972; Palmer and Rice 1973): friction falls linearly with the slip path D,
 !!   mu(D) = mu_s - (mu_s - mu_r) min(1, D/D_c)
-!! The law of a point is that of its path so far, `aged`; what it slips within the step weakens it
-!! further.
-!! Joints close under pressure (Bandis, Lumsden and Barton 1983): pressed with s = -f_n their faces
-!! come nearer than where they touch, by
-!!   d(s) = s/(k_ni + s/d_max),   that is   s = k_ni d/(1 - d/d_max),
-!! so a closed point has [u]_n - g + d(s) = 0 in place of [u]_n - g = 0, and open ones are as ever,
-!! for d(0) = 0. In s the law has no pole and is concave, linear under tension; in d Newton's method
-!! would leave d < d_max. Its equation is multiplied by that of two springs in a row,
-!! 1/(1/c + 1/k_ni) in place of c, with which it has the size of -f_n where states change. What
-!! closure the faces have where jumps count from, d_rest, is taken off: those of a scene with a
-!! stress in situ fit each other under that.
-!! A bond holds faces together until it is broken: they bear a tension T b and a shear of C b beside
-!! friction, where b falls from 1 to 0 for good, with the path of slip and with the largest opening,
+!! `aged` gives the law after a slip path; the slip of the present step weakens it further.
+!!
+!! Closure of joints (Bandis, Lumsden and Barton 1983): under a pressure s = -f_n the faces close by
+!!   d(s) = s/(k_ni + s/d_max),   that is   s = k_ni d/(1 - d/d_max).
+!! As a function of s, closure has no pole and is concave; for s < 0 it is continued linearly. As a
+!! function of d, Newton's method would leave d < d_max. Jumps count from faces with the closure
+!! d_rest: with a stress in situ, the faces fit each other under that stress.
+!!
+!! Bond: until it is broken it bears a tension T b and, besides friction, a shear C b. b falls
+!! permanently from 1 to 0 with the slip path D and the largest opening W:
 !!   b = max(0, 1 - D/D_c - W/W_c),   f_n <= T b,   |f_tau| <= max(0, C b - mu_s f_n)
-!! (a cohesive crack, initially rigid: Hillerborg 1976; Camacho and Ortiz 1996). Faces apart by w
-!! bear f_n = T b(w); where they were farther apart before, by W, this falls with w to zero, so that
-!! opening takes the energy T W_c/2 and shear C D_c/2 [J/m2], each once. In a law that does not
-!! `wear` within the step mu and b stand still: contact_newton looks for solutions from there.
-!! A bilateral law knows no open state: the faces keep the gap g under tension too, where z <= 0,
-!! and f_tau = mu_s z sign(d[u]_tau) goes on holding. It is the model of reference solutions for
-!! cracks that are closed all along; friction under tension drives the slip, either way, so it makes
-!! sense only where the tension is confined to small zones and the rest of the crack decides the
-!! way.
+!! (a cohesive crack, initially rigid: Hillerborg 1976; Camacho and Ortiz 1996). Faces at a distance
+!! w bear f_n = T b(w); if the largest opening W is greater, f_n falls linearly with w to zero.
+!! Opening takes the energy T W_c/2 and shear C D_c/2 [J/m2], each once.
 !!
-!! Signs: sigma n = f - p_F n with n from side + to side - makes f the traction on side +, while the
-!! jump is u(-) - u(+). Friction drags side + along with side -, so f_tau has the sign of the slip
-!! increment; it opposes the slip on side -, where the traction is -f. (The thesis writes -f_tau for
-!! f_tau, as for a traction on side -; with sigma n as above that would let friction do work on the
-!! slip.)
+!! If `wears` is false, mu and b are constant within the step (contact_newton).
 !!
-!! The contact state of a fracture cell, in one numbering for all rooms and files.
+!! A bilateral law has no open state: the faces keep the gap g under tension too, and f_tau = mu_s z
+!! sign(d[u]_tau) holds for negative z. It is the model of reference solutions for cracks that are
+!! closed everywhere. Since friction under tension drives the slip, it is valid only where tension
+!! is confined to small zones.
 module contact_law
    use base_kinds, only: ik, rk
-   use base_tolerances, only: round_off
    implicit none(type, external)
    private
 
-   public :: contact_equations, contact_equations_t, contact_law_t, contact_residual, is_same
-   public :: is_valid, state_name, state_open, state_slip, state_stick
+   public :: contact_law_t, is_same, is_valid, state_name, state_open, state_slip, state_stick
+   public :: strength_t
 
    !> Parameters of the law.
    type :: contact_law_t
@@ -87,41 +69,23 @@ module contact_law
       procedure :: bond_left
       procedure :: strength
       procedure :: as_grown
+      procedure :: weaken
       procedure, private :: numbers
       procedure, private :: set_numbers
    end type contact_law_t
 
    integer, parameter :: n_numbers = 12  !< of a law, but for its age
 
-   !> Of the opening that breaks a bond: so far it closes as if it had not opened, for what rounding
-   !! has left of an opening that is none has no stiffness.
+   !> Share of the opening that breaks a bond, below which the faces count as not opened: an opening
+   !! of the size of rounding errors has no stiffness.
    real(rk), parameter :: hardly_open = 1.0e-6_rk
 
-   !> What a bond bears where its faces are apart by w and have slipped in the step.
+   !> Strength of a bond at the distance w of the faces, after the slip of the step.
    type :: strength_t
       real(rk) :: tension = 0.0_rk, cohesion = 0.0_rk  !< [Pa]
       real(rk) :: tension_by(2) = 0.0_rk  !< by w, and by the size of the slip [Pa/m]
       real(rk) :: cohesion_by(2) = 0.0_rk  !< the same
    end type strength_t
-
-   !> The faces at a point as they are to each other, and what the law makes of it.
-   type :: faces_t
-      real(rk) :: slip = 0.0_rk  !< of the step [m]
-      real(rk) :: shear = 0.0_rk  !< trial shear q [Pa]
-      real(rk) :: apart = 0.0_rk  !< w [m]
-      real(rk) :: apart_by(3) = 0.0_rk  !< its derivatives by f_n, [u]_n, [u]_tau [m/Pa], [-]
-      real(rk) :: friction = 0.0_rk  !< [-]
-      real(rk) :: friction_by_slip = 0.0_rk  !< by the size of the slip [1/m]
-      real(rk) :: spring = 0.0_rk  !< what multiplies the normal equation [Pa/m]
-   end type faces_t
-
-   !> Normal and tangential equation of a point.
-   type :: contact_equations_t
-      integer(ik) :: state = -1  !< of contact
-      real(rk) :: residual(2) = 0.0_rk  !< [Pa]
-      real(rk) :: by_traction(2, 2) = 0.0_rk  !< d residual_i / d traction_j [-]
-      real(rk) :: by_jump(2, 2) = 0.0_rk  !< d residual_i / d jump_j [Pa/m]
-   end type contact_equations_t
 
    integer(ik), parameter :: state_stick = 0  !< the faces touch and hold
    integer(ik), parameter :: state_slip = 1  !< the faces touch and slide
@@ -129,7 +93,7 @@ module contact_law
 
 contains
 
-   !> The numbers of a law, of which means are made.
+   !> The parameters of a law as an array, from which means are made.
    pure function numbers(self)
       class(contact_law_t), intent(in) :: self
       real(rk) :: numbers(n_numbers)
@@ -139,7 +103,7 @@ contains
                  self%tension, self%cohesion, self%wear_by_slip, self%wear_by_opening]
    end function numbers
 
-   !> Give a law these numbers.
+   !> Set the parameters of a law.
    pure subroutine set_numbers(self, numbers)
       class(contact_law_t), intent(inout) :: self
       real(rk), intent(in) :: numbers(n_numbers)
@@ -176,7 +140,7 @@ contains
                                     - [other%numbers(), other%bond, other%opened]) > 0.0_rk)
    end function is_same
 
-   !> Add to the weighted sum of laws whose faces meet. The sum is bilateral or not from the start.
+   !> Add to the weighted sum of laws of faces that meet; `bilateral` is unchanged.
    pure subroutine add_share(self, law, share)
       class(contact_law_t), intent(inout) :: self
       type(contact_law_t), intent(in) :: law
@@ -193,14 +157,14 @@ contains
       call self%set_numbers(self%numbers()/total)
    end subroutine divide
 
-   !> What the faces have been through changes the law.
+   !> Whether the law depends on the history of the faces.
    elemental logical function ages(self)
       class(contact_law_t), intent(in) :: self
 
       ages = self%weakening > 0.0_rk .or. self%is_bonded()
    end function ages
 
-   !> The law of a point that has slipped along a path so far, and been open so far.
+   !> The law of a point after a slip path and a largest opening.
    elemental type(contact_law_t) function aged(self, path, opened) result(law)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: path  !< [m]
@@ -214,7 +178,8 @@ contains
       if (opened*self%wear_by_opening > hardly_open) law%opened = opened
    end function aged
 
-   !> The law of faces that have grown from these: they are broken, and fit each other.
+   !> The law of new faces that grow from a fracture with this law: without bond, and fitting each
+   !! other.
    elemental type(contact_law_t) function as_grown(self) result(law)
       class(contact_law_t), intent(in) :: self
 
@@ -239,16 +204,15 @@ contains
       if (abs(slip) < self%weakening_slip) slope = -self%weakening
    end subroutine friction_at
 
-   !> The gap that a slip makes, and its derivative by the slip, whose sign it has from the way that
-   !! the shear drives where there is none.
-   pure subroutine dilated(self, slip, way, gap, slope)
+   !> Gap of dilation at a slip, and its derivative by the slip.
+   pure subroutine dilated(self, slip, slip_sign, gap, slope)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: slip  !< [u]_tau [m]
-      real(rk), intent(in) :: way  !< 1 or -1: the sign of the slip, or what it will have
+      real(rk), intent(in) :: slip_sign  !< 1 or -1; without slip, the sign of the trial shear
       real(rk), intent(out) :: gap  !< [m]
       real(rk), intent(out) :: slope  !< [-]
 
-      slope = self%dilation*way
+      slope = self%dilation*slip_sign
       gap = slope*slip
       if (abs(slip)*self%dilation_end > 1.0_rk) then
          gap = self%dilation/self%dilation_end
@@ -256,8 +220,7 @@ contains
       end if
    end subroutine dilated
 
-   !> How far pressed faces come nearer than where they touch, and its derivative; linear where the
-   !! pressure is tension.
+   !> Closure under a pressure, less d_rest, and its derivative; linear under tension.
    elemental subroutine closure(self, pressure, closed, slope)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< s [Pa]
@@ -270,7 +233,7 @@ contains
       slope = self%compliance*stiffer**2
    end subroutine closure
 
-   !> What multiplies the normal equation: c, in a row with the joint's own stiffness [Pa/m].
+   !> Factor of the normal equation: c in series with the stiffness of the joint [Pa/m].
    elemental real(rk) function spring(self, stiffness)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: stiffness  !< c [Pa/m]
@@ -278,7 +241,7 @@ contains
       spring = stiffness/(1.0_rk + stiffness*self%compliance)
    end function spring
 
-   !> How far the faces are apart beyond what they are when they touch under their traction: w [m].
+   !> Distance w of the faces from contact under their traction [m].
    pure real(rk) function apart(self, traction, jump)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
@@ -290,14 +253,14 @@ contains
       apart = jump(1) - gap + closed
    end function apart
 
-   !> Something of a bond is left.
+   !> Whether the bond is not broken.
    elemental logical function is_bonded(self)
       class(contact_law_t), intent(in) :: self
 
       is_bonded = self%bond > 0.0_rk .and. (self%tension > 0.0_rk .or. self%cohesion > 0.0_rk)
    end function is_bonded
 
-   !> What is left of a bond: b [-].
+   !> Remaining share b of the bond [-].
    elemental real(rk) function bond_left(self, apart, slip) result(bond)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: apart  !< w [m]
@@ -308,7 +271,29 @@ contains
                                  self%wear_by_opening*max(0.0_rk, apart - self%opened))
    end function bond_left
 
-   !> What the bond bears.
+   !> Reduce the strength of a law that is constant within the step to that after the slip and
+   !! opening of the step. The strength never increases.
+   pure subroutine weaken(self, held, traction, jump, slip, lost)
+      class(contact_law_t), intent(in) :: self  !< law at the start of the step
+      type(contact_law_t), intent(inout) :: held  !< law of constant strength
+      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk), intent(in) :: slip  !< of the step [m]
+      real(rk), intent(out) :: lost  !< decrease of strength [Pa]
+      type(contact_law_t) :: last
+      real(rk) :: slope
+
+      last = held
+      held = self
+      held%wears = .false.
+      call self%friction_at(slip, held%friction, slope)
+      held%friction = min(held%friction, last%friction)
+      held%bond = min(self%bond_left(self%apart(traction, jump), slip), last%bond)
+      lost = (last%friction - held%friction)*max(0.0_rk, -traction(1)) &
+             + (last%bond - held%bond)*max(self%tension, self%cohesion)
+   end subroutine weaken
+
+   !> Strength of the bond, and its derivatives.
    pure type(strength_t) function strength(self, apart, slip) result(found)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: apart  !< w [m]
@@ -334,219 +319,6 @@ contains
          if (apart > 0.0_rk) found%tension_by(1) = self%tension*bond/self%opened
       end associate
    end function strength
-
-   !> Normal and tangential equation with their derivatives.
-   !!
-   !! A point that slipped one way in the last iteration and would slip the other way now is tried
-   !! as sticking: without this the iteration may go to and fro between the two.
-   pure subroutine contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
-      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
-      real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
-      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
-      type(contact_equations_t), intent(out) :: found
-      type(faces_t) :: faces
-
-      faces = faces_at(law, stiffness, traction, jump, slip_before)
-      if (law%is_bonded()) then
-         call bonded_equations(law, stiffness, traction, faces, way, found)
-      else
-         call unbonded_equations(law, stiffness, traction, faces, way, found)
-      end if
-   end subroutine contact_equations
-
-   !> How the faces are to each other at a traction and jump.
-   pure type(faces_t) function faces_at(law, stiffness, traction, jump, slip_before) result(faces)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
-      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
-      real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
-      real(rk) :: closed, closing, gap, gap_slope
-      logical :: has_slipped
-
-      faces%slip = jump(2) - slip_before
-      faces%shear = traction(2) + stiffness*faces%slip
-      has_slipped = abs(jump(2)) > round_off*max(abs(slip_before), norm2(traction)/stiffness)
-      call law%dilated(jump(2), sign(1.0_rk, merge(jump(2), faces%shear, has_slipped)), gap, &
-                       gap_slope)
-      call law%friction_at(faces%slip, faces%friction, faces%friction_by_slip)
-      call law%closure(-traction(1), closed, closing)
-      faces%spring = law%spring(stiffness)
-      faces%apart = jump(1) - gap + closed
-      faces%apart_by = [-closing, 1.0_rk, -gap_slope]
-   end function faces_at
-
-   !> The equations where no bond holds.
-   pure subroutine unbonded_equations(law, stiffness, traction, faces, way, found)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
-      type(faces_t), intent(in) :: faces
-      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
-      type(contact_equations_t), intent(inout) :: found  !< derivatives are zero at first
-      real(rk) :: pressure
-      integer(ik) :: way_before
-
-      associate (spring => faces%spring, friction => faces%friction, slip => faces%slip)
-         pressure = -traction(1) - spring*faces%apart
-         way_before = way
-         way = 0
-         if (.not. pressure > 0.0_rk .and. .not. law%bilateral) then
-            found%state = state_open
-            found%residual = traction
-            found%by_traction(1, 1) = 1.0_rk
-            found%by_traction(2, 2) = 1.0_rk
-            return
-         end if
-         call touch(faces, found)
-         if (.not. abs(faces%shear) < friction*pressure) way = merge(1, -1, faces%shear > 0.0_rk)
-         if (.not. pressure > 0.0_rk) then
-            if (abs(slip) > 0.0_rk) way = merge(1, -1, slip > 0.0_rk)
-         else if (way*way_before < 0 .and. friction > 0.0_rk) then
-            way = 0
-         end if
-         if (way == 0) then
-            call stick(stiffness, slip, found)
-            return
-         end if
-         found%state = state_slip
-         found%residual(2) = traction(2) - friction*pressure*way
-         found%by_traction(2, :) = [friction*way*(1.0_rk + spring*faces%apart_by(1)), 1.0_rk]
-         found%by_jump(2, :) = friction*way*spring*faces%apart_by(2:)
-         found%by_jump(2, 2) = found%by_jump(2, 2) - way*way_of_slip(slip, way) &
-                               *faces%friction_by_slip*pressure
-      end associate
-   end subroutine unbonded_equations
-
-   !> The normal equation of faces that touch: they are not apart.
-   pure subroutine touch(faces, found)
-      type(faces_t), intent(in) :: faces
-      type(contact_equations_t), intent(inout) :: found
-
-      found%residual(1) = faces%spring*faces%apart
-      found%by_traction(1, 1) = faces%spring*faces%apart_by(1)
-      found%by_jump(1, :) = faces%spring*faces%apart_by(2:)
-   end subroutine touch
-
-   !> The tangential equation of faces that hold: they do not slip.
-   pure subroutine stick(stiffness, slip, found)
-      real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: slip  !< of the step [m]
-      type(contact_equations_t), intent(inout) :: found
-
-      if (found%state /= state_open) found%state = state_stick
-      found%residual(2) = stiffness*slip
-      found%by_jump(2, 2) = stiffness
-   end subroutine stick
-
-   !> The slip of the step, or the one to come, has a way too.
-   pure real(rk) function way_of_slip(slip, way)
-      real(rk), intent(in) :: slip  !< of the step [m]
-      integer(ik), intent(in) :: way
-
-      way_of_slip = sign(1.0_rk, slip)
-      if (.not. abs(slip) > 0.0_rk) way_of_slip = real(way, rk)
-   end function way_of_slip
-
-   !> The same where a bond holds: with its tension the faces are pressed on each other, and where
-   !! they are apart it goes on pulling.
-   pure subroutine bonded_equations(law, stiffness, traction, faces, way, found)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
-      type(faces_t), intent(in) :: faces
-      integer(ik), intent(inout) :: way  !< of slip in this iteration: -1, 1, or 0 for none
-      type(contact_equations_t), intent(inout) :: found  !< derivatives are zero at first
-      type(strength_t) :: bond
-      real(rk) :: bound, bound_by(3), pressure, sign_of_slip
-      integer(ik) :: way_before
-      logical :: is_apart
-
-      associate (spring => faces%spring, friction => faces%friction, apart_by => faces%apart_by)
-         bond = law%strength(faces%apart, faces%slip)
-         is_apart = .not. bond%tension - traction(1) - spring*faces%apart > 0.0_rk
-         pressure = -traction(1)
-         if (.not. is_apart) pressure = pressure - spring*faces%apart
-         bound = bond%cohesion + friction*pressure
-         way_before = way
-         way = 0
-         if (.not. abs(faces%shear) < bound) way = merge(1, -1, faces%shear > 0.0_rk)
-         if (way*way_before < 0 .and. bound > 0.0_rk) way = 0
-         sign_of_slip = way_of_slip(faces%slip, way)
-         found%state = merge(state_open, state_slip, is_apart)
-         if (is_apart) then
-            found%residual(1) = traction(1) - bond%tension
-            found%by_traction(1, 1) = 1.0_rk - bond%tension_by(1)*apart_by(1)
-            found%by_jump(1, :) = -bond%tension_by(1)*apart_by(2:)
-            found%by_jump(1, 2) = found%by_jump(1, 2) - bond%tension_by(2)*sign_of_slip
-         else
-            call touch(faces, found)
-         end if
-         if (way == 0) then
-            call stick(stiffness, faces%slip, found)
-            return
-         end if
-         found%residual(2) = traction(2)
-         found%by_traction(2, 2) = 1.0_rk
-         if (.not. bound > 0.0_rk) return
-         bound_by = bond%cohesion_by(1)*apart_by
-         bound_by(1) = bound_by(1) - friction
-         if (.not. is_apart) bound_by = bound_by - friction*spring*apart_by
-         bound_by(3) = bound_by(3) &
-                       + (bond%cohesion_by(2) + faces%friction_by_slip*pressure)*sign_of_slip
-         found%residual(2) = traction(2) - bound*way
-         found%by_traction(2, 1) = -bound_by(1)*way
-         found%by_jump(2, :) = -bound_by(2:)*way
-      end associate
-   end subroutine bonded_equations
-
-   !> How far a point is from fulfilling the law [Pa]: gap, sign of the contact pressure, friction
-   !! bound and direction of slip, each by itself and independent of the equations that Newton's
-   !! method solves.
-   pure function contact_residual(law, stiffness, traction, jump, slip_before) result(worst)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: stiffness  !< c [Pa/m]
-      real(rk), intent(in) :: traction(2)  !< contact traction f_n, f_tau [Pa]
-      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
-      real(rk), intent(in) :: slip_before  !< [u]_tau at the last accepted time [m]
-      real(rk) :: worst  !< [Pa]
-
-      real(rk) :: bound, friction, opening, slip, slope, spring
-      type(strength_t) :: bond
-
-      opening = law%apart(traction, jump)
-      spring = law%spring(stiffness)
-      slip = jump(2) - slip_before
-      call law%friction_at(slip, friction, slope)
-      bound = friction*max(0.0_rk, -traction(1))
-      if (law%is_bonded()) then
-         bond = law%strength(opening, slip)
-         bound = max(0.0_rk, bond%cohesion - friction*traction(1))
-      end if
-      if (law%bilateral .and. traction(1) > 0.0_rk) then
-         bound = friction*traction(1)
-         worst = max(spring*abs(opening), &
-                     min(abs(traction(2) + sign(bound, slip)), &
-                         max(stiffness*abs(slip), abs(traction(2)) - bound)))
-         if (.not. sum(abs(traction)) + sum(abs(jump)) <= huge(1.0_rk)) worst = huge(1.0_rk)
-         return
-      end if
-      worst = abs(traction(2)) - bound
-      if (law%bilateral) then
-         worst = max(worst, spring*abs(opening))
-      else
-         worst = max(worst, -spring*opening, traction(1) - bond%tension, &
-                     min(spring*abs(opening), abs(traction(1) - bond%tension)))
-      end if
-      worst = max(worst, min(stiffness*abs(slip), abs(abs(traction(2)) - bound)))
-      ! Friction must not drive the slip.
-      worst = max(worst, min(stiffness*abs(slip), max(0.0_rk, -traction(2)*sign(1.0_rk, slip))))
-      ! max() passes over what is not a number.
-      if (.not. sum(abs(traction)) + sum(abs(jump)) <= huge(1.0_rk)) worst = huge(1.0_rk)
-   end function contact_residual
 
    !> The word for a contact state.
    pure function state_name(state) result(name)

@@ -27,6 +27,7 @@
 module contact_newton
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
+   use contact_law, only: contact_law_t
    implicit none(type, external)
    private
 
@@ -39,13 +40,12 @@ module contact_newton
    integer(ik), parameter :: outcome_singular = 2  !< a matrix was singular
    integer(ik), parameter :: outcome_not_a_number = 3  !< a residual was not a number
 
-   !> How well a linear step could be found.
+   !> Quality of a linear step.
    type :: step_quality_t
       logical :: is_singular = .false.  !< there is no step
       !> Condition number of the matrix, its equations scaled (estimated; 0: not asked for) [-]
       real(rk) :: condition = 0.0_rk
-      !> What the step leaves of the scaled equations, over their sizes; 0 where they are solved by
-      !! elimination, up to rounding [-]
+      !> Relative residual of the scaled equations after the step; 0 for a direct solution [-]
       real(rk) :: rest = 0.0_rk
    end type step_quality_t
 
@@ -54,9 +54,15 @@ module contact_newton
       real(rk), allocatable :: residual(:)  !< (n) where last evaluated [Pa]
       real(rk) :: stress_scale = 0.0_rk  !< residuals are relative to it [Pa]
       logical :: is_propped = .false.  !< what only contact holds is held, since a restart
-      ! Points where the law of contact holds.
-      integer(ik), allocatable :: way(:)  !< of slip in the last iteration: -1, 0, 1
-      integer(ik), allocatable :: state(:)  !< of contact_law
+      ! Contact points, each with two unknowns, [u]_n and [u]_tau times the stiffness:
+      real(rk) :: stiffness = 0.0_rk  !< c of the contact law [Pa/m]
+      type(contact_law_t), allocatable :: law(:)  !< (points)
+      real(rk), allocatable :: slip_before(:)  !< (points) [u]_tau at the last accepted state [m]
+      real(rk), allocatable :: traction(:, :)  !< (2, points) f_n, f_tau where last evaluated [Pa]
+      integer(ik), allocatable :: slip_sign(:)  !< (points) of the last iteration: -1, 0, 1
+      integer(ik), allocatable :: state(:)  !< (points) of contact_law
+      !> (points) at the start of the step, and with the strength that is left
+      type(contact_law_t), allocatable, private :: law_before(:), law_held(:)
    contains
       procedure(evaluate_system), deferred :: evaluate
       procedure(find_linear_step), deferred :: find_step
@@ -65,20 +71,18 @@ module contact_newton
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
-      procedure :: may_wear
-      procedure :: hold_strength
-      procedure :: let_wear
+      procedure :: at_point
    end type contact_system_t
 
    type :: iteration_settings_t
       real(rk) :: tolerance = 1.0e-10_rk  !< of residuals, relative to the stress scale [-]
-      !> Before another start is tried, after it, and with shortened steps
+      !> Limit before a restart, after it, and for damped steps separately
       integer(ik) :: iterations_max = 30
       logical :: with_condition = .false.  !< estimate the condition of the matrices
-      !> Residuals as large as the rounding of their terms are small too. Only where no part can
-      !! move freely: one that flies off has terms of any size.
+      !> Accept residuals of the size of the rounding errors of their terms. Only for bodies without
+      !! free parts: a part in rigid motion has terms of any size.
       logical :: allows_rounding = .false.
-      !> What cycles is tried in slower ways; else the owner has a better start.
+      !> Try slower methods after a cycle; else the caller has a better initial guess.
       logical :: perseveres = .true.
    end type iteration_settings_t
 
@@ -90,7 +94,7 @@ module contact_newton
       real(rk) :: error_bound = 0.0_rk  !< what it gives for the solution's relative error [-]
    end type iteration_report_t
 
-   !> Where an iteration is.
+   !> State of an iteration.
    type :: course_t
       integer(ik), allocatable :: before(:)  !< states one iteration ago
       real(rk) :: worst = 0.0_rk  !< residual now [Pa]
@@ -140,8 +144,8 @@ module contact_newton
 
 contains
 
-   !> Whether x fulfils the law within a tolerance though states go on changing, as they do where a
-   !! point lies between two. A system that cannot judge it says no.
+   !> Whether x fulfils the law within a tolerance although states change in every iteration, as at
+   !! the limit between two states. Default: not known, so .false.
    logical function obeys_law(self, x, tolerance)
       class(contact_system_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< where the system was last evaluated [Pa]
@@ -150,15 +154,16 @@ contains
       obeys_law = .false.
    end function obeys_law
 
-   !> Whether what the system conserves is conserved well enough, where last evaluated: if not, a
-   !! solution within the tolerance is improved by one more step.
+   !> Whether balances are satisfied accurately enough at the last evaluation; if not, a solution
+   !! within the tolerance is improved by one more step.
    logical function is_balanced(self)
       class(contact_system_t), intent(in) :: self
 
       is_balanced = .true.
    end function is_balanced
 
-   !> Another start, from which the iteration converges. A system that has none leaves x.
+   !> Another initial guess, from which the iteration converges. Default: there is none, x is
+   !! unchanged.
    subroutine restart(self, x, has_start)
       class(contact_system_t), intent(inout) :: self
       real(rk), intent(inout) :: x(:)  !< [Pa]
@@ -167,34 +172,48 @@ contains
       has_start = .false.
    end subroutine restart
 
-   !> Take back what `restart` may have changed in the derivatives. Here that is nothing.
+   !> Undo the changes of `restart` to the derivatives. Default: none.
    subroutine end_restart(self)
       class(contact_system_t), intent(inout) :: self
    end subroutine end_restart
 
-   !> Friction may weaken or a bond break within the step. In most systems none does.
-   pure logical function may_wear(self)
+   !> The number of the unknown [u]_n of a point; that of [u]_tau follows. Default: point by point.
+   pure integer(ik) function at_point(self, point)
       class(contact_system_t), intent(in) :: self
+      integer(ik), intent(in) :: point
 
-      may_wear = .false.
-   end function may_wear
+      at_point = 2*point - 1
+   end function at_point
 
-   !> Hold the strength: at first as it was before the step, then as it has become at x, where the
-   !! system was last evaluated, but no stronger than before; whether that is noticeably weaker.
-   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
-      class(contact_system_t), intent(inout) :: self
-      real(rk), intent(in) :: x(:)  !< [Pa]
-      logical, intent(in) :: is_first
-      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
-      logical, intent(out) :: is_worn
+   !> Replace the laws by laws of constant strength: that at the start of the step.
+   subroutine hold_strength(system)
+      class(contact_system_t), intent(inout) :: system
 
-      is_worn = .false.
+      system%law_before = system%law
+      system%law_held = system%law
+      system%law_held%wears = .false.
+      system%law = system%law_held
    end subroutine hold_strength
 
-   !> Let the strength fall from what it was before the step.
-   subroutine let_wear(self)
-      class(contact_system_t), intent(inout) :: self
-   end subroutine let_wear
+   !> Reduce the constant strength to that at x, where the system was last evaluated.
+   subroutine reduce_strength(system, x, tolerance, is_weaker)
+      class(contact_system_t), intent(inout) :: system
+      real(rk), intent(in) :: x(:)  !< [Pa]
+      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
+      logical, intent(out) :: is_weaker  !< by more than the tolerance
+      real(rk) :: jump(2), lost
+      integer(ik) :: at, i
+
+      is_weaker = .false.
+      do i = 1, size(system%law_held, kind=ik)
+         at = system%at_point(i)
+         jump = x(at:at + 1)/system%stiffness
+         call system%law_before(i)%weaken(system%law_held(i), system%traction(:, i), jump, &
+                                          jump(2) - system%slip_before(i), lost)
+         is_weaker = is_weaker .or. lost > tolerance*system%stress_scale
+      end do
+      system%law = system%law_held
+   end subroutine reduce_strength
 
    !> Solve the system, from the x and the states that it has at the start.
    subroutine iterate(system, x, settings, report)
@@ -203,14 +222,14 @@ contains
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(out) :: report
 
-      if (system%may_wear()) then
+      if (any(system%law%ages())) then
          call iterate_worn(system, x, settings, report)
       else
          call iterate_held(system, x, settings, report)
       end if
    end subroutine iterate
 
-   !> Solve a system whose strength does not depend on the step.
+   !> Solve a system of constant strength.
    subroutine iterate_held(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
@@ -228,30 +247,31 @@ contains
       call iterate_damped(system, x, settings, report)
    end subroutine iterate_held
 
-   !> Solve the system with its strength held, from which it falls, until it does no more.
+   !> Solve a system whose strength falls within the step: repeatedly with constant strength, until
+   !! it no longer falls.
    subroutine iterate_worn(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
-      ! Next to the stiffness that would hold a face its strength falls slowly.
+      ! Near the stiffness at which a face is still held, the strength falls slowly.
       integer(ik), parameter :: rounds = 3000, iterations_of_trial = 8
       real(rk), parameter :: kept = 1.0e-8_rk  ! of the law, relative to the stress scale
       type(iteration_settings_t) :: briefly
       type(iteration_report_t) :: found
       real(rk) :: trial(size(x))
       integer(ik) :: k
-      logical :: is_worn
+      logical :: is_weaker
 
       briefly = settings
       briefly%iterations_max = min(settings%iterations_max, iterations_of_trial)
-      call system%hold_strength(x, .true., settings%tolerance, is_worn)
+      call hold_strength(system)
       do k = 1, rounds
          call iterate_held(system, x, settings, report)
          if (report%outcome /= outcome_converged) exit
-         call system%hold_strength(x, .false., settings%tolerance, is_worn)
-         if (.not. is_worn) exit
-         call system%let_wear()
+         call reduce_strength(system, x, settings%tolerance, is_weaker)
+         if (.not. is_weaker) exit
+         system%law = system%law_before
          trial = x
          found%iterations = report%iterations
          call iterate_from(system, trial, briefly, found)
@@ -263,18 +283,18 @@ contains
          end if
          report%outcome = outcome_stuck
          call system%evaluate(x)
-         call system%hold_strength(x, .false., settings%tolerance, is_worn)
+         call reduce_strength(system, x, settings%tolerance, is_weaker)
       end do
-      call system%let_wear()
+      system%law = system%law_before
       if (report%outcome /= outcome_converged) return
-      ! A point that has moved and come back has been held weaker than where it is now says.
+      ! The strength of a point that has moved back may have been reduced too far.
       call system%evaluate(x)
       if (.not. maxval(abs(system%residual)) <= kept*system%stress_scale) then
          report%outcome = outcome_stuck
       end if
    end subroutine iterate_worn
 
-   !> Try the slower ways to a solution, where the iteration from the last x has failed.
+   !> Try the slower methods after a failure of the iteration from the last x.
    subroutine persevere(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
@@ -297,8 +317,7 @@ contains
       end if
    end subroutine persevere
 
-   !> Whether the solution found from another start is one of many: a part that only contact could
-   !! hold is free to move.
+   !> Whether the solution is not unique: a part held only by contact is free to move.
    logical function is_loose(system, x)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(in) :: x(:)  !< the solution [Pa]
@@ -313,7 +332,7 @@ contains
       if (.not. is_loose) is_loose = .not. quality%condition <= largest_condition
    end function is_loose
 
-   !> Iterate until convergence or failure. A start that is good enough is not accepted as it is: a
+   !> Iterate until convergence or failure. A sufficiently accurate initial guess is not accepted: a
    !! state would not follow a load that changes by less than the tolerance, and the search for an
    !! onset of growth would not end.
    subroutine iterate_from(system, x, settings, report)
@@ -332,7 +351,7 @@ contains
          call judge(system, x, settings, course, report)
          if (report%outcome /= outcome_stuck .or. k == settings%iterations_max) return
          if (has_been(system, course%worst, seen(:, :k - 1), seen_worst(:k - 1))) return
-         seen(:, k) = [system%state, system%way]
+         seen(:, k) = [system%state, system%slip_sign]
          seen_worst(k) = course%worst
          call find_next(system, settings, course, step, report)
          if (report%outcome == outcome_singular) return
@@ -340,8 +359,8 @@ contains
       end do
    end subroutine iterate_from
 
-   !> The same with steps that are shortened until the residuals fall; without memory of the way of
-   !! slip, so that these are functions of x alone.
+   !> The same with steps that are shortened until the norm of the residuals falls; without memory
+   !! of the direction of slip, so that residuals are functions of x alone.
    subroutine iterate_damped(system, x, settings, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(inout) :: x(:)  !< [Pa]
@@ -359,7 +378,7 @@ contains
 
       n_kinks = 0
       course%before = system%state
-      system%way = 0
+      system%slip_sign = 0
       call system%evaluate(x)
       do k = 0, settings%iterations_max
          call judge(system, x, settings, course, report)
@@ -369,13 +388,13 @@ contains
          if (report%outcome == outcome_singular) return
          length = 1.0_rk
          do
-            system%way = 0
+            system%slip_sign = 0
             call system%evaluate(x + length*step)
             if (norm2(system%residual) <= (1.0_rk - least_fall*length)*norm) exit
             if (length <= shortest) then
                n_kinks = n_kinks + 1
                length = 1.0_rk - 0.9_rk*modulo(n_kinks*golden, 1.0_rk)
-               system%way = 0
+               system%slip_sign = 0
                call system%evaluate(x + length*step)
                exit
             end if
@@ -385,7 +404,7 @@ contains
       end do
    end subroutine iterate_damped
 
-   !> Whether x, where the system was last evaluated, is a solution.
+   !> Test x, where the system was last evaluated, for convergence.
    subroutine judge(system, x, settings, course, report)
       class(contact_system_t), intent(inout) :: system
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -440,8 +459,7 @@ contains
       report%iterations = report%iterations + 1
    end subroutine find_next
 
-   !> Whether the iteration has been here before: the same states and ways of slip, and the same
-   !! residual.
+   !> Whether the iteration cycles: the same states and directions of slip, and the same residual.
    pure logical function has_been(system, worst, seen, seen_worst)
       class(contact_system_t), intent(in) :: system
       real(rk), intent(in) :: worst  !< residual now [Pa]
@@ -453,14 +471,13 @@ contains
       has_been = .true.
       do k = 1, size(seen_worst)
          if (abs(worst - seen_worst(k)) > same_value*worst) cycle
-         if (all(seen(:n, k) == system%state) .and. all(seen(n + 1:, k) == system%way)) return
+         if (all(seen(:n, k) == system%state) .and. all(seen(n + 1:, k) == system%slip_sign)) return
       end do
       has_been = .false.
    end function has_been
 
-   !> Whether every residual is either below the tolerance or no more than the rounding errors of
-   !! the terms it is the sum of: where rock conducts well, those of the fluid balance are larger
-   !! than any fixed tolerance.
+   !> Whether every residual is below the tolerance or below the rounding errors of its terms: in
+   !! permeable rock, those of the fluid balance exceed any fixed tolerance.
    pure function is_rounding(system, x, tolerance) result(is_small)
       class(contact_system_t), intent(in) :: system
       real(rk), intent(in) :: x(:)  !< where the system was last evaluated [Pa]

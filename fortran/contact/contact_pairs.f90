@@ -3,42 +3,33 @@
 !! The condensed equilibrium is S w - g = -L f: w are the jumps ([u]_n, [u]_tau pair by pair), g the
 !! load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The contact law at
 !! every pair closes the system.
-!!
-!! Strength that is constant within a step, and falls from one solution to the next: see
-!! contact_newton.
 module contact_pairs
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use contact_dense, only: solve_by_parts, solve_full
-   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, contact_residual
    use contact_newton, only: contact_system_t, step_quality_t
    use contact_pivoting, only: pivot_to_solution, slips_t
+   use contact_point, only: contact_equations, contact_equations_t, contact_residual
    implicit none(type, external)
    private
 
-   public :: contact_pairs_t, weaken
+   public :: contact_pairs_t
 
    !> The pairs, their history and their load.
    type, extends(contact_system_t) :: contact_pairs_t
       integer(ik) :: n = 0  !< pairs in contact
-      real(rk) :: stiffness = 0.0_rk  !< c of the law [Pa/m]
       real(rk), allocatable :: condensed(:, :)  !< S (2 n, 2 n), an equation per column [Pa]
       logical, allocatable :: is_symmetric(:)  !< (2 n) equations of S: among them it is symmetric
       real(rk), allocatable :: length(:)  !< L (n) [m]
-      type(contact_law_t), allocatable :: law(:)  !< (n)
       logical, allocatable :: slip_given(:)  !< (n) [u]_tau is given; friction plays no part
       real(rk), allocatable :: load(:)  !< g (2 n) [N/m]
-      real(rk), allocatable :: slip_before(:)  !< (n) [u]_tau when last accepted [m]
       real(rk), allocatable :: given(:)  !< (n) [u]_tau where it is given [m]
-      real(rk), allocatable :: traction(:, :)  !< f (n tau, n) where last evaluated [Pa]
       ! Derivatives of the law's equations, (equation, n tau, n) where last evaluated.
       real(rk), allocatable :: by_traction(:, :, :)  !< [-]
       real(rk), allocatable :: by_jump(:, :, :)  !< [Pa/m]
       !> Added to S in the derivatives, after a restart: a part that only contact holds, and that no
       !! load moves, stays where it is [Pa]
       real(rk) :: spring = 0.0_rk
-      !> (n) at the start of the step, and held as weak as they have become since
-      type(contact_law_t), allocatable :: law_before(:), law_held(:)
    contains
       procedure :: evaluate
       procedure :: find_step
@@ -47,9 +38,6 @@ module contact_pairs
       procedure :: obeys_law
       procedure :: restart
       procedure :: end_restart
-      procedure :: may_wear
-      procedure :: hold_strength
-      procedure :: let_wear
    end type contact_pairs_t
 
 contains
@@ -73,7 +61,7 @@ contains
          row = 2*i - 1
          self%traction(:, i) = -force(row:row + 1)/self%length(i)
          call contact_equations(self%law(i), self%stiffness, self%traction(:, i), &
-                                jump(row:row + 1), self%slip_before(i), self%way(i), found)
+                                jump(row:row + 1), self%slip_before(i), self%slip_sign(i), found)
          self%state(i) = found%state
          self%residual(row:row + 1) = found%residual
          self%by_traction(:, :, i) = found%by_traction
@@ -132,7 +120,7 @@ contains
       call links%complete(step)
    end subroutine find_step
 
-   !> Whether enough equations have a factor for being solved apart.
+   !> Whether separate elimination of the equations with a factor is worthwhile.
    pure logical function is_worth(factor)
       real(rk), intent(in) :: factor(:)  !< see solve_by_parts
       integer(ik), parameter :: many = 32
@@ -142,7 +130,8 @@ contains
       is_worth = n >= many .and. 2*n >= size(factor)
    end function is_worth
 
-   !> What makes an equation that one traction alone decides that of the symmetric S; otherwise 0.
+   !> The factor with which an equation that contains one traction alone becomes that of the
+   !! symmetric S; otherwise 0.
    pure real(rk) function factor_of(self, equation)
       class(contact_pairs_t), intent(in) :: self
       integer(ik), intent(in) :: equation  !< n, tau pair by pair
@@ -191,7 +180,7 @@ contains
       total = dot_product(abs(slope), abs(x))
    end function size_of_terms
 
-   !> How far the pairs are from the law itself where last evaluated, over the stress scale [-].
+   !> Violation of the contact law at the last evaluation, over the stress scale [-].
    pure real(rk) function law_residual(self, x) result(worst)
       class(contact_pairs_t), intent(in) :: self
       real(rk), intent(in) :: x(:)  !< (2 n) where last evaluated [Pa]
@@ -223,9 +212,9 @@ contains
       obeys_law = self%law_residual(x) <= tolerance
    end function obeys_law
 
-   !> The solution by complementary pivoting, on a foundation far softer than the body, whose share
-   !! the iteration takes away again. Where pivoting has no guarantee and fails: the faces without
-   !! jumps, on that foundation.
+   !> Initial guess by complementary pivoting, on a foundation far softer than the body, which the
+   !! iteration removes again. If pivoting fails, where it is not guaranteed: the faces without
+   !! jumps, on the foundation.
    subroutine restart(self, x, has_start)
       class(contact_pairs_t), intent(inout) :: self
       real(rk), intent(inout) :: x(:)  !< (2 n) [Pa]
@@ -248,81 +237,19 @@ contains
                              self%stiffness*self%law%compliance*mean/self%length, &
                              slips_t(self%slip_given, self%stiffness*self%slip_before, &
                                      self%stiffness*self%given), x, has_start)
-      self%way = 0
+      self%slip_sign = 0
       if (has_start) return
       x = 0.0_rk
       self%state = -1
       has_start = .true.
    end subroutine restart
 
-   !> Without the foundation.
+   !> Remove the foundation.
    subroutine end_restart(self)
       class(contact_pairs_t), intent(inout) :: self
 
       self%is_propped = .false.
       self%spring = 0.0_rk
    end subroutine end_restart
-
-   !> Friction may weaken or a bond break within the step.
-   pure logical function may_wear(self)
-      class(contact_pairs_t), intent(in) :: self
-
-      may_wear = any(self%law%ages())
-   end function may_wear
-
-   !> Hold the strength: as before the step, or as it has become where last evaluated.
-   subroutine hold_strength(self, x, is_first, tolerance, is_worn)
-      class(contact_pairs_t), intent(inout) :: self
-      real(rk), intent(in) :: x(:)  !< (2 n) [Pa]
-      logical, intent(in) :: is_first
-      real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
-      logical, intent(out) :: is_worn
-      real(rk) :: jump(2), lost
-      integer(ik) :: i
-
-      is_worn = .false.
-      if (is_first) then
-         self%law_before = self%law
-         self%law_held = self%law
-         self%law_held%wears = .false.
-      else
-         do i = 1, self%n
-            jump = x(2*i - 1:2*i)/self%stiffness
-            call weaken(self%law_before(i), self%traction(:, i), jump, &
-                        jump(2) - self%slip_before(i), self%law_held(i), lost)
-            is_worn = is_worn .or. lost > tolerance*self%stress_scale
-         end do
-      end if
-      self%law = self%law_held
-   end subroutine hold_strength
-
-   !> Let it fall from what it was before the step.
-   subroutine let_wear(self)
-      class(contact_pairs_t), intent(inout) :: self
-
-      self%law = self%law_before
-   end subroutine let_wear
-
-   !> Let a held law become as weak as what the faces have slipped and opened in the step leaves it;
-   !! it never becomes stronger again.
-   pure subroutine weaken(law, traction, jump, slip, held, lost)
-      type(contact_law_t), intent(in) :: law  !< at the start of the step
-      real(rk), intent(in) :: traction(2)  !< f_n, f_tau [Pa]
-      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
-      real(rk), intent(in) :: slip  !< of the step [m]
-      type(contact_law_t), intent(inout) :: held  !< law whose strength does not change
-      real(rk), intent(out) :: lost  !< strength [Pa]
-      type(contact_law_t) :: last
-      real(rk) :: slope
-
-      last = held
-      held = law
-      held%wears = .false.
-      call law%friction_at(slip, held%friction, slope)
-      held%friction = min(held%friction, last%friction)
-      held%bond = min(law%bond_left(law%apart(traction, jump), slip), last%bond)
-      lost = (last%friction - held%friction)*max(0.0_rk, -traction(1)) &
-             + (last%bond - held%bond)*max(law%tension, law%cohesion)
-   end subroutine weaken
 
 end module contact_pairs

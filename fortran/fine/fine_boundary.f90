@@ -13,7 +13,7 @@ module fine_boundary
    implicit none(type, external)
    private
 
-   public :: add_point_force, add_side_pressure, add_side_springs, add_side_stress
+   public :: add_point_force, add_side_springs, add_side_stress
    public :: add_side_traction, check_boundary, check_support, clamped_boundary, find_loose
    public :: fine_boundary_t, free_boundary, hold_side, nearest_node, stand_on_springs
 
@@ -37,7 +37,7 @@ contains
       allocate (boundary%sprung(2, fine%n_nodes), source=.false.)
    end function clamped_boundary
 
-   !> Nothing given yet: the body floats.
+   !> No displacement prescribed: a free body.
    pure function free_boundary(fine) result(boundary)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t) :: boundary
@@ -57,7 +57,7 @@ contains
       call mark_side(fine, side, boundary%prescribed(component, :))
    end subroutine hold_side
 
-   !> Count the springs of a side, part of the elements' stiffness, as what holds the body.
+   !> Mark the nodes of a side as supported by springs, which are part of the elements' stiffness.
    pure subroutine stand_on_springs(fine, side, component, boundary)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
@@ -111,16 +111,6 @@ contains
          if (fine%boundary_sides(face) == side) call add_face_traction(fine, face, traction, force)
       end do
    end subroutine add_side_traction
-
-   !> A uniform pressure on one side of the body, whatever its direction.
-   pure subroutine add_side_pressure(fine, side, pressure, force)
-      type(fine_mesh_t), intent(in) :: fine
-      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
-      real(rk), intent(in) :: pressure  !< [Pa]
-      real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
-
-      call add_side_stress(fine, side, -pressure, 0.0_rk, force)
-   end subroutine add_side_pressure
 
    !> Uniform tractions along the outward normal of a side and along the side itself, in the
    !! direction that has the body on its left.
@@ -187,8 +177,8 @@ contains
       end if
    end subroutine check_boundary
 
-   !> Refuse a body, or a piece of it, that could move as a rigid one: what has no given
-   !! displacements or springs that exclude it has no unique solution.
+   !> Raise an error if the body or a part of it has a rigid-body motion that no prescribed
+   !! displacements or springs exclude: the solution is not unique.
    pure subroutine check_support(fine, boundary, bonds, error)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary
@@ -203,9 +193,11 @@ contains
                        "its boundary")
    end subroutine check_support
 
-   !> Find a piece of the body that the given displacements and springs leave a rigid motion.
+   !> Find a part of the body with a rigid-body motion that no prescribed displacements or springs
+   !! exclude.
    !!
-   !! Pieces are elements that share nodes; `bonds` joins the nodes that face conditions tie.
+   !! Parts are groups of elements that share nodes; `bonds` joins the nodes that face conditions
+   !! tie.
    pure subroutine find_loose(fine, boundary, bonds, place)
       type(fine_mesh_t), intent(in) :: fine
       type(fine_boundary_t), intent(in) :: boundary

@@ -123,7 +123,7 @@ contains
       allocate (problem%load(2*problem%n), problem%residual(2*problem%n))
       allocate (problem%traction(2, problem%n))
       allocate (problem%slip_before(problem%n), problem%given(problem%n))
-      allocate (problem%way(problem%n), problem%state(problem%n))
+      allocate (problem%slip_sign(problem%n), problem%state(problem%n))
       do cell = 1, fine%fracture%n_cells
          if (conditions%condition(cell) /= face_contact) cycle
          problem%share(:, cell) = fine%face_length(cell)*line_resultants(fine%face_tip(cell))
@@ -310,7 +310,7 @@ contains
          problem%given = 0.0_rk
       end where
       problem%load = load
-      problem%way = 0
+      problem%slip_sign = 0
       problem%spring = 0.0_rk
       problem%state = -1  ! none yet
       x = problem%stiffness*jump

@@ -31,7 +31,10 @@ module fine_element
 
    public :: collapsed_rule, evaluate_element, gauss_rule, line_parameter, line_resultants
    public :: line_shapes, line_slopes, node_within, shape_values, stiffness_matrix, triangle_rule_3
-   public :: triangle_rule_7
+   public :: tip_rule, tip_rule_size, triangle_rule_7
+
+   !> Points of tip_rule: from a tip to the opposite edge, along that edge, and together at most.
+   integer(ik), parameter :: tip_rule_t = 4, tip_rule_w = 5, tip_rule_size = tip_rule_t*tip_rule_w
 
 contains
 
@@ -263,6 +266,22 @@ contains
          end do
       end do
    end subroutine collapsed_rule
+
+   !> Points for fields that are singular at a corner, or smooth: collapsed about that corner, or of
+   !! degree 5.
+   pure subroutine tip_rule(corner, n_points, points, weights)
+      integer(ik), intent(in) :: corner  !< at a tip; 0: none is
+      integer(ik), intent(out) :: n_points
+      real(rk), intent(out) :: points(3, tip_rule_size), weights(tip_rule_size)  !< [-]
+
+      if (corner > 0) then
+         n_points = tip_rule_size
+         call collapsed_rule(corner, tip_rule_t, tip_rule_w, points, weights)
+      else
+         n_points = 7
+         call triangle_rule_7(points(:, 1:7), weights(1:7))
+      end if
+   end subroutine tip_rule
 
    !> The shape functions of start, end and the node within.
    pure function line_shapes(x) result(shapes)

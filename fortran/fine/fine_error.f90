@@ -1,4 +1,4 @@
-!> How far a solution is from the truth, in energy, and how fine a mesh would have to be.
+!> Error estimates of a solution in the energy norm, and element sizes for a prescribed error.
 !!
 !! The error of an element is estimated by the energy of the difference between its stress and the
 !! recovered one (Zienkiewicz and Zhu 1987, 1992), the energy norm of a stress being the root of
@@ -15,7 +15,7 @@ module fine_error
    use base_kinds, only: ik, rk
    use base_plane, only: triangle_area
    use fine_elasticity, only: elasticity_t
-   use fine_element, only: collapsed_rule, triangle_rule_7
+   use fine_element, only: tip_rule, tip_rule_size
    use fine_faces, only: face_loaded
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -42,8 +42,8 @@ module fine_error
 
 contains
 
-   !> Compare the stresses of the elements with the recovered ones. Elements may be left out: those
-   !! near a point load, whose energy is infinite in truth.
+   !> Compare the stresses of the elements with the recovered ones. Elements may be left out, such
+   !! as those near a point load, where the exact energy is infinite.
    subroutine estimate_error(model, displacement, recovery, estimate, left_out)
       type(fine_model_t), intent(in) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
@@ -91,8 +91,7 @@ contains
       real(rk), intent(in) :: displacement(:, :), other(:, :)  !< (2, n_nodes) [m]
       type(recovery_t), intent(in) :: recovery, other_recovery
       integer(ik), intent(in) :: cell
-      integer(ik), parameter :: n_t = 4, n_w = 5
-      real(rk) :: points(3, n_t*n_w), weights(n_t*n_w)
+      real(rk) :: points(3, tip_rule_size), weights(tip_rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       integer(ik) :: corner, n_points, point
 
@@ -101,13 +100,7 @@ contains
          corner = findloc(model%mesh%cell_nodes(1:3, cell), &
                           model%mesh%fracture%tip_node(recovery%tip_of_cell(cell)), dim=1)
       end if
-      if (corner > 0) then
-         n_points = n_t*n_w
-         call collapsed_rule(corner, n_t, n_w, points, weights)
-      else
-         n_points = 7
-         call triangle_rule_7(points(:, 1:7), weights(1:7))
-      end if
+      call tip_rule(corner, n_points, points, weights)
       product_in = 0.0_rk
       do point = 1, n_points
          call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
@@ -178,10 +171,7 @@ contains
 
       tip_of_cell = 0
       do tip = 1, fine%fracture%n_tips
-         do cell = 1, fine%n_cells
-            if (.not. any(fine%cell_nodes(1:3, cell) == fine%fracture%tip_node(tip))) cycle
-            tip_of_cell(cell) = tip
-         end do
+        where (any(fine%cell_nodes(1:3, :) == fine%fracture%tip_node(tip), dim=1)) tip_of_cell = tip
       end do
       share = share_of_element(sum(estimate%element**(2.0_rk/(smooth_order + 1.0_rk)), &
                                    mask=tip_of_cell == 0), fine%fracture%n_tips, &
@@ -193,17 +183,16 @@ contains
          shrinkage(tip) = within(tip_elements*share**2/max(tiny(share), here))
       end do
       do cell = 1, fine%n_cells
-         sizes(cell) = size_of(cell)*within((share/max(tiny(share), estimate%element(cell))) &
-                                            **(1.0_rk/(smooth_order + 1.0_rk)))
-      end do
-      do cell = 1, fine%n_cells
-         if (estimate%left_out(cell)) sizes(cell) = size_of(cell)
+         sizes(cell) = size_of(cell)
+         if (estimate%left_out(cell)) cycle
+         sizes(cell) = sizes(cell)*within((share/max(tiny(share), estimate%element(cell))) &
+                                          **(1.0_rk/(smooth_order + 1.0_rk)))
       end do
       call spread_to_tips(fine, tip_of_cell > 0, sizes)
 
    contains
 
-      !> A change of size within what is trusted at once; no error at all lets sizes grow.
+      !> A change of size within the limits of one step; without error, sizes increase.
       pure real(rk) function within(change)
          real(rk), intent(in) :: change  !< new size over the old [-]
 
@@ -276,7 +265,8 @@ contains
       has_dual = all(model%conditions%condition == face_loaded)
    end function has_dual
 
-   !> Add what K_I and K_II lack to their corrected values, and its magnitude to their errors.
+   !> Add the estimated errors of K_I and K_II to the corrected values, and their magnitudes to the
+   !! error estimates.
    subroutine correct_intensity(model, displacement, recovery, probe, intensity, error)
       type(fine_model_t), intent(inout) :: model
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]

@@ -234,7 +234,7 @@ contains
       end do
    end subroutine find_pairs
 
-   !> The condition of each pair, and the frame of those that may slip. At a kink it is the mean of
+   !> The condition of each pair, and the frame of pairs that may slip. At a kink it is the mean of
    !! the frames of the cells that have the pair's condition, and so is the dilation. In contact the
    !! mean is weighted by the cells' nodal lengths: a uniform pressure then has no shear component.
    !! Where only some of the cells cannot part, these alone count: the mouth of a wing slides along

@@ -7,9 +7,10 @@
 !! jump. The link that closes the ring has no law: its traction is that of the middle of
 !! its cell (fine_contact).
 !!
-!! So has every other end of a cell whose nodes cannot be tied, as those are of which a displacement
-!! is given: on a roller the support bears a part of the force there, and what is left for the law
-!! cannot be told from it. The nodes keep their own unknowns, which that of the middle loads.
+!! The same holds for every other end of a cell whose nodes cannot be tied, as nodes with a
+!! prescribed displacement: on a roller the support bears a part of the force, which cannot be
+!! separated from that of the law. The nodes keep their own unknowns, loaded by the traction of the
+!! middle.
 module fine_joints
    use base_kinds, only: ik, rk
    use base_plane, only: turned_left
@@ -50,7 +51,7 @@ contains
       call find_closing(fine, conditions, constraints)
    end subroutine tie_joints
 
-   !> The ends in contact that have no law, and the unknowns that they load beside the jumps.
+   !> Find the ends in contact without a law, and the unknowns that they load besides the jumps.
    pure subroutine find_closing(fine, conditions, constraints)
       type(fine_mesh_t), intent(in) :: fine
       type(face_conditions_t), intent(in) :: conditions

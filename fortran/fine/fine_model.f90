@@ -1,12 +1,8 @@
 !> The fine problem: elasticity on six-node triangles, factorized once and solved for many loads.
-!!
-!! The elements for the solver: the unknowns of each, and its matrix T' K T, where T gives the nodal
-!! displacements from the unknowns (fine_faces).
 module fine_model
-   use algebra_multifrontal, only: element_matrices_t, multifrontal_t
+   use algebra_multifrontal, only: multifrontal_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_lists, only: lists_t
    use base_number, only: brief_text
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, find_loose, &
                             fine_boundary_t
@@ -15,25 +11,18 @@ module fine_model
                            solve_contact
    use fine_elasticity, only: check_elasticity, elasticity_t, rocks_t
    use fine_element, only: stiffness_matrix
-   use fine_faces, only: build_constraints, check_conditions, columns_max, constraints_t, &
-                         face_conditions_t, face_contact, face_loaded, prescribe_jumps
+   use fine_elements, only: pattern_of, pattern_t, tied_elements_t
+   use fine_faces, only: build_constraints, check_conditions, constraints_t, face_conditions_t, &
+                         face_contact, face_loaded, prescribe_jumps
    use fine_joints, only: tie_joints
    use fine_loads, only: add_face_forces, add_volume_forces, check_loads, fine_loads_t
    use fine_mesh, only: build_fine_mesh, fine_mesh_t, tip_collapsed
+   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private
 
    public :: fine_model_t
-
-   !> Which unknowns occur together.
-   type :: pattern_t
-      integer(ik), allocatable :: first_unknown(:)  !< (blocks + 1)
-      type(lists_t) :: blocks  !< of each element
-      integer(ik), allocatable :: kept(:)  !< unknowns to condense onto
-   contains
-      procedure :: is_same_as
-   end type pattern_t
 
    !> A body with its matrix. Not to be copied: the factors belong to the original.
    type :: fine_model_t
@@ -57,20 +46,10 @@ module fine_model
       procedure :: solve
       procedure :: influence
       procedure :: external_forces
-      procedure :: reactions
       procedure :: strain_energy
       procedure :: element_forces
       procedure :: displacement_gradient
    end type fine_model_t
-
-   !> The matrices of a body's elements.
-   type, extends(element_matrices_t) :: tied_elements_t
-      integer(ik), pointer, contiguous :: cell_nodes(:, :) => null()  !< (6, n_cells)
-      real(rk), pointer, contiguous :: stiffness(:, :, :) => null()  !< (12, 12, n_cells) [Pa]
-      type(constraints_t), pointer :: constraints => null()
-   contains
-      procedure :: give
-   end type tied_elements_t
 
 contains
 
@@ -109,8 +88,8 @@ contains
       end do
    end subroutine set_mesh
 
-   !> Take the order of elimination that another body's mesh has, whose nodes may lie elsewhere.
-   !! That one has to be set up again.
+   !> Take over the order of elimination of another body, whose mesh differs only in the positions
+   !! of its nodes. The other body must be set up again.
    subroutine take_order(self, from)
       class(fine_model_t), intent(inout) :: self
       type(fine_model_t), intent(inout) :: from
@@ -171,9 +150,7 @@ contains
       type(tied_elements_t) :: elements
       type(pattern_t) :: pattern
 
-      call find_blocks(self%constraints, pattern%first_unknown)
-      pattern%blocks = list_blocks(self%mesh%cell_nodes, self%constraints, pattern%first_unknown)
-      pattern%kept = self%constraints%kept_dofs
+      pattern = pattern_of(self%mesh%cell_nodes, self%constraints)
       if (.not. pattern%is_same_as(self%analysed)) then
          if (allocated(self%analysed%first_unknown)) deallocate (self%analysed%first_unknown)
          if (.not. allocated(self%solver)) allocate (self%solver)
@@ -186,22 +163,6 @@ contains
       elements%constraints => self%constraints
       call self%solver%factorize(elements, error)
    end subroutine factorize
-
-   !> The same unknowns occur in the same elements.
-   pure logical function is_same_as(self, other)
-      class(pattern_t), intent(in) :: self, other
-
-      is_same_as = .false.
-      if (.not. allocated(other%first_unknown)) return
-      if (size(self%first_unknown) /= size(other%first_unknown)) return
-      if (size(self%blocks%first) /= size(other%blocks%first)) return
-      if (size(self%blocks%item) /= size(other%blocks%item)) return
-      if (size(self%kept) /= size(other%kept)) return
-      is_same_as = all(self%first_unknown == other%first_unknown) &
-                   .and. all(self%blocks%first == other%blocks%first) &
-                   .and. all(self%blocks%item == other%blocks%item) &
-                   .and. all(self%kept == other%kept)
-   end function is_same_as
 
    !> Condense the matrix onto the jumps of the pairs in contact, if there are any.
    !!
@@ -271,8 +232,8 @@ contains
       end if
    end subroutine solve
 
-   !> Displacements that nodal forces alone cause, where no face touches another: all displacements
-   !! and jumps that are given are 0.
+   !> Displacements under nodal forces alone, without faces in contact: all prescribed displacements
+   !! and jumps are 0.
    subroutine influence(self, force, displacement, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
@@ -295,7 +256,7 @@ contains
       end if
    end subroutine influence
 
-   !> Add what the forces do to the given part of the displacements.
+   !> Add the displacements of the free unknowns to the prescribed ones.
    subroutine solve_free_part(self, force, given_jump, displacement, contact, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: force(:, :)  !< (2, n_nodes) [N/m]
@@ -327,7 +288,7 @@ contains
       call show_closing(self%mesh, self%contact_problem, displacement, contact)
    end subroutine solve_free_part
 
-   !> The unknowns from their loads, by way of the condensed system where faces touch.
+   !> Unknowns from their loads, with faces in contact by the condensed system.
    subroutine solve_unknowns(self, given_jump, contact, x, error)
       class(fine_model_t), intent(inout) :: self
       real(rk), intent(in) :: given_jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
@@ -360,7 +321,7 @@ contains
       call self%solver%expand([jump, loose], x(:, 1), error)
    end subroutine solve_unknowns
 
-   !> Where a fracture cell is, for messages; empty if there is none.
+   !> Place of a fracture cell for messages; empty for cell 0.
    pure function cell_place(fracture, cell) result(words)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: cell
@@ -369,11 +330,11 @@ contains
 
       words = ""
       if (cell == 0) return
-      middle = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
+      middle = fracture_cell_centre(fracture, cell)
       words = ", most of all at ("//brief_text(middle(1), 4)//", "//brief_text(middle(2), 4)//") m"
    end function cell_place
 
-   !> Where a piece is that nothing but contact holds, for messages; empty if there is none.
+   !> Place of a part that is held only by contact, for messages; empty if there is none.
    pure function loose_place(self) result(words)
       class(fine_model_t), intent(in) :: self
       character(len=:), allocatable :: words, place
@@ -399,23 +360,6 @@ contains
       call add_volume_forces(self%mesh, self%rocks, loads, force)
    end function external_forces
 
-   !> What must act on the nodes besides the loads: reactions of given displacements and of tied
-   !! faces, and nothing but round-off elsewhere.
-   pure function reactions(self, loads, displacement) result(force)
-      class(fine_model_t), intent(in) :: self
-      type(fine_loads_t), intent(in) :: loads
-      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
-      real(rk), allocatable :: force(:, :)  !< (2, n_nodes) [N/m]
-      integer(ik) :: cell
-
-      force = -self%external_forces(loads)
-      do cell = 1, self%mesh%n_cells
-         associate (nodes => self%mesh%cell_nodes(:, cell))
-            force(:, nodes) = force(:, nodes) + self%element_forces(displacement, cell)
-         end associate
-      end do
-   end function reactions
-
    !> Energy of the elastic strain, without the work of initial stresses [J/m].
    pure function strain_energy(self, displacement) result(energy)
       class(fine_model_t), intent(in) :: self
@@ -430,7 +374,7 @@ contains
       end do
    end function strain_energy
 
-   !> Forces on the nodes of an element that strain it as it is, without pore pressure.
+   !> Nodal forces of the strain of an element, without pore pressure.
    pure function element_forces(self, displacement, cell) result(force)
       class(fine_model_t), intent(in) :: self
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
@@ -456,111 +400,5 @@ contains
          gradient = matmul(displacement(:, nodes), transpose(gradients))
       end associate
    end function displacement_gradient
-
-   !> Blocks of unknowns that follow each other and move the same nodes, those in contact apart.
-   pure subroutine find_blocks(constraints, first_unknown)
-      type(constraints_t), intent(in) :: constraints
-      integer(ik), allocatable, intent(out) :: first_unknown(:)  !< (blocks + 1)
-      integer(ik) :: moved(4, constraints%n_dofs)  ! first node, last node, how many, in contact
-      integer(ik) :: beginnings(constraints%n_dofs + 1)
-      integer(ik) :: column, d, n, node
-
-      moved = 0
-      do node = 1, size(constraints%n_columns, kind=ik)
-         do column = 1, constraints%n_columns(node)
-            d = constraints%dof(column, node)
-            if (moved(1, d) == 0) moved(1, d) = node
-            moved(2, d) = node
-            moved(3, d) = moved(3, d) + 1
-         end do
-      end do
-      moved(4, constraints%contact_dofs) = 1
-      n = 0
-      do d = 1, constraints%n_dofs
-         if (d > 1 .and. moved(3, d) <= 2) then
-            if (all(moved(:, d) == moved(:, d - 1))) cycle
-         end if
-         n = n + 1
-         beginnings(n) = d
-      end do
-      beginnings(n + 1) = constraints%n_dofs + 1
-      first_unknown = beginnings(:n + 1)
-   end subroutine find_blocks
-
-   !> The blocks of each element, in the order of its nodes.
-   pure function list_blocks(cell_nodes, constraints, first_unknown) result(elements)
-      integer(ik), intent(in) :: cell_nodes(:, :)  !< (6, n_cells)
-      type(constraints_t), intent(in) :: constraints
-      integer(ik), intent(in) :: first_unknown(:)  !< (blocks + 1)
-      type(lists_t) :: elements
-      integer(ik) :: block_of(constraints%n_dofs)
-      integer(ik) :: b, cell, column, k, n, node
-
-      do b = 1, size(first_unknown, kind=ik) - 1
-         block_of(first_unknown(b):first_unknown(b + 1) - 1) = b
-      end do
-      n = 0
-      do cell = 1, size(cell_nodes, 2, kind=ik)
-         n = n + sum(constraints%n_columns(cell_nodes(:, cell)))
-      end do
-      allocate (elements%first(size(cell_nodes, 2) + 1), elements%item(n))
-      n = 0
-      do cell = 1, size(cell_nodes, 2, kind=ik)
-         elements%first(cell) = n + 1
-         do k = 1, 6
-            node = cell_nodes(k, cell)
-            do column = 1, constraints%n_columns(node)
-               b = block_of(constraints%dof(column, node))
-               if (any(elements%item(elements%first(cell):n) == b)) cycle
-               n = n + 1
-               elements%item(n) = b
-            end do
-         end do
-      end do
-      elements%first(size(cell_nodes, 2) + 1) = n + 1
-      elements%item = elements%item(:n)
-   end function list_blocks
-
-   !> T' K T of an element.
-   pure subroutine give(self, element, n, matrix)
-      class(tied_elements_t), intent(in) :: self
-      integer(ik), intent(in) :: element
-      integer(ik), intent(in) :: n  !< unknowns of the element
-      real(rk), intent(out) :: matrix(n, n)  !< [Pa]
-
-      associate (nodes => self%cell_nodes(:, element))
-         if (n == 12 .and. all(self%constraints%n_columns(nodes) == 2)) then
-            matrix = self%stiffness(:, :, element)
-         else
-            call tie(self%constraints, nodes, self%stiffness(:, :, element), n, matrix)
-         end if
-      end associate
-   end subroutine give
-
-   !> T' K T.
-   pure subroutine tie(constraints, nodes, stiffness, n, matrix)
-      type(constraints_t), intent(in) :: constraints
-      integer(ik), intent(in) :: nodes(6)
-      real(rk), intent(in) :: stiffness(12, 12)  !< [Pa]
-      integer(ik), intent(in) :: n  !< unknowns of the element
-      real(rk), intent(out) :: matrix(n, n)  !< [Pa]
-      real(rk) :: ties(12, n)
-      integer(ik) :: column, d, k, m, unknowns(6*columns_max)
-
-      ties = 0.0_rk
-      m = 0
-      do k = 1, 6
-         do column = 1, constraints%n_columns(nodes(k))
-            d = findloc(unknowns(:m), constraints%dof(column, nodes(k)), dim=1, kind=ik)
-            if (d == 0) then
-               m = m + 1
-               d = m
-               unknowns(m) = constraints%dof(column, nodes(k))
-            end if
-            ties(2*k - 1:2*k, d) = ties(2*k - 1:2*k, d) + constraints%basis(:, column, nodes(k))
-         end do
-      end do
-      matrix = matmul(transpose(ties), matmul(stiffness, ties))
-   end subroutine tie
 
 end module fine_model

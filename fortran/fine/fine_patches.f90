@@ -3,10 +3,12 @@
 module fine_patches
    use algebra_lapack, only: dpotrf, dpotrs
    use base_kinds, only: ik, rk
+   use base_lists, only: inverted, lists_t
    use base_plane, only: triangle_area
    use fine_elasticity, only: rocks_t
    use fine_element, only: triangle_rule_3
    use fine_model, only: fine_model_t
+   use mesh_geometry, only: split_by_kind
    implicit none(type, external)
    private
 
@@ -17,7 +19,7 @@ module fine_patches
    integer(ik), parameter :: n_terms = 6  !< of a full quadratic
    integer(ik), parameter :: smallest_patch = 4  ! elements: 12 points for 6 terms
 
-   !> Elastic stresses at points of all elements, and who is whose neighbour.
+   !> Elastic stresses at points of all elements, and the neighbours of each element.
    type :: samples_t
       real(rk), allocatable :: xy(:, :, :)  !< (2, n_samples, n_cells) [m]
       real(rk), allocatable :: stress(:, :, :)  !< (xx yy xy, n_samples, n_cells) [Pa]
@@ -27,8 +29,7 @@ module fine_patches
       !! a number beyond those
       integer(ik), allocatable :: site(:, :)
       integer(ik), allocatable :: node(:)  !< (sites) where each is
-      integer(ik), allocatable :: first(:)  !< (sites+1) into cells
-      integer(ik), allocatable :: cells(:)  !< elements around each site
+      type(lists_t) :: around  !< elements around each site
       integer(ik), allocatable :: neighbours(:, :)  !< (3, n_cells) across each edge, 0: none
    end type samples_t
 
@@ -73,35 +74,13 @@ contains
       integer(ik), intent(in) :: cell_nodes(:, :)  !< (6, n_cells)
       type(rocks_t), intent(in) :: rocks
       type(samples_t), intent(inout) :: samples
-      integer(ik), allocatable :: next(:), rock(:)
-      integer(ik) :: cell, k, n, own, site
+      integer(ik) :: cell, k
 
       samples%site = cell_nodes(:3, :)
       samples%node = [(k, k=1, n_vertices)]
       if (size(rocks%of_cell) == 1) return
-      n = n_vertices
-      allocate (next(4*n), rock(4*n), source=0_ik)  ! the sites of a node are a chain
-      do cell = 1, size(cell_nodes, 2, kind=ik)
-         own = rocks%index_of(cell)
-         do k = 1, 3
-            site = cell_nodes(k, cell)
-            if (rock(site) == 0) rock(site) = own
-            do while (rock(site) /= own)
-               if (next(site) == 0) then
-                  n = n + 1
-                  if (n > size(next)) then
-                     next = [next, spread(0_ik, 1, n)]
-                     rock = [rock, spread(0_ik, 1, n)]
-                  end if
-                  next(site) = n
-                  rock(n) = own
-                  samples%node = [samples%node, cell_nodes(k, cell)]
-               end if
-               site = next(site)
-            end do
-            samples%site(k, cell) = site
-         end do
-      end do
+      call split_by_kind([(rocks%index_of(cell), cell=1, size(cell_nodes, 2, kind=ik))], &
+                         samples%site, samples%node)
    end subroutine find_sites
 
    !> Elements around every site, and across every edge: the elements that share its middle
@@ -111,30 +90,15 @@ contains
       integer(ik), intent(in) :: cell_nodes(:, :)  !< (6, n_cells)
       type(rocks_t), intent(in) :: rocks
       type(samples_t), intent(inout) :: samples
-      integer(ik), allocatable :: filled(:), first_cell(:), first_edge(:)
-      integer(ik) :: cell, k, middle, n_cells, n_sites, site
+      integer(ik), allocatable :: first_cell(:), first_edge(:)
+      integer(ik) :: cell, k, middle, n_cells
 
       n_cells = size(cell_nodes, 2)
-      n_sites = size(samples%node)
-      allocate (samples%cells(3*n_cells))
-      allocate (samples%neighbours(3, n_cells), samples%first(n_sites + 1), source=0_ik)
-      do cell = 1, n_cells
-         do k = 1, 3
-            site = samples%site(k, cell)
-            samples%first(site + 1) = samples%first(site + 1) + 1
-         end do
-      end do
-      samples%first(1) = 1
-      do site = 1, n_sites
-         samples%first(site + 1) = samples%first(site + 1) + samples%first(site)
-      end do
-      allocate (filled, source=samples%first)
+      samples%around = inverted(samples%site, size(samples%node, kind=ik))
+      allocate (samples%neighbours(3, n_cells), source=0_ik)
       allocate (first_cell(n_nodes), first_edge(n_nodes), source=0_ik)
       do cell = 1, n_cells
          do k = 1, 3
-            site = samples%site(k, cell)
-            samples%cells(filled(site)) = cell
-            filled(site) = filled(site) + 1
             middle = cell_nodes(3 + k, cell)
             if (first_cell(middle) == 0) then
                first_cell(middle) = cell
@@ -155,7 +119,7 @@ contains
       integer(ik), allocatable :: longer(:)
       integer(ik) :: i, k, next
 
-      patch = samples%cells(samples%first(site):samples%first(site + 1) - 1)
+      patch = samples%around%of(site)
       do while (size(patch) < min(smallest_patch, size(samples%area)))
          longer = patch
          do i = 1, size(patch)
@@ -179,8 +143,8 @@ contains
       term = [1.0_rk, xy(1), xy(2), xy(1)**2, xy(1)*xy(2), xy(2)**2]
    end function quadratic_terms
 
-   !> The quadratics that come closest to values at points, by least squares. Where the points
-   !! leave a quadratic undetermined it is reduced to a linear function, or to their mean.
+   !> Least-squares fit of quadratics to values at points. If the points do not determine a
+   !! quadratic, it is reduced to a linear function, or to the mean.
    subroutine fit_quadratic(xy, values, coefficients)
       real(rk), intent(in) :: xy(:, :)  !< (2, n) from the node, in units of the patch's size [-]
       real(rk), intent(in) :: values(:, :)  !< (xx yy xy, n) [Pa]

@@ -80,7 +80,7 @@ contains
       recovery%scale = 1.0_rk
       do site = 1, size(samples%node, kind=ik)
          associate (mean => recovery%coefficients(1, :, site), &
-                    cells => samples%cells(samples%first(site):samples%first(site + 1) - 1))
+                    cells => samples%around%of(site))
             area = sum(samples%area(cells))
             do i = 1, size(cells)
                do k = 1, n_samples
@@ -182,9 +182,8 @@ contains
          recovery%site = samples%site
          allocate (n_same_side(size(samples%node)), source=0_ik)
          do tip = 1, fracture%n_tips
-            do i = samples%first(fracture%tip_node(tip)), &
-               samples%first(fracture%tip_node(tip) + 1) - 1
-               cell = samples%cells(i)
+            do i = 1, samples%around%length(fracture%tip_node(tip))
+               cell = samples%around%at(fracture%tip_node(tip), i)
                recovery%tip_of_cell(cell) = tip
                do k = 1, 3
                   site = samples%site(k, cell)
@@ -219,17 +218,15 @@ contains
       node = model%mesh%fracture%tip_node(tip)
       field%origin = model%mesh%xy(:, node)
       field%ahead = model%mesh%fracture%tip_direction(:, tip)
-      rock = model%rocks%in_cell(samples%cells(samples%first(node)))
+      rock = model%rocks%in_cell(samples%around%at(node, 1_ik))
       field%kolosov = rock%kolosov()
       field%shear_modulus = rock%shear_modulus()
       ! The unit of the intensities that makes all columns of one size.
-      associate (around => samples%cells(samples%first(node):samples%first(node + 1) - 1))
-         unit = sum(samples%area(around))**0.25_rk
-      end associate
+      unit = sum(samples%area(samples%around%of(node)))**0.25_rk
       normal = 0.0_rk
       right = 0.0_rk
-      do i = samples%first(node), samples%first(node + 1) - 1
-         cell = samples%cells(i)
+      do i = 1, samples%around%length(node)
+         cell = samples%around%at(node, i)
          do k = 1, n_samples
             columns = 0.0_rk
             do mode = 1, 2

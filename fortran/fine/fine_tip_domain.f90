@@ -8,7 +8,7 @@ module fine_tip_domain
    use base_plane, only: point_distance
    use base_tolerances, only: same_direction, same_place
    use fine_elasticity, only: is_same, rocks_t
-   use fine_element, only: collapsed_rule, line_resultants, triangle_rule_7
+   use fine_element, only: line_resultants, tip_rule, tip_rule_size
    use fine_faces, only: face_contact, face_jump, face_loaded
    use fine_loads, only: fine_loads_t, volume_forces
    use fine_mesh, only: fine_mesh_t
@@ -18,9 +18,7 @@ module fine_tip_domain
    private
 
    public :: domain_weight, element_rule, face_traction, in_situ_stress, largest_radius
-   public :: reference_angle, rosette_size, rule_size, traction_source
-
-   integer(ik), parameter :: rule_t = 4, rule_w = 5, rule_size = rule_t*rule_w  !< points at most
+   public :: reference_angle, rosette_size, traction_source
 
 contains
 
@@ -48,26 +46,20 @@ contains
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: cell
       integer(ik), intent(out) :: n_points
-      real(rk), intent(out) :: points(3, rule_size), weights(rule_size)  !< [-]
-      integer(ik) :: corner
+      real(rk), intent(out) :: points(3, tip_rule_size), weights(tip_rule_size)  !< [-]
 
-      corner = findloc(fine%cell_nodes(1:3, cell), frame%node, dim=1)
-      if (corner > 0) then
-         n_points = rule_size
-         call collapsed_rule(corner, rule_t, rule_w, points, weights)
-      else
-         n_points = 7
-         call triangle_rule_7(points(:, 1:7), weights(1:7))
-      end if
+      call tip_rule(findloc(fine%cell_nodes(1:3, cell), frame%node, dim=1, kind=ik), n_points, &
+                    points, weights)
    end subroutine element_rule
 
-   !> In-situ stress at the tip, in its axes [Pa].
-   pure function in_situ_stress(loads, frame) result(stress)
+   !> In-situ stress at a vertex, in the axes of a tip [Pa].
+   pure function in_situ_stress(loads, frame, vertex) result(stress)
       type(fine_loads_t), intent(in) :: loads
       type(tip_frame_t), intent(in) :: frame
+      integer(ik), intent(in) :: vertex
       real(rk) :: stress(2, 2)
 
-      associate (given => loads%initial_stress(:, frame%node))
+      associate (given => loads%initial_stress(:, vertex))
          stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
       end associate
       stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))

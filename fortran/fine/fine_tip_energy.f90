@@ -14,12 +14,12 @@ module fine_tip_energy
    use base_kinds, only: ik, pi, rk
    use base_plane, only: triangle_area
    use fine_elasticity, only: elasticity_t
-   use fine_element, only: gauss_rule, line_shapes, line_slopes
+   use fine_element, only: gauss_rule, line_shapes, line_slopes, tip_rule_size
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: domain_weight, element_rule, face_traction, in_situ_stress, &
-                              rule_size, traction_source
+                              traction_source
    use fine_tip_types, only: tip_frame_t
    implicit none(type, external)
    private
@@ -41,7 +41,7 @@ contains
       integer(ik) :: cell
 
       q = domain_weight(model%mesh, frame, radius, plateau)
-      reference_stress = in_situ_stress(loads, frame)
+      reference_stress = in_situ_stress(loads, frame, frame%node)
       g = 0.0_rk
       do cell = 1, model%mesh%n_cells
          if (any(q(model%mesh%cell_nodes(:, cell)) > 0.0_rk)) then
@@ -64,7 +64,7 @@ contains
       real(rk), intent(in) :: reference_stress(2, 2)  !< to take off, in the tip's axes [Pa]
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
-      real(rk) :: points(3, rule_size), weights(rule_size)
+      real(rk) :: points(3, tip_rule_size), weights(tip_rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: gradient(2, 2), elastic(2, 2), initial(2, 2), slope(2, 2), q_slope(2), p(2)
       real(rk) :: body(2), density, corner(2, 2, 3), moved(2, 6), q_nodes(6), xy(2, 3)
@@ -108,10 +108,7 @@ contains
       real(rk) :: stress(2, 2)
       integer(ik) :: i
 
-      associate (given => loads%initial_stress(:, vertex))
-         stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
-      end associate
-      stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))
+      stress = in_situ_stress(loads, frame, vertex)
       do i = 1, 2
          stress(i, i) = stress(i, i) - frame%rock%biot*loads%pore_pressure(vertex)
       end do

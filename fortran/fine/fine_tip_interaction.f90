@@ -21,11 +21,11 @@
 !! that of the initial stress is the symmetric part of hat u,1 (x) q', and q hat e,1.
 module fine_tip_interaction
    use base_kinds, only: ik, rk
-   use fine_element, only: gauss_rule, line_shapes
+   use fine_element, only: gauss_rule, line_shapes, tip_rule_size
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: domain_weight, element_rule, face_traction, in_situ_stress, &
-                              reference_angle, rule_size, traction_source
+                              reference_angle, traction_source
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t, root_of_place
    use fine_tip_types, only: tip_frame_t
    implicit none(type, external)
@@ -103,7 +103,7 @@ contains
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: q(:, :)  !< (domains, n_nodes) [-]
       integer(ik), intent(in) :: place(:)  !< (n_nodes) among those of the domain
-      real(rk) :: points(3, rule_size), weights(rule_size)
+      real(rk) :: points(3, tip_rule_size), weights(tip_rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: by_gradient(2, 2), by_initial(2, 2), outer(2, 2), q_slope(2), q_here
       ! In the tip's axes.
@@ -270,7 +270,7 @@ contains
                end do
             end do
          end do
-         reference = in_situ_stress(loads, frame)
+         reference = in_situ_stress(loads, frame, frame%node)
          do i = 1, size(self%face, kind=ik)
             traction = matmul(frame%axes, &
                               face_traction(model, loads, displacement, &

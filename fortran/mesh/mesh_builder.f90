@@ -53,11 +53,8 @@ contains
       call prepare_network(network, arrays, c_network, error)
       if (.not. allocated(error)) call prepare_spec(kept, c_network%n_fractures, c_spec, error)
       if (allocated(error)) return
-      if (cm_create(c_spec, c_network, mesher%handle) /= 0) then
-         call raise_library_error(error, "build_mesh", network)
-         return
-      end if
-      call copy_mesh(mesher%handle, mesh, error)
+     call finish(cm_create(c_spec, c_network, mesher%handle), "build_mesh", network, mesher, mesh, &
+                  error)
    end subroutine build_mesh
 
    !> A new mesh of the same body whose cells have about the sizes that are wanted in the cells of
@@ -75,22 +72,15 @@ contains
       type(cm_network_t) :: c_network
       type(mesh_spec_t), target :: kept
       type(c_network_arrays_t), target :: arrays
+      integer :: status
 
-      call destroy_mesher(mesher_new)
-      if (.not. c_associated(mesher_old%handle)) then
-         call raise_error(error, "build_mesh_sized", "there is no old mesh; build one first")
-         return
-      end if
       kept = spec
-      call prepare_network(network, arrays, c_network, error)
+      call begin_from(mesher_old, network, mesher_new, arrays, c_network, error)
       if (.not. allocated(error)) call prepare_spec(kept, c_network%n_fractures, c_spec, error)
       if (allocated(error)) return
-      if (cm_create_sized(c_spec, c_network, mesher_old%handle, ubound(cell_size, 1), cell_size, &
-                          mesher_new%handle) /= 0) then
-         call raise_library_error(error, "build_mesh_sized", network)
-         return
-      end if
-      call copy_mesh(mesher_new%handle, mesh, error)
+      status = cm_create_sized(c_spec, c_network, mesher_old%handle, ubound(cell_size, 1), &
+                               cell_size, mesher_new%handle)
+      call finish(status, "build_mesh_sized", network, mesher_new, mesh, error)
    end subroutine build_mesh_sized
 
    !> A mesh that differs from an old one only near the given centres, where fractures have grown.
@@ -109,22 +99,12 @@ contains
       type(c_network_arrays_t), target :: arrays
       integer :: status
 
-      call destroy_mesher(mesher_new)
-      if (.not. c_associated(mesher_old%handle)) then
-         call raise_error(error, "remesh", "there is no old mesh; build one first")
-         return
-      end if
-      call prepare_network(network, arrays, c_network, error)
+      call begin_from(mesher_old, network, mesher_new, arrays, c_network, error)
       if (allocated(error)) return
       status = cm_remesh(mesher_old%handle, c_network, int(ubound(centres, 2), ik), centres, &
                          radius, size, mesher_new%handle)
-      if (status /= 0) then
-         call raise_library_error(error, "remesh", network)
-         return
-      end if
-      call copy_mesh(mesher_new%handle, mesh, error)
-      if (allocated(error)) return
-      call copy_map(mesher_new%handle, mesh, map, error)
+      call finish(status, "remesh", network, mesher_new, mesh, error)
+      if (.not. allocated(error)) call copy_map(mesher_new%handle, mesh, map, error)
    end subroutine remesh
 
    !> A mesh of a grown network for a body with rosettes, new only in patches around the ends
@@ -140,22 +120,14 @@ contains
       type(cm_network_t) :: c_network
       type(c_network_arrays_t), target :: arrays
 
-      call destroy_mesher(mesher_new)
-      if (.not. c_associated(mesher_old%handle)) then
-         call raise_error(error, "grow_mesh", "there is no old mesh; build one first")
-         return
-      end if
-      call prepare_network(network, arrays, c_network, error)
+      call begin_from(mesher_old, network, mesher_new, arrays, c_network, error)
       if (allocated(error)) return
       if (ubound(end_radius, 1) /= 2 .or. ubound(end_radius, 2) /= c_network%n_fractures) then
          call raise_error(error, "grow_mesh", "every fracture has two rosette radii")
          return
       end if
-      if (cm_grow(mesher_old%handle, c_network, c_loc(end_radius), mesher_new%handle) /= 0) then
-         call raise_library_error(error, "grow_mesh", network)
-         return
-      end if
-      call copy_mesh(mesher_new%handle, mesh, error)
+      call finish(cm_grow(mesher_old%handle, c_network, c_loc(end_radius), mesher_new%handle), &
+                  "grow_mesh", network, mesher_new, mesh, error)
    end subroutine grow_mesh
 
    !> The cells of an old mesh, whose nodes have moved along with the ends of fractures that lie
@@ -170,19 +142,44 @@ contains
       type(cm_network_t) :: c_network
       type(c_network_arrays_t), target :: arrays
 
-      call destroy_mesher(mesher_new)
-      if (.not. c_associated(mesher_old%handle)) then
-         call raise_error(error, "move_tips", "there is no old mesh; build one first")
-         return
-      end if
-      call prepare_network(network, arrays, c_network, error)
+      call begin_from(mesher_old, network, mesher_new, arrays, c_network, error)
       if (allocated(error)) return
-      if (cm_move_tips(mesher_old%handle, c_network, mesher_new%handle) /= 0) then
-         call raise_library_error(error, "move_tips", network)
-         return
-      end if
-      call copy_mesh(mesher_new%handle, mesh, error)
+      call finish(cm_move_tips(mesher_old%handle, c_network, mesher_new%handle), "move_tips", &
+                  network, mesher_new, mesh, error)
    end subroutine move_tips
+
+   !> Release a mesh, and prepare another network to mesh in its place from an old mesh.
+   subroutine begin_from(mesher_old, network, mesher_new, arrays, c_network, error)
+      type(mesher_t), intent(in) :: mesher_old
+      type(network_t), intent(in) :: network
+      type(mesher_t), intent(inout) :: mesher_new
+      type(c_network_arrays_t), intent(out), target :: arrays  !< that c_network points to
+      type(cm_network_t), intent(out) :: c_network
+      type(error_t), allocatable, intent(out) :: error
+
+      call destroy_mesher(mesher_new)
+      if (c_associated(mesher_old%handle)) then
+         call prepare_network(network, arrays, c_network, error)
+      else
+         call raise_error(error, "mesh_builder", "there is no old mesh; build one first")
+      end if
+   end subroutine begin_from
+
+   !> Copy the mesh that the library has made, or raise its error.
+   subroutine finish(status, origin, network, mesher, mesh, error)
+      integer, intent(in) :: status  !< of the library's call; 0: done
+      character(len=*), intent(in) :: origin  !< procedure for the log
+      type(network_t), intent(in) :: network
+      type(mesher_t), intent(in) :: mesher
+      type(mesh_t), intent(out) :: mesh
+      type(error_t), allocatable, intent(out) :: error
+
+      if (status == 0) then
+         call copy_mesh(mesher%handle, mesh, error)
+      else
+         call raise_library_error(error, origin, network)
+      end if
+   end subroutine finish
 
    !> The cell that holds each point; 0 outside.
    subroutine locate(mesher, xy, cells, error)

@@ -7,7 +7,7 @@ module mesh_geometry
    private
 
    public :: cell_area, cell_centre, corner_geometry, face_length, fracture_cell_centre
-   public :: outward_normal
+   public :: outward_normal, split_by_kind
 
 contains
 
@@ -93,5 +93,38 @@ contains
       corners = mesh%xy(:, mesh%cell_nodes(:, cell))
       area = triangle_area(corners)
    end function cell_area
+
+   !> Give the corners of cells at a node separate numbers for each kind of cell there: the first
+   !! kind keeps the number of the node, others are numbered after all nodes.
+   pure subroutine split_by_kind(kind_of_cell, corner, node)
+      integer(ik), intent(in) :: kind_of_cell(:)  !< (n_cells) positive
+      integer(ik), intent(inout) :: corner(:, :)  !< (3, n_cells) nodes, then numbers
+      integer(ik), allocatable, intent(inout) :: node(:)  !< of each number
+      integer(ik), allocatable :: kind_of(:), next(:)
+      integer(ik) :: c, k, n, number
+
+      n = size(node, kind=ik)
+      allocate (kind_of(n), next(n), source=0_ik)  ! the numbers at a node are a chain
+      do c = 1, size(corner, 2, kind=ik)
+         do k = 1, 3
+            number = corner(k, c)
+            if (kind_of(number) == 0) kind_of(number) = kind_of_cell(c)
+            do while (kind_of(number) /= kind_of_cell(c))
+               if (next(number) == 0) then
+                  if (n == size(next)) then
+                     next = [next, spread(0_ik, 1, int(n))]
+                     kind_of = [kind_of, spread(0_ik, 1, int(n))]
+                  end if
+                  n = n + 1
+                  next(number) = n
+                  kind_of(n) = kind_of_cell(c)
+                  node = [node, corner(k, c)]
+               end if
+               number = next(number)
+            end do
+            corner(k, c) = number
+         end do
+      end do
+   end subroutine split_by_kind
 
 end module mesh_geometry

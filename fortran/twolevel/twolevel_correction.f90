@@ -6,7 +6,7 @@ module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: corner_tractions
-   use coarse_nodes, only: curved_displacement
+   use coarse_nodes, only: nodal_fields
    use coarse_layout, only: block_count, end_block
    use coarse_state, only: state_t
    use growth_tip, only: tip_t
@@ -53,8 +53,8 @@ contains
          if (allocated(error)) return
          unknowns = unknowns + state%unknowns
          call corner_tractions(model%regions, unknowns, tractions)
-         call curved_displacement(problem%mesh, model%rock, model%regions, unknowns, &
-                                  tractions, displacement, gradient)
+         call nodal_fields(problem%mesh, model%rock, model%regions, unknowns, tractions, &
+                           curved=displacement, gradients=gradient)
       end associate
    end subroutine improve
 

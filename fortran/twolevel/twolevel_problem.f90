@@ -28,7 +28,7 @@ module twolevel_problem
    type :: coarse_values_t
       real(rk), allocatable :: of(:, :)  !< the unknowns that the following are of [m], [m], [Pa]
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
-      !> For interpolation that is exact for quadratic fields (curved_displacement)
+      !> For interpolation that is exact for quadratic fields (nodal_fields)
       real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
       real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
       type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)

@@ -6,7 +6,7 @@ module twolevel_results
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stress, cell_stresses
    use coarse_state, only: state_t
-   use coarse_nodes, only: nodal_values, node_values
+   use coarse_nodes, only: nodal_fields, node_values
    use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: end_place, fracture_length, total_length
    use growth_tip, only: tip_t
@@ -215,7 +215,7 @@ contains
       associate (mesh => problem%mesh, model => problem%model, rock => problem%model%rock)
          fields%displacement = state%unknowns(:2, :mesh%n_cells)
          allocate (nodal(3, mesh%n_nodes))
-         call nodal_values(mesh, rock, model%regions, state%unknowns, state%tractions, nodal)
+         call nodal_fields(mesh, rock, model%regions, state%unknowns, state%tractions, nodal)
          fields%node_displacement = nodal(:2, :)
          fields%pressure = problem%rock_pressure(state)
          fields%stress = stresses_of(problem, state)

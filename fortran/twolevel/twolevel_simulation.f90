@@ -4,7 +4,7 @@ module twolevel_simulation
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_solid, only: shear_beside
+   use coarse_rock, only: shear_beside
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use report_rows, only: history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t

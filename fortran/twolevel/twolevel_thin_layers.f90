@@ -10,7 +10,7 @@
 !!     lowers K_I by sqrt(2) eta/Gamma(5/4) dp (c t)^(1/4), eta = alpha G/(lambda + 2 G).
 module twolevel_thin_layers
    use base_kinds, only: ik, rk
-   use coarse_regions, only: rock_t
+   use coarse_rock, only: rock_t
    use coarse_state, only: state_t
    use mesh_types, only: mesh_t
    implicit none(type, external)

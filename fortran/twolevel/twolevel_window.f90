@@ -10,7 +10,7 @@ module twolevel_window
    use base_plane, only: barycentric
    use contact_law, only: is_same
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
-   use coarse_regions, only: new_rock, rock_t
+   use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
    use fine_contact, only: contact_t, transfer_contact

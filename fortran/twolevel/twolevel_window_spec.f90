@@ -3,7 +3,7 @@
 module twolevel_window_spec
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_regions, only: new_rock, rock_t
+   use coarse_rock, only: new_rock, rock_t
    use fine_elasticity, only: elasticity_t
    use growth_network, only: end_pieces
    use mesh_builder, only: mesh_spec_t

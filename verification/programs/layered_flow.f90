@@ -10,10 +10,10 @@ program layered_flow
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use coarse_matrix, only: discretize
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_regions, only: resistivity_of
+   use coarse_rock, only: resistivity_of
    use coarse_state, only: state_t, step_report_t
+   use coarse_stencils, only: discretize
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_geometry, only: cell_area, face_length
    use mesh_types, only: mesh_t, network_t

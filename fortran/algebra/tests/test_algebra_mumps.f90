@@ -96,7 +96,8 @@ contains
       real(rk), allocatable :: values_kept(:)
       real(rk) :: x(3, 1)
 
-      call solver%analyse(3_ik, row, col, mumps_unsymmetric, error, ordering=mumps_pord)
+      solver%ordering = mumps_pord
+      call solver%analyse(3_ik, row, col, mumps_unsymmetric, error)
       call checks%no_error(error, "analyse an unsymmetric matrix")
       call solver%factorize(values, error)
       call checks%no_error(error, "factorize an unsymmetric matrix")

@@ -5,9 +5,11 @@ program test_coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
-   use coarse_layout, only: condensed_layout, condensed_layout_t
-   use coarse_matrix, only: discretize, matrix_t
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_layout, only: condensed_layout_t
+   use coarse_matrix, only: matrix_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_stencils, only: discretize
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: dense_matrix, mesh_square, porous_body, scattered, shake, &
@@ -114,7 +116,7 @@ contains
       call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
       call shake(mesh)
       call prepare(mesh, rock, matrix)
-      layout = condensed_layout(mesh%fracture%n_cells)
+      layout = condensed_layout_t(mesh%fracture%n_cells)
       n = layout%count()
       allocate (g(n), q(n, 1), pivots(n), unknowns(3, matrix%n_blocks))
       allocate (r, source=reshape(scattered(n), [3_ik, n/3]))

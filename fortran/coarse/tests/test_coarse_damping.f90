@@ -4,7 +4,7 @@ program test_coarse_damping
    use base_kinds, only: ik, rk
    use coarse_condensed, only: condensed_t
    use coarse_tips, only: dampers, jumps_of
-   use coarse_layout, only: condensed_layout
+   use coarse_layout, only: condensed_layout_t
    implicit none(type, external)
 
    real(rk), parameter :: length(3) = [1.5_rk, 0.5_rk, 2.0_rk]  ! of the cells [m]
@@ -20,7 +20,7 @@ program test_coarse_damping
    integer(ik) :: i
 
    condensed%n = 3
-   condensed%layout = condensed_layout(3_ik)
+   condensed%layout = condensed_layout_t(3_ik)
    condensed%length = length
    spring = dampers(condensed, stiffness)
    q = jumps_of(condensed, jump)

@@ -6,7 +6,7 @@ program test_coarse_equations
    use base_timers, only: timers_t
    use coarse_fractures, only: flow_paths_t, prepare
    use coarse_full_step, only: full_slopes
-   use coarse_layout, only: fracture_layout, fracture_layout_t
+   use coarse_layout, only: fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_newton, only: equations_t
    use coarse_state, only: state_t
@@ -143,9 +143,10 @@ contains
    end subroutine some_unknowns
 
    type(fracture_layout_t) function layout_of_model()
-      layout_of_model = fracture_layout(mesh%fracture%n_cells, &
-                                        size(model%connections, 2, kind=ik), &
-                                        model%joints%branch_count(), model%wells%n, model%joints%n)
+      layout_of_model = fracture_layout_t(mesh%fracture%n_cells, 7_ik, &
+                                          size(model%connections, 2, kind=ik), &
+                                          model%joints%branch_count(), model%wells%n, &
+                                          model%joints%n)
    end function layout_of_model
 
    !> A load such that about as many cells stick, slip and are open: f_n about -6 MPa, and the trial
@@ -188,7 +189,7 @@ contains
       paths = flow_paths_t(model%settings, model%connections, model%joints, model%wells)
       paths%settings%equilibrate = equilibrate
       paths%settings%vapour_pressure = vapour_pressure
-      call prepare(model%fracture_problem_t, paths, dt, g, state, eq)
+      call prepare(model%condensed, model%cells, paths, dt, g, state, eq)
       call eq%evaluate(x)
       contact = reshape(eq%state, [2_ik, mesh%fracture%n_cells])
    end subroutine equations_at

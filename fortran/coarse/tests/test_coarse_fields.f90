@@ -4,10 +4,12 @@ program test_coarse_fields
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
-   use coarse_matrix, only: discretize, matrix_t
-   use coarse_nodes, only: nodal_values, node_values
+   use coarse_matrix, only: matrix_t
+   use coarse_nodes, only: nodal_fields, node_values
    use coarse_own_pressure, only: own_pressure
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_stencils, only: discretize
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
@@ -59,7 +61,7 @@ contains
       call corner_tractions(regions, unknowns, tractions)
       call cell_stresses(mesh, regions, tractions, stresses)
       call cell_contents(mesh, rock, regions, matrix, unknowns, tractions, content)
-      call nodal_values(mesh, rock, regions, unknowns, tractions, values)
+      call nodal_fields(mesh, rock, regions, unknowns, tractions, values)
       worst = 0.0_rk
       do v = 1, mesh%n_nodes
          worst = max(worst, maxval(abs(node_values(mesh, rock, regions, unknowns, tractions, v) &

@@ -9,7 +9,7 @@ program test_coarse_joints
    use coarse_full_step, only: full_slopes
    use coarse_model, only: coarse_model_t, new_state
    use coarse_newton, only: equations_t
-   use coarse_nodes, only: nodal_values
+   use coarse_nodes, only: nodal_fields
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_stick
    use mesh_builder, only: mesher_t
@@ -170,7 +170,7 @@ contains
       call checks%no_error(error, "factorization")
       allocate (g(model%condensed%layout%count()), source=0.0_rk)
       paths = flow_paths_t(model%settings, model%connections, model%joints, model%wells)
-      call prepare(model%fracture_problem_t, paths, dt, g, state, eq)
+      call prepare(model%condensed, model%cells, paths, dt, g, state, eq)
       x = 4.0e6_rk*scattered(eq%layout%count())
       x(eq%layout%at_flow(1_ik):) = 1.0e-3_rk*x(eq%layout%at_flow(1_ik):)
       below = eq
@@ -303,7 +303,7 @@ contains
       call cell_stresses(mesh, model%regions, state%tractions, stresses)
       worst = maxval(abs(stresses - spread(stress, 2, int(mesh%n_cells))))
       call checks%is_close(worst, 0.0_rk, 1.0e-12_rk*20.0e6_rk, "uniform stress")
-      call nodal_values(mesh, model%rock, model%regions, state%unknowns, state%tractions, values)
+      call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, values)
       values(:2, :) = values(:2, :) - mesh%xy*spread(stress(:2), 2, int(mesh%n_nodes))/40.0e9_rk
       worst = maxval(abs(values(:2, :)))
       call checks%is_close(worst, 0.0_rk, 1.0e-8_rk*1.0e-3_rk, "linear displacement at the nodes")

@@ -1,9 +1,8 @@
 !> Where unknowns stand: each number is taken once, in the order that the modules rely on.
 program test_coarse_layout
    use base_kinds, only: ik
-   use coarse_layout, only: at_component, block_count, condensed_layout, condensed_layout_t, &
-                            end_block, end_of_block, fracture_cell_of_block, fracture_layout, &
-                            fracture_layout_t
+   use coarse_layout, only: at_component, block_count, condensed_layout_t, end_block, &
+                            end_of_block, fracture_cell_of_block, fracture_layout_t
    use mesh_types, only: mesh_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -24,7 +23,7 @@ contains
       integer(ik) :: i, k
       integer(ik), allocatable :: found(:)
 
-      layout = condensed_layout(3_ik)
+      layout = condensed_layout_t(3_ik)
       call checks%is_true(layout%count() == 18, "six numbers per cell")
       found = [integer(ik) ::]
       do i = 1, 3
@@ -42,7 +41,7 @@ contains
       integer(ik) :: i, k
       integer(ik), allocatable :: found(:)
 
-      layout = fracture_layout(3_ik, 2_ik, 4_ik, 2_ik, 1_ik)
+      layout = fracture_layout_t(3_ik, 7_ik, 2_ik, 4_ik, 2_ik, 1_ik)
       call checks%is_true(layout%cell_count() == 21, "seven numbers per cell")
       call checks%is_true(layout%count() == 30, "and one per flow, branch, well, joint")
       found = [integer(ik) ::]

@@ -6,8 +6,10 @@ program test_coarse_matrix
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
-   use coarse_matrix, only: discretize, matrix_t
-   use coarse_regions, only: new_rock, regions_t, rock_t, traction_face
+   use coarse_matrix, only: matrix_t
+   use coarse_regions, only: regions_t, traction_face
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_stencils, only: discretize
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t

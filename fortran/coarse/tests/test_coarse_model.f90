@@ -6,7 +6,7 @@ program test_coarse_model
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_nodes, only: nodal_values
+   use coarse_nodes, only: nodal_fields
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_law_t, state_slip, state_stick
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
@@ -108,7 +108,7 @@ contains
       integer(ik) :: v
 
       allocate (values(3, mesh%n_nodes))
-      call nodal_values(mesh, model%rock, model%regions, state%unknowns, state%tractions, values)
+      call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, values)
       v = minloc(norm2(mesh%xy - 2.0_rk, dim=1), dim=1)
       u = values(1:2, v)
    end function corner_displacement

@@ -5,11 +5,13 @@ program test_coarse_permeability
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_diffusion, only: cell_outflow, corner_gradient, region_fluxes
-   use coarse_matrix, only: discretize, matrix_t
+   use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_permeability, only: bearable, conduction_t, layered, place_regions, share_of_cell
-   use coarse_regions, only: new_rock, regions_t, resistivity_of, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, resistivity_of, rock_t
    use coarse_state, only: state_t, step_report_t
+   use coarse_stencils, only: discretize
    use contact_law, only: contact_law_t
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area

@@ -4,8 +4,10 @@ program test_coarse_sides
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_loads, only: add_point_forces, hold_points
-   use coarse_matrix, only: discretize, matrix_t, renew_sides
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_matrix, only: matrix_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_stencils, only: discretize, renew_sides
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, dense_matrix, linear_unknowns, porous_body, shake
    use scene_types, only: point_load_t, restraint_t, scene_t

@@ -5,10 +5,12 @@ program test_coarse_solid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
-   use coarse_matrix, only: discretize, matrix_t
-   use coarse_nodes, only: curved_displacement
+   use coarse_matrix, only: matrix_t
+   use coarse_nodes, only: nodal_fields
    use coarse_permeability, only: place_regions
-   use coarse_regions, only: new_rock, regions_t, rock_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_stencils, only: discretize
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, dense_matrix, porous_body
@@ -220,7 +222,8 @@ contains
       call checks%is_close(maxval(abs(stresses - spread(stress, 2, int(mesh%n_cells)))) &
                            /stress(1), 0.0_rk, 1.0e-11_rk, "loaded sides: stress")
       allocate (values(2, mesh%n_nodes), gradients(2, 2, mesh%n_nodes))
-      call curved_displacement(mesh, rock, regions, unknowns, tractions, values, gradients)
+      call nodal_fields(mesh, rock, regions, unknowns, tractions, curved=values, &
+                        gradients=gradients)
       do c = 1, mesh%n_nodes
          if (any(abs(mesh%xy(:, c) - 1.0_rk) > 0.99_rk)) cycle
          associate (from => mesh%xy(:, c) - 1.0_rk)

@@ -2,10 +2,10 @@
 !! go of at once.
 program test_contact_bond
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, &
-                          contact_residual, state_name, state_open, state_slip, state_stick
+   use contact_law, only: contact_law_t, state_name, state_open, state_slip, state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
+   use contact_point, only: contact_equations, contact_equations_t, contact_residual
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -250,7 +250,7 @@ contains
       pairs%load = load
       pairs%slip_before = [slip_before]
       allocate (pairs%given(1), pairs%traction(2, 1), pairs%residual(2), source=0.0_rk)
-      allocate (pairs%way(1), source=0_ik)
+      allocate (pairs%slip_sign(1), source=0_ik)
       allocate (pairs%state(1), source=-1_ik)
       x = stiffness*[0.0_rk, slip_before]
       call iterate(pairs, x, iteration_settings_t(), report)

@@ -2,11 +2,11 @@
 !! method on one point between springs from far away, in any units.
 program test_contact_closure
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, &
-                          contact_residual, is_same, is_valid, state_name, state_open, state_slip, &
+   use contact_law, only: contact_law_t, is_same, is_valid, state_name, state_open, state_slip, &
                           state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
+   use contact_point, only: contact_equations, contact_equations_t, contact_residual
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -192,7 +192,7 @@ contains
       pairs%load = [-load, shear*load]/unit
       allocate (pairs%slip_before(1), pairs%given(1), pairs%traction(2, 1), source=0.0_rk)
       allocate (pairs%residual(2), source=0.0_rk)
-      allocate (pairs%way(1), source=0_ik)
+      allocate (pairs%slip_sign(1), source=0_ik)
       allocate (pairs%state(1), source=-1_ik)
       x = 0.0_rk
       call iterate(pairs, x, iteration_settings_t(), report)

@@ -2,9 +2,9 @@
 program test_contact_law
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_equations, contact_equations_t, contact_law_t, &
-                          contact_residual, is_same, is_valid, state_name, state_open, state_slip, &
+   use contact_law, only: contact_law_t, is_same, is_valid, state_name, state_open, state_slip, &
                           state_stick
+   use contact_point, only: contact_equations, contact_equations_t, contact_residual
    use testing_checks, only: checks_t
    implicit none(type, external)
 

@@ -119,13 +119,13 @@ contains
          pairs%condensed = shape
       end if
       pairs%condensed = 0.01_rk*stiffness*pairs%condensed
-      allocate (pairs%law(n), pairs%slip_given(n), pairs%way(n), pairs%state(n))
+      allocate (pairs%law(n), pairs%slip_given(n), pairs%slip_sign(n), pairs%state(n))
       allocate (pairs%load(2*n), pairs%residual(2*n))
       allocate (pairs%traction(2, n), pairs%slip_before(n), pairs%given(n))
       pairs%slip_given = .false.
       pairs%slip_before = 0.0_rk
       pairs%given = 0.0_rk
-      pairs%way = 0
+      pairs%slip_sign = 0
       pairs%state = -1
    end subroutine some_pairs
 

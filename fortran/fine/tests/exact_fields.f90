@@ -14,7 +14,7 @@ module exact_fields
    implicit none(type, external)
    private
 
-   public :: angle, rock, solve_exact, true_errors
+   public :: angle, reactions, rock, solve_exact, true_errors
 
    type(elasticity_t), parameter :: rock = elasticity_t(1.0_rk, 0.3_rk, 0.0_rk, .false.)
    real(rk), parameter :: angle = 0.3_rk  !< of the crack [rad]
@@ -141,5 +141,22 @@ contains
       end do
       element = sqrt(element)
    end function true_errors
+
+   !> Nodal forces that balance the loads and the stresses: reactions of prescribed displacements
+   !! and of tied faces, zero up to rounding elsewhere.
+   pure function reactions(model, loads, displacement) result(force)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: force(:, :)  !< (2, n_nodes) [N/m]
+      integer(ik) :: cell
+
+      force = -model%external_forces(loads)
+      do cell = 1, model%mesh%n_cells
+         associate (nodes => model%mesh%cell_nodes(:, cell))
+            force(:, nodes) = force(:, nodes) + model%element_forces(displacement, cell)
+         end associate
+      end do
+   end function reactions
 
 end module exact_fields

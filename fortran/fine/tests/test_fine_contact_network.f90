@@ -4,8 +4,10 @@
 program test_fine_contact_network
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t, contact_residual, state_open, state_stick
+   use contact_law, only: contact_law_t, state_open, state_stick
+   use contact_point, only: contact_residual
    use exact_cracks, only: uniform_field
+   use exact_fields, only: reactions
    use fine_boundary, only: add_side_traction, clamped_boundary, fine_boundary_t, free_boundary, &
                             nearest_node
    use fine_contact, only: contact_t, new_contact
@@ -210,7 +212,7 @@ contains
       logical :: on_fracture(model%mesh%n_nodes)
       integer(ik) :: cell
 
-      force = model%reactions(loads, displacement)
+      force = reactions(model, loads, displacement)
       on_fracture = .false.
       do cell = 1, model%mesh%fracture%n_cells
          on_fracture(pack(model%mesh%face_nodes(:, :, cell), .true.)) = .true.

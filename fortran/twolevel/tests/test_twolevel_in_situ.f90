@@ -4,7 +4,7 @@ program test_twolevel_in_situ
    use base_errors, only: error_t
    use base_kinds, only: pi, rk
    use base_timers, only: timers_t
-   use coarse_regions, only: new_rock, rock_t
+   use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: step_report_t
    use report_rows, only: history_row_t, probe_row_t
    use report_simulation, only: snapshot_t
