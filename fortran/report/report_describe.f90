@@ -10,11 +10,11 @@ module report_describe
                              status_words, tip_columns, well_columns, well_words, word_t
    use report_limits, only: limits
    use report_text, only: json_t
-   use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, &
-                               in_mechanics, kind_choice, kind_integer, kind_logical, kind_name, &
-                               kind_real, kind_reals, kind_wholes, need_always, need_choice, &
-                               need_fluid, need_fracture, need_growth, need_tips, parameter_t, &
-                               parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, in_mechanics, &
+                               kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
+                               kind_reals, kind_wholes, need_always, need_choice, need_fluid, &
+                               need_fracture, need_growth, need_tips, parameter_t
    use scene_plausible, only: doubts
    implicit none(type, external)
    private

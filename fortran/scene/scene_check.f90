@@ -16,7 +16,8 @@ module scene_check
    use scene_check_regions, only: check_given_regions, check_regions
    use scene_check_sides, only: check_faces, check_parts, check_sides
    use scene_fluid_law, only: least_compressibility, skempton, storage
-   use scene_parameters, only: choice_name, choice_value, groups, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: choice_name, choice_value, groups
    use scene_sheet, only: line_text, parameter_index, record_t, refuse, sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t

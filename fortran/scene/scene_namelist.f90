@@ -3,17 +3,22 @@
 !! Defaults that depend on other values: resolved only here, so that scene.nml shows the numbers
 !! used.
 module scene_namelist
-   use base_errors, only: error_t
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use scene_check, only: check_scene, check_sheet
    use scene_exchange, only: sheet_to_scene
    use scene_exchange_values, only: not_given
    use scene_fluid_law, only: has_law
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
+                               need_choice, need_fluid, need_fracture, need_growth, need_tips
    use scene_parse, only: parse_scene
    use scene_schedule, only: load_schedules
-   use scene_sheet, only: sheet_t
-   use scene_types, only: injection_t, material_t, region_t, scene_t
+   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, refuse, sheet_t
+   use scene_types, only: injection_t, material_t, name_length, region_t, scene_t
+   use scene_values, only: default_value, shortened, value_t
+   use scene_words, only: is_identifier
    implicit none(type, external)
    private
 
@@ -31,16 +36,157 @@ contains
       type(sheet_t) :: sheet
 
       call parse_scene(path, sheet, error)
-      if (allocated(error)) return
-      call load_schedules(sheet, error)
-      if (allocated(error)) return
-      call check_sheet(sheet, error)
+      if (.not. allocated(error)) call complete_sheet(sheet, error)
+      if (.not. allocated(error)) call load_schedules(sheet, error)
+      if (.not. allocated(error)) call check_sheet(sheet, error)
       if (allocated(error)) return
       call sheet_to_scene(sheet, scene)
       call resolve_defaults(scene)
       call check_scene(sheet, scene, error)
       if (present(source)) source = sheet
    end subroutine read_scene
+
+   !> Fill in the defaults of a sheet that has been parsed, and refuse what lacks a required value.
+   pure subroutine complete_sheet(sheet, error)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: enabled, intensities
+      logical :: has_fluid, is_needed(0:need_choice)
+      integer :: i, item
+
+      has_fluid = sheet%has("fluid")
+      do i = 1, size(groups)
+         if (.not. (groups(i)%implied .and. applies(groups(i)%scenes, has_fluid))) cycle
+         if (.not. sheet%has(trim(groups(i)%name))) call add_record(sheet, empty_record(i, 0_ik))
+      end do
+      do i = 1, sheet%length
+         associate (values => sheet%records(i)%values)
+            do item = lbound(values, 1), ubound(values, 1)
+               if (values(item)%is_set) cycle
+               if (applies(parameters(item)%scenes, has_fluid)) then
+                  call default_value(parameters(item), values(item))
+               end if
+            end do
+         end associate
+      end do
+      call name_by_file(sheet, error)
+      if (.not. allocated(error)) call refuse_foreign(sheet, error)
+      if (allocated(error)) return
+      enabled = sheet%records(sheet%find("growth"))%value("enabled")
+      intensities = sheet%records(sheet%find("growth"))%value("intensities")
+      is_needed = .false.
+      is_needed(need_always) = .true.
+      is_needed(need_fluid) = has_fluid
+      is_needed(need_fracture) = sheet%has("fracture")
+      is_needed(need_tips) = enabled%flag .or. intensities%flag
+      is_needed(need_growth) = enabled%flag
+      do i = 1, sheet%length
+         call refuse_missing(sheet, i, is_needed, error)
+         if (allocated(error)) return
+      end do
+   end subroutine complete_sheet
+
+   !> A scene without a name is called as its file.
+   pure subroutine name_by_file(sheet, error)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: stem
+      integer :: dot, record
+
+      record = sheet%find("scene")
+      if (sheet%records(record)%is_set("name")) return
+      stem = sheet%path(index(sheet%path, "/", back=.true.) + 1:)
+      dot = index(stem, ".", back=.true.)
+      if (dot > 1) stem = stem(1:dot - 1)
+      if (len(stem) > name_length .or. .not. is_identifier(stem)) then
+         call refuse(error, sheet, record, "name", "is missing, and '"//shortened(stem)// &
+                     "', as the file is called, cannot serve for it: a name has at most 64 "// &
+                     "letters, digits, '_', '-' and '.'")
+         return
+      end if
+      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), &
+                                                                       "name")))
+         value%is_set = .true.
+         value%text = stem
+      end associate
+   end subroutine name_by_file
+
+   !> Scenes with and without fluid have groups and names of their own.
+   pure subroutine refuse_foreign(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason
+      logical :: has_fluid
+      integer :: i, item
+
+      has_fluid = sheet%has("fluid")
+      reason = "needs a fluid, but the group &fluid is missing"
+      if (has_fluid) reason = "is for mechanics-only scenes, but this one has the group &fluid"
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            if (.not. applies(groups(record%group)%scenes, has_fluid)) then
+               call refuse(error, sheet, i, "", reason)
+               return
+            end if
+            do item = lbound(record%values, 1), ubound(record%values, 1)
+               if (record%values(item)%line == 0) cycle
+               if (applies(parameters(item)%scenes, has_fluid)) cycle
+               call refuse(error, sheet, i, trim(parameters(item)%name), reason)
+               return
+            end do
+         end associate
+      end do
+   end subroutine refuse_foreign
+
+   !> Refuse a group that lacks a value which this scene needs.
+   pure subroutine refuse_missing(sheet, record, is_needed, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record  !< index into sheet%records
+      logical, intent(in) :: is_needed(0:)  !< in this scene, by the need of a parameter
+      type(error_t), allocatable, intent(out) :: error
+      integer :: item
+
+      associate (group => groups(sheet%records(record)%group), given => sheet%records(record))
+         if (.not. applies(group%scenes, sheet%has("fluid"))) return
+         do item = lbound(given%values, 1), ubound(given%values, 1)
+            if (given%values(item)%is_set) cycle
+            if (parameters(item)%need == need_choice) then
+               if (.not. given%suits(item)) cycle
+            else if (.not. is_needed(parameters(item)%need)) then
+               cycle
+            end if
+            if (given%line == 0) then
+               call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
+                                " is missing, and with it "//described(item)// &
+                                " (see docs/input.md)")
+            else
+               call refuse(error, sheet, record, "", described(item)//", is missing")
+            end if
+            return
+         end do
+      end associate
+   end subroutine refuse_missing
+
+   !> Name, unit and reason of a needed parameter.
+   pure function described(item) result(words)
+      integer, intent(in) :: item  !< index into parameters
+      character(len=:), allocatable :: words
+      character(len=46), parameter :: reason(need_always:need_growth) = [character(len=46) :: &
+         "which is always needed", "which a scene with &fluid needs", &
+         "which a scene with a fracture needs", &
+         "which growth and stress intensity factors need", "which growth needs"]
+
+      associate (parameter => parameters(item))
+         words = trim(parameter%name)
+         if (parameter%unit /= "-") words = words//" ["//trim(parameter%unit)//"]"
+         if (parameter%need == need_choice) then
+            words = words//", which the "//choice_name(parameter)//" '"// &
+                    choice_value(parameter)//"' needs"
+         else
+            words = words//", "//trim(reason(parameter%need))
+         end if
+      end associate
+   end function described
 
    !> Give every value that is still 0, for it was not given, what it stands for.
    pure subroutine resolve_defaults(scene)

@@ -9,16 +9,13 @@ module scene_parse
    use scene_expression, only: begins_value, constant_t, evaluate, token_comma, token_end, &
                                token_group, token_list_t, token_slash, token_t, token_text, &
                                token_word, tokenize, unquoted
-   use scene_parameter_table, only: kind_real, kind_reals, parameter_t
-   use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
-                               need_choice, need_fluid, need_fracture, need_growth, need_tips, &
-                               parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: groups, kind_real, kind_reals, parameter_t
    use scene_schedule, only: load_file
    use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
                           path_beside, place, record_t, refuse, sheet_t
-   use scene_types, only: name_length
-   use scene_values, only: default_value, read_value, shortened, value_t
-   use scene_words, only: is_identifier, lower_case, nearest_word, real_text
+   use scene_values, only: read_value, shortened, value_t
+   use scene_words, only: lower_case, nearest_word, real_text
    implicit none(type, external)
    private
 
@@ -47,8 +44,6 @@ contains
          return
       end if
       call parse_file([text_t ::], sheet, error)
-      if (allocated(error)) return
-      call complete(sheet, error)
    end subroutine parse_scene
 
    !> The groups of the file sheet%path, and of those that it includes.
@@ -291,157 +286,6 @@ contains
       end if
       message = message//" (see docs/input.md)"
    end function unknown_name
-
-   !> Fill in the defaults, and refuse what lacks a required value.
-   pure subroutine complete(sheet, error)
-      type(sheet_t), intent(inout) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: enabled, intensities
-      logical :: has_fluid
-      integer :: i, item, growth
-
-      has_fluid = sheet%has("fluid")
-      do i = 1, size(groups)
-         if (.not. (groups(i)%implied .and. applies(groups(i)%scenes, has_fluid))) cycle
-         if (.not. sheet%has(trim(groups(i)%name))) call add_record(sheet, empty_record(i, 0_ik))
-      end do
-      do i = 1, sheet%length
-         do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
-            if (sheet%records(i)%values(item)%is_set) cycle
-            if (applies(parameters(item)%scenes, has_fluid)) then
-               call default_value(parameters(item), sheet%records(i)%values(item))
-            end if
-         end do
-      end do
-      call name_by_file(sheet, error)
-      if (.not. allocated(error)) call refuse_foreign(sheet, error)
-      if (allocated(error)) return
-      growth = sheet%find("growth")
-      enabled = sheet%records(growth)%value("enabled")
-      intensities = sheet%records(growth)%value("intensities")
-      do i = 1, sheet%length
-         call refuse_missing(sheet, i, enabled%flag, enabled%flag .or. intensities%flag, error)
-         if (allocated(error)) return
-      end do
-   end subroutine complete
-
-   !> A scene without a name is called as its file.
-   pure subroutine name_by_file(sheet, error)
-      type(sheet_t), intent(inout) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: stem
-      integer :: dot, record
-
-      record = sheet%find("scene")
-      if (sheet%records(record)%is_set("name")) return
-      stem = sheet%path(index(sheet%path, "/", back=.true.) + 1:)
-      dot = index(stem, ".", back=.true.)
-      if (dot > 1) stem = stem(1:dot - 1)
-      if (len(stem) > name_length .or. .not. is_identifier(stem)) then
-         call refuse(error, sheet, record, "name", "is missing, and '"//shortened(stem)// &
-                     "', as the file is called, cannot serve for it: a name has at most 64 "// &
-                     "letters, digits, '_', '-' and '.'")
-         return
-      end if
-      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), &
-                                                                       "name")))
-         value%is_set = .true.
-         value%text = stem
-      end associate
-   end subroutine name_by_file
-
-   !> Scenes with and without fluid have groups and names of their own.
-   pure subroutine refuse_foreign(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: reason
-      logical :: has_fluid
-      integer :: i, item
-
-      has_fluid = sheet%has("fluid")
-      reason = "needs a fluid, but the group &fluid is missing"
-      if (has_fluid) reason = "is for mechanics-only scenes, but this one has the group &fluid"
-      do i = 1, sheet%length
-         associate (record => sheet%records(i))
-            if (.not. applies(groups(record%group)%scenes, has_fluid)) then
-               call refuse(error, sheet, i, "", reason)
-               return
-            end if
-            do item = lbound(record%values, 1), ubound(record%values, 1)
-               if (record%values(item)%line == 0) cycle
-               if (applies(parameters(item)%scenes, has_fluid)) cycle
-               call refuse(error, sheet, i, trim(parameters(item)%name), reason)
-               return
-            end do
-         end associate
-      end do
-   end subroutine refuse_foreign
-
-   !> Refuse a group that lacks a value which this scene needs.
-   pure subroutine refuse_missing(sheet, record, has_growth, has_tips, error)
-      type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: record
-      logical, intent(in) :: has_growth, has_tips
-      type(error_t), allocatable, intent(out) :: error
-      logical :: needed
-      integer :: item
-
-      if (.not. applies(groups(sheet%records(record)%group)%scenes, sheet%has("fluid"))) return
-      associate (group => groups(sheet%records(record)%group))
-         do item = lbound(sheet%records(record)%values, 1), ubound(sheet%records(record)%values, 1)
-            if (sheet%records(record)%values(item)%is_set) cycle
-            select case (parameters(item)%need)
-            case (need_always)
-               needed = .true.
-            case (need_fluid)
-               needed = sheet%has("fluid")
-            case (need_fracture)
-               needed = sheet%has("fracture")
-            case (need_tips)
-               needed = has_tips
-            case (need_growth)
-               needed = has_growth
-            case (need_choice)
-               needed = sheet%records(record)%suits(item)
-            case default
-               needed = .false.
-            end select
-            if (.not. needed) cycle
-            if (sheet%records(record)%line == 0) then
-               call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
-                                " is missing, and with it "//described(item)// &
-                                " (see docs/input.md)")
-            else
-               call refuse(error, sheet, record, "", trim(described(item))//", is missing")
-            end if
-            return
-         end do
-      end associate
-   end subroutine refuse_missing
-
-   !> Name, unit and reason of a needed parameter.
-   pure function described(item) result(words)
-      integer, intent(in) :: item
-      character(len=:), allocatable :: words
-
-      words = trim(parameters(item)%name)
-      if (parameters(item)%unit /= "-") words = words//" ["//trim(parameters(item)%unit)//"]"
-      select case (parameters(item)%need)
-      case (need_fluid)
-         words = words//", which a scene with &fluid needs"
-      case (need_fracture)
-         words = words//", which a scene with a fracture needs"
-      case (need_tips)
-         words = words//", which growth and stress intensity factors need"
-      case (need_growth)
-         words = words//", which growth needs"
-      case (need_choice)
-         words = words//", which the "//choice_name(parameters(item))//" '"// &
-                 choice_value(parameters(item))//"' needs"
-      case default
-         words = words//", which is always needed"
-      end select
-   end function described
 
    !> Values where texts stand for numbers: below a &define those are expressions.
    pure subroutine read_resolved(parameter, source, items, constants, value, reason)

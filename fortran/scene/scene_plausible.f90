@@ -50,87 +50,80 @@ module scene_plausible
    ! The table keeps its own layout.
    !&<
    type(doubt_t), parameter :: doubts(*) = [ &
-      doubt_t("material", "young", "Pa", "below 1e8 or above 1e12", &
-              "rock has 1e9 to 1e11 Pa"), &
+      doubt_t("material", "young", "Pa", "below 1e8 or above 1e12", "rock has 1e9 to 1e11 Pa"), &
       doubt_t("material", "poisson", "-", &
-              "above 0.49, with intensities, in plane strain, without &adaptive", &
-              "elements around the tips are then too stiff: stress intensity factors are up "// &
-              "to 1 % off, with &adaptive 0.1 %"), &
+         "above 0.49, with intensities, in plane strain, without &adaptive", &
+         "elements around the tips are then too stiff: stress intensity factors are up to 1 % "// &
+         "off, with &adaptive 0.1 %"), &
       doubt_t("material", "density", "kg/m3", "below 100 or above 10000, if not 0", &
-              "rock has 2000 to 3000 kg/m3"), &
-      doubt_t("material", "porosity", "-", "above 0.5", &
-              "rock has 0.001 to 0.3, not per cent"), &
+         "rock has 2000 to 3000 kg/m3"), &
+      doubt_t("material", "porosity", "-", "above 0.5", "rock has 0.001 to 0.3, not per cent"), &
       doubt_t("material", "permeability", "m2", "above 1e-8, with &fluid", &
-              "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
+         "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
       doubt_t("material", "toughness", "Pa m^1/2", "below 1e4 or above 1e8, with growth", &
-              "rock has 1e5 to 1e7 Pa m^1/2, and 1 MPa m^1/2 is 1e6"), &
+         "rock has 1e5 to 1e7 Pa m^1/2, and 1 MPa m^1/2 is 1e6"), &
       doubt_t("fluid", "compressibility", "1/Pa", "above 1e-6", &
-              "water has 4e-10 1/Pa, a gas the inverse of its pressure"), &
+         "water has 4e-10 1/Pa, a gas the inverse of its pressure"), &
       doubt_t("fluid", "viscosity", "Pa s", "below 1e-6 or above 10", &
-              "water has 1e-4 to 1e-3 Pa s, gels 0.01 to 1 Pa s"), &
-      doubt_t("fracture", "friction", "-", "above 1.5", &
-              "rock has 0.3 to 1"), &
+         "water has 1e-4 to 1e-3 Pa s, gels 0.01 to 1 Pa s"), &
+      doubt_t("fracture", "friction", "-", "above 1.5", "rock has 0.3 to 1"), &
       doubt_t("fracture", "dilation_deg", "degree", "above the angle of friction", &
-              "a slipping fracture then releases energy instead of dissipating it; 0 to 10 is "// &
-              "usual"), &
+         "a slipping fracture then releases energy instead of dissipating it; 0 to 10 is usual"), &
       doubt_t("fracture", "aperture", "m", "above a tenth of the fracture's length", &
-              "natural fractures have 1e-5 to 1e-3 m; the cubic law is valid for thin ones"), &
+         "natural fractures have 1e-5 to 1e-3 m; the cubic law is valid for thin ones"), &
       doubt_t("side", "traction", "Pa", "tension across a side, with wells", &
-              "rock at depth is compressed, and compression is negative"), &
+         "rock at depth is compressed, and compression is negative"), &
       doubt_t("injection", "start", "s", "not before the end of &time", &
-              "the well is never active"), &
+         "the well is never active"), &
       doubt_t("fine", "window", "m", "at least the body's shorter side, with &fluid", &
-              "a window is a part of the body around a tip; a few fracture lengths are usual, "// &
-              "and 'body' is one window for all tips"), &
+         "a window is a part of the body around a tip; a few fracture lengths are usual, and "// &
+         "'body' is one window for all tips"), &
       doubt_t("output", "interval", "s", "below the step of &time", &
-              "fields are written at most once per step"), &
+         "fields are written at most once per step"), &
       doubt_t("fluid", "compressibility", "1/Pa", &
-              "above 0, but Skempton's coefficient B exceeds 1", &
-              "the undrained pressure then exceeds the load; rock has B of 0.3 to 1"), &
+         "above 0, but Skempton's coefficient B exceeds 1", &
+         "the undrained pressure then exceeds the load; rock has B of 0.3 to 1"), &
       doubt_t("region", "permeability", "m2", "above 1e-8", &
-              "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
+         "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
       doubt_t("region", "width", "m", "below size_boundary: twice its area over its outline", &
-              "cells may be wider and average its permeability with that around it; reduce "// &
-              "size_boundary"), &
-      doubt_t("fracture", "gap", "m", &
-              "of an end below 0.05 increments, with growth and &fluid", &
-             "the ligament fails as soon as the tip exceeds its toughness; let them touch, or "// &
-             "separate them, if this is unintended"), &
+         "cells may be wider and average its permeability with that around it; reduce "// &
+         "size_boundary"), &
+      doubt_t("fracture", "gap", "m", "of an end below 0.05 increments, with growth and &fluid", &
+         "the ligament fails as soon as the tip exceeds its toughness; let them touch, or "// &
+         "separate them, if this is unintended"), &
       doubt_t("fracture", "stub", "m", &
-              "past a fracture that it crosses below 0.05 increments, likewise", &
-              "its end is a separate tip, with cells as small as the stub; let it end on the "// &
-              "other one if this is unintended"), &
+         "past a fracture that it crosses below 0.05 increments, likewise", &
+         "its end is a separate tip, with cells as small as the stub; let it end on the other "// &
+         "one if this is unintended"), &
       doubt_t("material", "anisotropy", "-", "above 10, with &fluid", &
-              "with such anisotropy pressures may leave their bounds: by a fifth of their "// &
-              "range at 100"), &
+         "with such anisotropy pressures may leave their bounds: by a fifth of their range at "// &
+         "100"), &
       doubt_t("fluid", "density", "kg/m3", "below 1 or above 3000, if not 0", &
-              "water has 1000 kg/m3"), &
+         "water has 1000 kg/m3"), &
       doubt_t("fluid", "density", "kg/m3", "0, with &gravity", &
-              "its pressure then does not increase with depth; water has 1000 kg/m3"), &
+         "its pressure then does not increase with depth; water has 1000 kg/m3"), &
       doubt_t("in_situ", "syy_per_y", "Pa/m", "0, with &gravity and a stress, with &fluid", &
-              "the weight then loads the body in addition to that stress; a gradient of "// &
-              "density times gravity balances it from the start"), &
+         "the weight then loads the body in addition to that stress; a gradient of density "// &
+         "times gravity balances it from the start"), &
       doubt_t("in_situ", "tension", "Pa", "above 0 somewhere in the body, with &fluid", &
-              "rock at depth is compressed, and compression is negative"), &
+         "rock at depth is compressed, and compression is negative"), &
       doubt_t("initial", "pressure", "Pa", &
-              "below vapour_pressure somewhere, by the fluid's density", &
-              "there is no water table: fractures there begin with vapour; use a larger "// &
-              "pressure or another y_datum"), &
-      doubt_t("initial", "pressure", "Pa", &
-              "above the smallest compression in situ somewhere", &
-              "fractures across that compression are open from the start"), &
+         "below vapour_pressure somewhere, by the fluid's density", &
+         "there is no water table: fractures there begin with vapour; use a larger pressure or "// &
+         "another y_datum"), &
+      doubt_t("initial", "pressure", "Pa", "above the smallest compression in situ somewhere", &
+         "fractures across that compression are open from the start"), &
       doubt_t("injection", "K_m", "-", &
-              "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
-              "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, "// &
-              "and below it the run may end early"), &
-      doubt_t("restraint", "surplus", "-", &
-              "above 0: more components than fix the rigid motions", &
-              "they are then point loads, around which results depend on the cell size; use "// &
-              "displacements or springs on sides instead"), &
+         "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
+         "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, and "// &
+         "below it the run may end early"), &
+      doubt_t("restraint", "surplus", "-", "above 0: more components than fix the rigid motions", &
+         "they are then point loads, around which results depend on the cell size; use "// &
+         "displacements or springs on sides instead"), &
       doubt_t("material", "poisson", "-", &
-              "above 0.49, likewise, with friction, with &adaptive too", &
-              "friction then follows wrong normal tractions around tips: K_II of closed "// &
-              "sliding tips is several per cent off, within their stated errors")]
+         "above 0.49, likewise, with friction, with &adaptive too", &
+         "friction then follows wrong normal tractions around tips: K_II of closed sliding "// &
+         "tips is several per cent off, within their stated errors")]
    !&>
 
    !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].

@@ -18,7 +18,8 @@ module scene_schedule
    use base_number, only: integer_text
    use base_texts, only: text_t
    use scene_expression, only: token_list_t, tokenize
-   use scene_parameters, only: groups, kind_reals, parameter_t, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: groups, kind_reals, parameter_t
    use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
    use scene_values, only: most_values, read_value, shortened, value_t
    use scene_words, only: lower_case
@@ -95,7 +96,6 @@ contains
       type(text_t), allocatable :: cells(:), rows(:)
       integer, allocatable :: item(:)
       real(rk), allocatable :: factor(:), numbers(:, :)
-      type(value_t) :: value
       character(len=:), allocatable :: reason
       character :: mark
       integer :: k, n, row
@@ -115,19 +115,12 @@ contains
                                                 parameters(item)%name, start], error)
                if (allocated(error)) return
             end if
-         else if (size(cells) /= size(item)) then
-            reason = wrong_count(size(cells), size(item), mark)
          else if (n == most_values) then
             reason = "the table has more than the "//integer_text(int(most_values, ik))// &
                      " rows that it may have"
          else
             n = n + 1
-            do k = 1, size(item)
-               if (mark /= ",") cells(k)%text = with_point(cells(k)%text)
-               call read_cell(cells(k)%text, parameters(item(k)), value, reason)
-               if (allocated(reason)) exit
-               numbers(n, k) = factor(k)*value%reals(1)
-            end do
+            call read_row(cells, mark, item, factor, numbers(n, :), reason)
          end if
          if (.not. allocated(reason)) cycle
          call raise_error(error, "", path//":"//integer_text(int(row, ik))//": "//reason// &
@@ -148,17 +141,35 @@ contains
       end do
    end subroutine load_table
 
-   !> A row has not one value per column.
-   pure function wrong_count(n, wanted, mark) result(reason)
-      integer, intent(in) :: n, wanted
-      character, intent(in) :: mark  !< what parts the columns
-      character(len=:), allocatable :: reason
+   !> The numbers of a row, in the units of the parameters.
+   pure subroutine read_row(cells, mark, item, factor, numbers, reason)
+      type(text_t), intent(in) :: cells(:)
+      character, intent(in) :: mark  !< separator of the columns
+      integer, intent(in) :: item(:)  !< (columns) indices into parameters
+      real(rk), intent(in) :: factor(:)  !< (columns) units of the parameters in those given [-]
+      real(rk), intent(out) :: numbers(:)  !< (columns) [unit of the parameter]
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
+      character(len=:), allocatable :: cell
+      type(value_t) :: value
+      integer :: k
 
-      reason = "the row has "//integer_text(int(n, ik))//" values but must have "// &
-               integer_text(int(wanted, ik))//", one per column"
-      if (mark == "," .and. n > wanted) reason = reason//"; with decimal commas, columns must "// &
-                                                 "be separated by semicolons or tabs"
-   end function wrong_count
+      numbers = 0.0_rk
+      if (size(cells) /= size(item)) then
+         reason = "the row has "//integer_text(size(cells, kind=ik))//" values but must have "// &
+                  integer_text(size(item, kind=ik))//", one per column"
+         if (mark == "," .and. size(cells) > size(item)) then
+            reason = reason//"; with decimal commas, columns must be separated by semicolons or tabs"
+         end if
+         return
+      end if
+      do k = 1, size(item)
+         cell = cells(k)%text
+         if (mark /= ",") cell = with_point(cell)
+         call read_cell(cell, parameters(item(k)), value, reason)
+         if (allocated(reason)) return
+         numbers(k) = factor(k)*value%reals(1)
+      end do
+   end subroutine read_row
 
    !> The rows of a file, without line ends.
    subroutine read_rows(sheet, record, path, rows, error)

@@ -4,7 +4,8 @@ module scene_sheet
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
    use scene_expression, only: constant_t
-   use scene_parameters, only: choice_name, choice_value, groups, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: choice_name, choice_value, groups
    use scene_values, only: value_t
    implicit none(type, external)
    private

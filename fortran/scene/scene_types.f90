@@ -262,24 +262,26 @@ module scene_types
       procedure :: has_fractures
       procedure :: has_wells
       procedure :: has_points
+      procedure :: n_parts
    end type scene_t
 
 contains
 
-   !> No step is longer [s].
+   !> Longest step [s].
    pure real(rk) function longest(self)
       class(time_t), intent(in) :: self
 
       longest = merge(self%step, self%end, self%step > 0.0_rk)
    end function longest
 
-   !> Else it is mechanics only.
+   !> The scene has a fluid; otherwise it is mechanics only.
    pure logical function has_fluid(self)
       class(scene_t), intent(in) :: self
 
       has_fluid = self%fluid%viscosity > 0.0_rk
    end function has_fluid
 
+   !> The scene has fractures.
    pure logical function has_fractures(self)
       class(scene_t), intent(in) :: self
 
@@ -287,6 +289,7 @@ contains
       if (has_fractures) has_fractures = size(self%fractures) > 0
    end function has_fractures
 
+   !> The scene has wells.
    pure logical function has_wells(self)
       class(scene_t), intent(in) :: self
 
@@ -302,6 +305,15 @@ contains
       if (has_points) has_points = size(self%restraints) + size(self%point_loads) > 0
    end function has_points
 
+   !> Number of parts of the boundary that the scene names; 0 for a rectangle.
+   pure integer function n_parts(self)
+      class(scene_t), intent(in) :: self
+
+      n_parts = 0
+      if (allocated(self%parts)) n_parts = size(self%parts)
+   end function n_parts
+
+   !> Number of stages, at least 1.
    pure integer(ik) function stage_count(self)
       class(injection_t), intent(in) :: self
 
@@ -318,7 +330,7 @@ contains
       if (allocated(self%time)) stage_start = self%time(stage)
    end function stage_start
 
-   !> The stage that a time belongs to; 0: the well is shut, before its start or after its end.
+   !> Number of the stage at a time; 0: the well is shut, before its start or after its end.
    pure integer(ik) function stage_at(self, time) result(stage)
       class(injection_t), intent(in) :: self
       real(rk), intent(in) :: time  !< [s]
@@ -330,14 +342,14 @@ contains
       end do
    end function stage_at
 
-   !> What flows depends on pressures: its rate is not simply what the scene says.
+   !> The flow depends on pressures, rather than being the rate of the scene.
    elemental logical function is_controlled(self)
       class(injection_t), intent(in) :: self
 
       is_controlled = allocated(self%pressure) .or. self%storage > 0.0_rk
    end function is_controlled
 
-   !> Along the polyline, as far as it has both coordinates [m].
+   !> Length of the polyline, as far as both lists of coordinates reach [m].
    pure real(rk) function fracture_length(self) result(length)
       class(fracture_t), intent(in) :: self
       integer :: k
