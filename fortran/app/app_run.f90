@@ -234,9 +234,9 @@ contains
       if (size(simulation%scene%probes) > 0) then
          call simulation%probes(probes, error)
          if (allocated(error)) return
-         call self%files%probe_row(row%time, probes)
+         call self%files%tables%probe_row(row%time, probes)
       end if
-      call self%files%history_row(row)
+      call self%files%tables%history_row(row)
       call write_due_fields(self, simulation, row%time, error)
       if (allocated(error)) return
       call self%files%tick(error)
@@ -272,21 +272,21 @@ contains
          do i = 1, size(chronicle%events, kind=ik)
             associate (event => chronicle%events(i))
                if (event%has_place) then
-                  call self%files%event_row(event%time, event%kind, event%detail, event%fracture, &
-                                            event%xy)
+                  call self%files%tables%event_row(event%time, event%kind, event%detail, &
+                                                   event%fracture, event%xy)
                else
-                  call self%files%event_row(event%time, event%kind, event%detail)
+                  call self%files%tables%event_row(event%time, event%kind, event%detail)
                end if
             end associate
          end do
          do i = 1, size(chronicle%tips, kind=ik)
-            call self%files%tip_row(chronicle%tips(i))
+            call self%files%tables%tip_row(chronicle%tips(i))
          end do
          do i = 1, size(chronicle%wells, kind=ik)
-            call self%files%well_row(chronicle%wells(i))
+            call self%files%tables%well_row(chronicle%wells(i))
          end do
          do i = 1, size(chronicle%slip_events, kind=ik)
-            call self%files%slip_event_row(chronicle%slip_events(i))
+            call self%files%tables%slip_event_row(chronicle%slip_events(i))
          end do
          do i = 1, size(chronicle%remarks, kind=ik)
             call self%files%log(chronicle%remarks(i)%text)
@@ -338,8 +338,7 @@ contains
       if (.not. (self%owes_rows .or. (self%owes_vtu .and. has_vtu))) return
       call simulation%snapshot(fields)
       if (.not. allocated(fields)) return
-      call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, &
-                                   fields%intersection, error, self%owes_rows, has_vtu)
+      call self%files%write_fields(fields, error, self%owes_rows, has_vtu)
       self%owes_rows = .false.
       if (has_vtu) self%owes_vtu = .false.
    end subroutine write_fields

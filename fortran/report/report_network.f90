@@ -5,14 +5,17 @@ module report_network
    use base_kinds, only: ik, rk
    use base_texts, only: text_t
    use base_tolerances, only: same_place
-   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner, point_joint_t, &
-                         point_joint_x
+   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner
    use report_files, only: write_text_file
    use report_text, only: json_t, newline, text_buffer_t
    implicit none(type, external)
    private
 
    public :: network_record_t
+
+   !> Names of the kinds of joints, point_boundary to point_corner.
+   character(len=*), parameter :: joint_names(point_boundary:point_corner) = &
+                                  [character(len=8) :: "boundary", "T", "X", "V"]
 
    !> A joint: where a fracture ends on, crosses or meets another, or ends on the outer boundary.
    type :: joint_t
@@ -71,7 +74,7 @@ contains
                                  order=[2, 1])
       end if
       call note_joints(self, time)
-      call json%keep_on_one_line()
+      json%one_line = .true.
       call json%begin_object("")
       call json%add(self%clock, time)
       call add_fractures(json, self)
@@ -96,7 +99,7 @@ contains
       call json%begin_array("joints")
       do i = 1, size(self%joints)
          call json%begin_object("")
-         call json%add("kind", joint_name(self%joints(i)%kind))
+         call json%add("kind", trim(joint_names(self%joints(i)%kind)))
          call json%add(self%clock, self%joints(i)%time)
          call json%add("x_m", self%joints(i)%xy(1))
          call json%add("y_m", self%joints(i)%xy(2))
@@ -199,25 +202,6 @@ contains
          if (.not. any(fractures == f)) fractures = [fractures, f]
       end do
    end function fractures_at
-
-   !> The letter that a kind of joint is known by.
-   pure function joint_name(kind) result(name)
-      integer(ik), intent(in) :: kind
-      character(len=:), allocatable :: name
-
-      select case (kind)
-      case (point_boundary)
-         name = "boundary"
-      case (point_joint_t)
-         name = "T"
-      case (point_joint_x)
-         name = "X"
-      case (point_corner)
-         name = "V"
-      case default
-         name = "unknown"
-      end select
-   end function joint_name
 
    !> Both networks have the same polylines.
    pure function same_network(a, b) result(same)

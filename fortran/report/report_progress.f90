@@ -130,7 +130,9 @@ contains
       if (share >= first_guess .and. share < 1.0_rk) then
          call add(duration_text(elapsed*(1.0_rk - share)/share)//" left")
       end if
-      if (allocated(values%well_pressure)) call add_wells(values%well_pressure)
+      if (allocated(values%well_pressure)) then
+         if (size(values%well_pressure) > 0) call add(well_text(values%well_pressure))
+      end if
       if (values%keq_over_kic > 0.0_rk) call add("K/K_IC "//brief_text(values%keq_over_kic, 3))
       call add("L "//brief_text(values%fracture_length, 4)//" m")
       call add("stick "//integer_text(values%n_stick)//" slip "//integer_text(values%n_slip)// &
@@ -138,40 +140,39 @@ contains
 
    contains
 
-      !> The pressures of all wells, or the lowest and the highest.
-      pure subroutine add_wells(pressure)
-         real(rk), intent(in) :: pressure(:)  !< [Pa]
-         integer, parameter :: most = 3
-         character(len=:), allocatable :: piece
-         integer :: w
+      !> Add a part of the line, if it fits.
+      pure subroutine add(part)
+         character(len=*), intent(in) :: part
 
-         if (size(pressure) == 0) return
-         if (size(pressure) > most) then
-            piece = "wells "//megapascals(minval(pressure))//" to "//megapascals(maxval(pressure))
-         else
-            piece = "well "//megapascals(pressure(1))
-            do w = 2, size(pressure)
-               piece = piece//", "//megapascals(pressure(w))
-            end do
-         end if
-         call add(piece//" MPa")
-      end subroutine add_wells
-
-      pure function megapascals(pressure) result(text)
-         real(rk), intent(in) :: pressure  !< [Pa]
-         character(len=:), allocatable :: text
-
-         text = brief_text(1.0e-6_rk*pressure, 4)
-      end function megapascals
-
-      !> One more piece, if it fits.
-      pure subroutine add(piece)
-         character(len=*), intent(in) :: piece
-
-         if (len(line) + 2 + len(piece) <= width) line = line//"  "//piece
+         if (len(line) + 2 + len(part) <= width) line = line//"  "//part
       end subroutine add
 
    end function progress_line
+
+   !> The pressures of all wells, or of more than three the lowest and the highest.
+   pure function well_text(pressure) result(text)
+      real(rk), intent(in) :: pressure(:)  !< at least one [Pa]
+      character(len=:), allocatable :: text
+      integer :: w
+
+      if (size(pressure) > 3) then
+         text = "wells "//megapascals(minval(pressure))//" to "//megapascals(maxval(pressure))
+      else
+         text = "well "//megapascals(pressure(1))
+         do w = 2, size(pressure)
+            text = text//", "//megapascals(pressure(w))
+         end do
+      end if
+      text = text//" MPa"
+   end function well_text
+
+   !> A pressure in MPa.
+   pure function megapascals(pressure) result(text)
+      real(rk), intent(in) :: pressure  !< [Pa]
+      character(len=:), allocatable :: text
+
+      text = brief_text(1.0e-6_rk*pressure, 4)
+   end function megapascals
 
    !> A time as people say it: `8 s`, `12 min`, `3.5 h`.
    pure function duration_text(seconds) result(text)

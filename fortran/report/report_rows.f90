@@ -19,19 +19,26 @@ module report_rows
    public :: history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, slip_event_t
    public :: summary_t, tip_row_t, well_row_t
 
+   !> Fluid volumes per metre of thickness, from the start of the run on.
+   type :: fluid_totals_t
+      real(rk) :: injected = 0.0_rk  !< injected less produced [m2]
+      real(rk) :: produced = 0.0_rk  !< produced by wells [m2]
+      real(rk) :: leakoff = 0.0_rk  !< from the fractures into the rock [m2]
+      real(rk) :: outflow = 0.0_rk  !< out of fractures that end on the boundary [m2]
+      real(rk) :: prefilled = 0.0_rk  !< initial content of new fracture cells [m2]
+      real(rk) :: fracture_fluid = 0.0_rk  !< gain of the fractures [m2]
+      real(rk) :: rock_fluid = 0.0_rk  !< gain of the rock [m2]
+      real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary [m2]
+      real(rk) :: mass_error_relative = 0.0_rk  !< error of their balance [-]
+   end type fluid_totals_t
+
    !> An accepted time step, a row of history.csv.
-   type :: history_row_t
+   type, extends(fluid_totals_t) :: history_row_t
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       real(rk) :: dt = 0.0_rk  !< [s]
       integer(ik) :: newton_iterations = 0
       real(rk), allocatable :: well_pressure(:)  !< (wells) where they meet fracture or rock [Pa]
-      real(rk) :: injected = 0.0_rk  !< fluid injected so far, less what wells produced [m2]
-      real(rk) :: produced = 0.0_rk  !< fluid that wells have drawn so far [m2]
-      real(rk) :: leakoff = 0.0_rk  !< fluid from the fractures into the matrix so far [m2]
-      real(rk) :: outflow = 0.0_rk  !< fluid out of fractures that end on the boundary so far [m2]
-      real(rk) :: prefilled = 0.0_rk  !< fluid that new cells brought along so far [m2]
       real(rk) :: fracture_volume = 0.0_rk  !< [m2]
-      real(rk) :: mass_error_relative = 0.0_rk  !< [-]
       real(rk) :: max_slip = 0.0_rk  !< [m]
       real(rk) :: max_opening = 0.0_rk  !< [m]
       real(rk) :: max_slip_rate = 0.0_rk  !< with a fluid; mean of the step [m/s]
@@ -48,9 +55,6 @@ module report_rows
       ! Of a stimulation, with a fluid:
       real(rk) :: injection_rate = 0.0_rk  !< of all wells in the step, net [m2/s]
       real(rk) :: injectivity = 0.0_rk  !< of the one well; 0: none [m2/s/Pa]
-      real(rk) :: fracture_fluid = 0.0_rk  !< that the fractures have gained so far [m2]
-      real(rk) :: rock_fluid = 0.0_rk  !< that the rock has gained so far [m2]
-      real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary so far [m2]
       real(rk) :: stimulated_length = 0.0_rk  !< [m]
       real(rk) :: connected_length = 0.0_rk  !< with the wells [m]
       real(rk) :: connected_stimulated = 0.0_rk  !< of both lengths [m]

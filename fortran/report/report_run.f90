@@ -12,8 +12,7 @@ module report_run
    use report_files, only: place_t, reserve_file, write_text_file
    use report_network, only: network_record_t
    use report_record, only: run_record_t, status_failed
-   use report_rows, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-                          matrix_fields_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
+   use report_simulation, only: snapshot_t
    use report_snapshots, only: snapshots_t
    use report_tables, only: tables_t
    use report_text, only: newline, text_buffer_t
@@ -32,7 +31,7 @@ module report_run
    type :: run_output_t
       type(place_t), private :: place
       logical :: keeps_earlier_run = .false.  !< it has left files, and `begin` has not come
-      type(tables_t), private :: tables
+      type(tables_t) :: tables
       type(snapshots_t), private :: snapshots
       type(network_record_t), private :: network
       type(text_buffer_t), private :: log_text
@@ -46,12 +45,6 @@ module report_run
    contains
       procedure :: open => open_run
       procedure :: begin => begin_run
-      procedure :: history_row
-      procedure :: tip_row
-      procedure :: probe_row
-      procedure :: event_row
-      procedure :: slip_event_row
-      procedure :: well_row
       procedure :: network_step
       procedure :: fields_due
       procedure :: write_fields
@@ -111,59 +104,6 @@ contains
       end do
    end function fracture_names
 
-   !> Add an accepted step to history.csv.
-   subroutine history_row(self, row)
-      class(run_output_t), intent(inout) :: self
-      type(history_row_t), intent(in) :: row
-
-      call self%tables%history_row(row)
-   end subroutine history_row
-
-   !> Add a tip to tips.csv.
-   subroutine tip_row(self, row)
-      class(run_output_t), intent(inout) :: self
-      type(tip_row_t), intent(in) :: row
-
-      call self%tables%tip_row(row)
-   end subroutine tip_row
-
-   !> Add the state at all probes to probes.csv.
-   subroutine probe_row(self, time, row)
-      class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s], or the load factor
-      type(probe_row_t), intent(in) :: row
-
-      call self%tables%probe_row(time, row)
-   end subroutine probe_row
-
-   !> Add an event to events.csv.
-   subroutine event_row(self, time, kind, detail, fracture, xy)
-      class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of report_rows
-      character(len=*), intent(in) :: detail  !< a few words with numbers and units
-      integer(ik), intent(in), optional :: fracture
-      real(rk), intent(in), optional :: xy(2)  !< [m]
-
-      call self%tables%event_row(time, kind, detail, fracture, xy)
-   end subroutine event_row
-
-   !> Add a well to wells.csv.
-   subroutine well_row(self, row)
-      class(run_output_t), intent(inout) :: self
-      type(well_row_t), intent(in) :: row
-
-      call self%tables%well_row(row)
-   end subroutine well_row
-
-   !> Add a slip event to slip_events.csv.
-   subroutine slip_event_row(self, event)
-      class(run_output_t), intent(inout) :: self
-      type(slip_event_t), intent(in) :: event
-
-      call self%tables%slip_event_row(event)
-   end subroutine slip_event_row
-
    !> Note the network for network.json; nothing happens if it has not changed.
    subroutine network_step(self, time, network, mesh)
       class(run_output_t), intent(inout) :: self
@@ -183,16 +123,11 @@ contains
       fields_due = time >= self%next_fields - 1.0e-6_rk*self%interval
    end function fields_due
 
-   !> Write the fields of the state that the last row of history.csv has: VTU files where the scene
-   !! wants them, and the rows of fractures.csv.
-   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error, with_rows, &
-                           with_vtu)
+   !> Write the fields of the state in the last row of history.csv: VTU files, if the scene has them,
+   !! and the rows of fractures.csv.
+   subroutine write_fields(self, fields, error, with_rows, with_vtu)
       class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      type(mesh_t), intent(in) :: mesh
-      type(matrix_fields_t), intent(in) :: matrix
-      type(fracture_fields_t), intent(in) :: fracture
-      type(intersection_fields_t), intent(in) :: intersections  !< may be empty
+      type(snapshot_t), intent(in) :: fields
       type(error_t), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_rows, with_vtu  !< .false.: without these
       logical :: has_rows, has_vtu
@@ -201,13 +136,13 @@ contains
       if (present(with_rows)) has_rows = with_rows
       has_vtu = self%writes_vtu
       if (present(with_vtu)) has_vtu = has_vtu .and. with_vtu
-      if (has_rows) call self%tables%fracture_rows(time, mesh%fracture, fracture)
-      if (has_vtu) then
-         call self%snapshots%write(time, int(self%tables%history%n_rows, ik), mesh, matrix, &
-                                   fracture, intersections, error)
+      if (has_rows) then
+         call self%tables%fracture_rows(fields%time, fields%mesh%fracture, fields%fracture)
       end if
+      if (has_vtu) call self%snapshots%write(fields, int(self%tables%history%n_rows, ik), error)
       if (self%interval > 0.0_rk) then
-         self%next_fields = self%interval*(aint(time/self%interval + 1.0e-6_rk) + 1.0_rk)
+         self%next_fields = self%interval &
+                            *(aint(fields%time/self%interval + 1.0e-6_rk) + 1.0_rk)
       end if
    end subroutine write_fields
 

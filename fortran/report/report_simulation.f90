@@ -15,7 +15,7 @@ module report_simulation
    use report_rows, only: chronicle_t, event_arrest, event_growth, event_joint, event_opening, &
                           event_remesh, event_slip_onset, fracture_fields_t, history_row_t, &
                           intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, tip_row_t
-   use report_slip, only: slip_catalogue_t
+   use report_slip, only: slip_catalogue_t, slip_step_t
    use report_watch, only: watch_t
    use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
@@ -196,19 +196,13 @@ contains
       end do
    end subroutine note_contact
 
-   !> Note what has slipped in the step of length dt that led to the present state.
-   pure subroutine note_slip(self, dt, fracture, potency, shear, state, is_sudden, traction)
+   !> Add the slip of the step that led to the present state to the slip events.
+   pure subroutine note_slip(self, fracture, step)
       class(simulation_t), intent(inout) :: self
-      real(rk), intent(in) :: dt  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
-      real(rk), intent(in) :: potency(:)  !< (fracture cells) slip of the step times length [m2]
-      real(rk), intent(in) :: shear(:)  !< (fracture cells) modulus G of the rock beside it [Pa]
-      integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_law
-      logical, intent(in) :: is_sudden  !< growth was unstable in the step
-      real(rk), intent(in) :: traction(:)  !< (fracture cells) f_tau after it [Pa]
+      type(slip_step_t), intent(in) :: step
 
-      call self%catalogue%follow(self%time(), dt, fracture, potency, shear, state, is_sudden, &
-                                 traction)
+      call self%catalogue%follow(self%time(), fracture, step)
       call list_events(self)
    end subroutine note_slip
 

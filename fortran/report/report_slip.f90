@@ -27,7 +27,17 @@ module report_slip
    implicit none(type, external)
    private
 
-   public :: magnitude, slip_catalogue_t
+   public :: magnitude, slip_catalogue_t, slip_step_t
+
+   !> Slip of all fracture cells in a time step.
+   type :: slip_step_t
+      real(rk) :: dt = 0.0_rk  !< length of the step, positive [s]
+      real(rk), allocatable :: potency(:)  !< (cells) slip of the step times length [m2]
+      real(rk), allocatable :: shear(:)  !< (cells) modulus G of the adjacent rock [Pa]
+      integer(ik), allocatable :: state(:)  !< (cells) of contact_law
+      real(rk), allocatable :: traction(:)  !< (cells) f_tau after the step [Pa]
+      logical :: is_sudden = .false.  !< growth was unstable in the step
+   end type slip_step_t
 
    !> Slip of one step, or of several.
    type :: amount_t
@@ -108,23 +118,19 @@ contains
       call self%last%keep(fracture, traction)
    end subroutine remember
 
-   !> A step of length dt that led to a time.
-   pure subroutine follow(self, time, dt, fracture, potency, shear, state, is_sudden, traction)
+   !> Add the slip of a step that led to a time.
+   pure subroutine follow(self, time, fracture, step)
       class(slip_catalogue_t), intent(inout) :: self
-      real(rk), intent(in) :: time, dt  !< [s]; dt > 0
+      real(rk), intent(in) :: time  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
-      real(rk), intent(in) :: potency(:)  !< (cells) slip of the step times length [m2]
-      real(rk), intent(in) :: shear(:)  !< (cells) modulus G of the rock beside it [Pa]
-      integer(ik), intent(in) :: state(:)  !< (cells) of contact_law
-      logical, intent(in) :: is_sudden  !< growth was unstable in the step
-      real(rk), intent(in) :: traction(:)  !< (cells) f_tau after it [Pa]
+      type(slip_step_t), intent(in) :: step
       type(patch_t), allocatable :: patches(:)
-      logical :: slides(size(state))
+      logical :: slides(size(step%state))
       integer(ik) :: cell, first, p
 
-      slides = state /= state_stick .and. potency > 0.0_rk
+      slides = step%state /= state_stick .and. step%potency > 0.0_rk
       allocate (patches(0))
-      if (.not. allocated(self%last%s)) call self%last%keep(fracture, traction)
+      if (.not. allocated(self%last%s)) call self%last%keep(fracture, step%traction)
       do p = 1, size(self%live)
          self%live(p)%now = amount_t()
       end do
@@ -140,16 +146,15 @@ contains
          end associate
          call assign_patch(self, patches)
          p = size(patches)
-         call add(self%live(patches(p)%live)%now, &
-                  amount_of(fracture, first, cell, dt, potency, shear*potency, state, is_sudden))
+         call add(self%live(patches(p)%live)%now, amount_of(fracture, first, cell, step))
          first = cell + 1
       end do
       call move_alloc(patches, self%patch)
       do p = 1, size(self%live)
-         if (any(self%patch%live == p)) call book_step(self, p, time, dt)
+         if (any(self%patch%live == p)) call add_step(self, p, time, step%dt)
       end do
       call end_quiet(self)
-      call self%last%keep(fracture, traction)
+      call self%last%keep(fracture, step%traction)
    end subroutine follow
 
    !> The last cell of a patch. Cells are stored along each fracture.
@@ -227,29 +232,26 @@ contains
       where (patches%live == gone) patches%live = keeps
    end subroutine take_in
 
-   !> Slip of some cells that follow each other.
-   pure function amount_of(fracture, first, last, dt, potency, moment, state, is_sudden) &
-      result(amount)
+   !> Slip of successive cells in a step.
+   pure function amount_of(fracture, first, last, step) result(amount)
       type(fracture_mesh_t), intent(in) :: fracture
-      integer(ik), intent(in) :: first, last
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: potency(:)  !< (cells) [m2]
-      real(rk), intent(in) :: moment(:)  !< (cells) [N]
-      integer(ik), intent(in) :: state(:)  !< (cells)
-      logical, intent(in) :: is_sudden
+      integer(ik), intent(in) :: first, last  !< cells
+      type(slip_step_t), intent(in) :: step
       type(amount_t) :: amount
-      real(rk) :: centre(2), rate
+      real(rk) :: centre(2), moment(size(step%potency)), rate
       integer(ik) :: cell
 
-      amount%potency = sum(potency(first:last))
+      moment = step%shear*step%potency
+      amount%potency = sum(step%potency(first:last))
       amount%moment = sum(moment(first:last))
-      amount%open = sum(moment(first:last), mask=state(first:last) == state_open)
-      if (is_sudden) amount%sudden = amount%moment
+      amount%open = sum(moment(first:last), mask=step%state(first:last) == state_open)
+      if (step%is_sudden) amount%sudden = amount%moment
       amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
       do cell = first, last
          centre = fracture_cell_centre(fracture, cell)
          amount%place = amount%place + moment(cell)*centre
-         rate = potency(cell)/((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*dt)
+         rate = step%potency(cell) &
+                /((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*step%dt)
          if (.not. rate > amount%rate) cycle
          amount%rate = rate
          amount%fastest = centre
@@ -272,8 +274,8 @@ contains
       amount%fastest = more%fastest
    end subroutine add
 
-   !> The step of an event: it goes on, or where its rate passes the threshold another one begins.
-   pure subroutine book_step(self, p, time, dt)
+   !> Add a step to an event, or begin another event where the slip rate passes the threshold.
+   pure subroutine add_step(self, p, time, dt)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik), intent(in) :: p  !< live event
       real(rk), intent(in) :: time, dt  !< [s]
@@ -297,7 +299,7 @@ contains
                                        live%now%moment*self%breadth/dt)
          call add(live%before, live%now)
       end associate
-   end subroutine book_step
+   end subroutine add_step
 
    !> Events of which nothing slides any more are over.
    pure subroutine end_quiet(self)

@@ -17,6 +17,7 @@ module report_snapshots
    use report_columns, only: fracture_fields, intersection_fields, matrix_fields
    use report_files, only: make_directory, remove_file, write_text_file
    use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use report_simulation, only: snapshot_t
    use report_text, only: newline, text_buffer_t
    use report_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
    use scene_types, only: material_t, scene_t
@@ -82,28 +83,24 @@ contains
       if (scene%output%vtu) call make_directory(directory//"/"//folder, error)
    end subroutine open_snapshots
 
-   !> Write the fields of a state.
-   subroutine write_snapshot(self, time, history_row, mesh, matrix, fracture, intersections, error)
+   !> Write the fields of a state: a file for each dimension that it has.
+   subroutine write_snapshot(self, fields, history_row, error)
       class(snapshots_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      integer(ik), intent(in) :: history_row  !< with the same state, from 1
-      type(mesh_t), intent(in) :: mesh
-      type(matrix_fields_t), intent(in) :: matrix
-      type(fracture_fields_t), intent(in) :: fracture
-      type(intersection_fields_t), intent(in) :: intersections  !< may be empty
+      type(snapshot_t), intent(in) :: fields
+      integer(ik), intent(in) :: history_row  !< of the same state, from 1
       type(error_t), allocatable, intent(out) :: error
       type(vtu_grid_t) :: grid
 
-      call fill_matrix(grid, time, mesh, matrix, self%material)
-      call write_one(self, 1, time, history_row, grid, error)
-      if (.not. allocated(error) .and. mesh%fracture%n_cells > 0) then
-         call fill_fractures(grid, time, mesh%fracture, fracture)
-         call write_one(self, 2, time, history_row, grid, error)
+      call fill_matrix(grid, fields%time, fields%mesh, fields%matrix, self%material)
+      call write_one(self, 1, fields%time, history_row, grid, error)
+      if (.not. allocated(error) .and. fields%mesh%fracture%n_cells > 0) then
+         call fill_fractures(grid, fields%time, fields%mesh%fracture, fields%fracture)
+         call write_one(self, 2, fields%time, history_row, grid, error)
       end if
-      if (.not. allocated(error) .and. allocated(intersections%point)) then
-         if (size(intersections%point) > 0) then
-            call fill_intersections(grid, time, mesh%fracture, intersections)
-            call write_one(self, 3, time, history_row, grid, error)
+      if (.not. allocated(error) .and. allocated(fields%intersection%point)) then
+         if (size(fields%intersection%point) > 0) then
+            call fill_intersections(grid, fields%time, fields%mesh%fracture, fields%intersection)
+            call write_one(self, 3, fields%time, history_row, grid, error)
          end if
       end if
       if (.not. allocated(error)) self%n_written = self%n_written + 1

@@ -34,13 +34,12 @@ module report_text
       type(text_buffer_t) :: buffer
       integer :: depth = 0
       logical :: has_members(0:deepest) = .false.
-      logical :: one_line = .false.
+      logical :: one_line = .false.  !< what follows has no line breaks
    contains
       procedure :: begin_object
       procedure :: end_object
       procedure :: begin_array
       procedure :: end_array
-      procedure :: keep_on_one_line
       procedure :: add_raw
       procedure, private :: add_real
       procedure, private :: add_integer
@@ -117,13 +116,6 @@ contains
          call write_text_file(path, "", error)
       end if
    end subroutine write_file
-
-   !> Write what follows without line breaks.
-   subroutine keep_on_one_line(self)
-      class(json_t), intent(inout) :: self
-
-      self%one_line = .true.
-   end subroutine keep_on_one_line
 
    subroutine begin_object(self, key)
       class(json_t), intent(inout) :: self

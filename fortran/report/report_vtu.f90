@@ -57,6 +57,16 @@ module report_vtu
       procedure :: write => write_grid
    end type vtu_grid_t
 
+   !> The XML before the raw arrays, as far as it has been written.
+   type :: header_t
+      type(text_buffer_t) :: buffer
+      integer(int64) :: offset = 0_int64  !< of the next array, from the byte after the underscore
+   contains
+      procedure :: line
+      procedure :: fields
+      procedure :: array
+   end type header_t
+
 contains
 
    !> Begin a grid of cells of one kind.
@@ -163,7 +173,7 @@ contains
       integer(ik) :: i
 
       call file%open(path)
-      call file%put(header(self))
+      call file%put(header_text(self))
       call put_reals(file, self%points)
       call put_integers(file, self%connectivity)
       call put_integers(file, [(i*self%nodes_per_cell, i=1, self%n_cells)])
@@ -192,84 +202,85 @@ contains
       end do
    end subroutine put_fields
 
-   !> The XML before the raw arrays, which says where each of them begins.
-   function header(self) result(xml)
+   !> The XML before the raw arrays, with the offset of each of them.
+   function header_text(self) result(xml)
       type(vtu_grid_t), intent(in) :: self
       character(len=:), allocatable :: xml
+      type(header_t) :: header
 
-      type(text_buffer_t) :: buffer
-      integer(int64) :: offset
+      call header%line('<?xml version="1.0"?>')
+      call header%line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
+         & byte_order()//'" header_type="UInt64">')
+      call header%line("  <UnstructuredGrid>")
+      call header%line('    <FieldData><DataArray type="Float64" Name="TimeValue" '// &
+         & 'NumberOfTuples="1" format="ascii">'//exact_text(self%time)//"</DataArray>"// &
+         & state_number(self)//"</FieldData>")
+      call header%line('    <Piece NumberOfPoints="'// &
+         & integer_text(size(self%points, kind=ik)/3_ik)//'" NumberOfCells="'// &
+         & integer_text(self%n_cells)//'">')
+      call header%line("      <Points>")
+      call header%array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points), "m")
+      call header%line("      </Points>")
+      call header%line("      <Cells>")
+      call header%array("Int32", "connectivity", "", 4*size(self%connectivity))
+      call header%array("Int32", "offsets", "", 4*int(self%n_cells))
+      call header%array("UInt8", "types", "", int(self%n_cells))
+      call header%line("      </Cells>")
+      call header%line("      <PointData>")
+      call header%fields(self, .true.)
+      call header%line("      </PointData>")
+      call header%line("      <CellData>")
+      call header%fields(self, .false.)
+      call header%line("      </CellData>")
+      call header%line("    </Piece>")
+      call header%line("  </UnstructuredGrid>")
+      call header%line('  <AppendedData encoding="raw">')
+      xml = header%buffer%text()//"   _"
+   end function header_text
 
-      offset = 0_int64
-      call line('<?xml version="1.0"?>')
-      call line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'//byte_order()// &
-         & '" header_type="UInt64">')
-      call line("  <UnstructuredGrid>")
-      call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//state_number(self)// &
-         & "</FieldData>")
-      call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
-         & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
-      call line("      <Points>")
-      call array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points), "m")
-      call line("      </Points>")
-      call line("      <Cells>")
-      call array("Int32", "connectivity", "", 4*size(self%connectivity))
-      call array("Int32", "offsets", "", 4*int(self%n_cells))
-      call array("UInt8", "types", "", int(self%n_cells))
-      call line("      </Cells>")
-      call line("      <PointData>")
-      call fields(.true.)
-      call line("      </PointData>")
-      call line("      <CellData>")
-      call fields(.false.)
-      call line("      </CellData>")
-      call line("    </Piece>")
-      call line("  </UnstructuredGrid>")
-      call line('  <AppendedData encoding="raw">')
-      xml = buffer%text()//"   _"
+   !> Add a line.
+   subroutine line(self, text)
+      class(header_t), intent(inout) :: self
+      character(len=*), intent(in) :: text
 
-   contains
+      call self%buffer%append(text//newline)
+   end subroutine line
 
-      subroutine line(text)
-         character(len=*), intent(in) :: text
+   !> Add the fields at points, or those in cells, in the order of put_fields.
+   subroutine fields(self, grid, at_points)
+      class(header_t), intent(inout) :: self
+      type(vtu_grid_t), intent(in) :: grid
+      logical, intent(in) :: at_points
+      integer :: i
 
-         call buffer%append(text//newline)
-      end subroutine line
+      do i = 1, grid%n_fields
+         associate (field => grid%fields(i))
+            if (field%at_points .neqv. at_points) cycle
+            if (allocated(field%reals)) then
+               call self%array("Float64", field%name, field%components, 8*size(field%reals), &
+                               field%unit)
+            else
+               call self%array("Int32", field%name, "", 4*size(field%integers))
+            end if
+         end associate
+      end do
+   end subroutine fields
 
-      !> The fields at points, or those in cells, in the order of put_fields.
-      subroutine fields(at_points)
-         logical, intent(in) :: at_points
-         integer :: i
+   !> Add the element of an array, which begins at the present offset.
+   subroutine array(self, type_name, name, attributes, n_bytes, unit)
+      class(header_t), intent(inout) :: self
+      character(len=*), intent(in) :: type_name, name, attributes
+      integer, intent(in) :: n_bytes  !< of the values; 8 more hold their number
+      character(len=*), intent(in), optional :: unit
+      character(len=:), allocatable :: ending
 
-         do i = 1, self%n_fields
-            associate (field => self%fields(i))
-               if (field%at_points .neqv. at_points) cycle
-               if (allocated(field%reals)) then
-                  call array("Float64", field%name, field%components, 8*size(field%reals), &
-                             field%unit)
-               else
-                  call array("Int32", field%name, "", 4*size(field%integers))
-               end if
-            end associate
-         end do
-      end subroutine fields
-
-      subroutine array(type_name, name, attributes, n_bytes, unit)
-         character(len=*), intent(in) :: type_name, name, attributes
-         integer, intent(in) :: n_bytes  !< of the values; 8 more hold their size
-         character(len=*), intent(in), optional :: unit
-         character(len=:), allocatable :: ending
-
-         ending = "/>"
-         if (present(unit)) ending = '><InformationKey name="UNITS_LABEL" '// &
-            & 'location="vtkDataArray">'//unit//"</InformationKey></DataArray>"
-         call line('        <DataArray type="'//type_name//'" Name="'//name//'"'//attributes// &
-            & ' format="appended" offset="'//integer_text(offset)//'"'//ending)
-         offset = offset + 8_int64 + int(n_bytes, int64)
-      end subroutine array
-
-   end function header
+      ending = "/>"
+      if (present(unit)) ending = '><InformationKey name="UNITS_LABEL" '// &
+         & 'location="vtkDataArray">'//unit//"</InformationKey></DataArray>"
+      call self%line('        <DataArray type="'//type_name//'" Name="'//name//'"'//attributes// &
+         & ' format="appended" offset="'//integer_text(self%offset)//'"'//ending)
+      self%offset = self%offset + 8_int64 + int(n_bytes, int64)
+   end subroutine array
 
    !> The row of history.csv as field data.
    pure function state_number(self) result(xml)
