@@ -10,7 +10,7 @@ module scene_exchange
    use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
    use scene_types, only: discretization_t, domain_t, fluid_t, fracture_t, growth_t, injection_t, &
-                          probe_t, scene_t
+                          scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -141,7 +141,9 @@ contains
             call exchange_injection(record, well)
          end associate
       case ("probe")
-         call exchange_probe(record, scene%probes(i))
+         call exchange(record, "name", scene%probes(i)%name)
+         call exchange(record, "x", scene%probes(i)%x)
+         call exchange(record, "y", scene%probes(i)%y)
       case default
          call exchange_single(record, scene)
       end select
@@ -369,16 +371,6 @@ contains
       call exchange(record, "new_volume", growth%new_volume)
       call exchange(record, "stop_gain", growth%stop_gain, nothing=unlimited)
    end subroutine exchange_growth
-
-   !> Group &probe.
-   pure subroutine exchange_probe(record, probe)
-      type(record_t), intent(inout) :: record
-      type(probe_t), intent(inout) :: probe
-
-      call exchange(record, "name", probe%name)
-      call exchange(record, "x", probe%x)
-      call exchange(record, "y", probe%y)
-   end subroutine exchange_probe
 
    !> Number of groups of a name in a sheet.
    pure integer function count_of(sheet, name) result(n)

@@ -16,6 +16,7 @@ module scene_namelist
    use scene_parse, only: parse_scene
    use scene_schedule, only: load_schedules
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, refuse, sheet_t
+   use scene_sides, only: normal_tractions
    use scene_types, only: injection_t, material_t, name_length, region_t, scene_t
    use scene_values, only: default_value, shortened, value_t
    use scene_words, only: is_identifier
@@ -305,20 +306,14 @@ contains
    !! one that it does not tell: only then 0 is vacuum.
    pure logical function is_pressed(scene)
       type(scene_t), intent(in) :: scene
-      real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
-      integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
-      integer :: i
 
       is_pressed = scene%initial%pressure > 0.0_rk .or. scene%fluid%density > 0.0_rk &
                    .or. any(scene%in_situ%stress(1:2) < 0.0_rk) &
                    .or. any(abs(scene%in_situ%per_y) > 0.0_rk)
-      do i = 1, 4
-         associate (side => scene%sides(i))
-            is_pressed = is_pressed .or. outward(i)*side%traction(axis(i)) < 0.0_rk &
-                         .or. (side%pressure_given .and. side%pressure > 0.0_rk)
-         end associate
-      end do
-      is_pressed = is_pressed .or. any(scene%sides%normal_traction < 0.0_rk)
+      associate (side => scene%sides)
+         is_pressed = is_pressed .or. any(normal_tractions(side) < 0.0_rk) &
+                      .or. any(side%pressure_given .and. side%pressure > 0.0_rk)
+      end associate
       if (.not. allocated(scene%parts)) return
       associate (side => scene%parts)
          is_pressed = is_pressed .or. any(side%normal_traction < 0.0_rk) &

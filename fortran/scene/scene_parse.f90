@@ -13,7 +13,7 @@ module scene_parse
    use scene_parameters, only: groups, kind_real, kind_reals, parameter_t
    use scene_schedule, only: load_file
    use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
-                          path_beside, place, record_t, refuse, sheet_t
+                          path_from, place, record_t, refuse, sheet_t
    use scene_values, only: read_value, shortened, value_t
    use scene_words, only: lower_case, nearest_word, real_text
    implicit none(type, external)
@@ -104,7 +104,7 @@ contains
 
       here = sheet%path
       chain = [parents, text_t(here)]
-      sheet%path = path_beside(here, unquoted(quoted))
+      sheet%path = path_from(here, unquoted(quoted))
       sheet%n_included = sheet%n_included + 1
       inquire (file=sheet%path, exist=exists)
       do k = 1, size(chain)

@@ -20,6 +20,7 @@ module scene_plausible
    use scene_check_permeability, only: anisotropy
    use scene_fluid_law, only: skempton
    use scene_region_outline, only: body_part
+   use scene_sides, only: normal_tractions
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
@@ -322,9 +323,7 @@ contains
    pure subroutine doubt_flow(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
-      real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
-      integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
-      real(rk) :: across
+      real(rk) :: across(4)
       integer :: i
 
       associate (fluid => scene%fluid, d => scene%domain)
@@ -335,11 +334,9 @@ contains
                   fluid%compressibility)
          call add(list,.not. within(fluid%viscosity, 1.0e-6_rk, 10.0_rk), of_viscosity, &
                   fluid%viscosity)
+         across = normal_tractions(scene%sides)
          do i = 1, 4
-            if (.not. allocated(scene%injections)) exit
-            across = outward(i)*scene%sides(i)%traction(axis(i)) &
-                     + scene%sides(i)%normal_traction
-            call add(list, size(scene%injections) > 0 .and. across > 0.0_rk, of_traction, across, &
+            call add(list, scene%has_wells() .and. across(i) > 0.0_rk, of_traction, across(i), &
                      trim(sides(i)))
          end do
          call add(list, scene%growth%intensities .and. scene%discretization%window >= &

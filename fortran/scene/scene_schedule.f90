@@ -20,7 +20,7 @@ module scene_schedule
    use scene_expression, only: token_list_t, tokenize
    use scene_parameter_table, only: parameters
    use scene_parameters, only: groups, kind_reals, parameter_t
-   use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
+   use scene_sheet, only: parameter_index, path_from, path_of, refuse, sheet_t
    use scene_values, only: most_values, read_value, shortened, value_t
    use scene_words, only: lower_case
    implicit none(type, external)
@@ -61,7 +61,7 @@ contains
          if (parameter_index(sheet%records(i)%group, "schedule") == 0) cycle
          file = sheet%records(i)%value("schedule")
          if (.not. file%is_set) cycle
-         call load_table(sheet, i, path_beside(path_of(sheet, i), file%text), file%line, error)
+         call load_table(sheet, i, path_from(path_of(sheet, i), file%text), file%line, error)
          if (allocated(error)) return
          associate (record => sheet%records(i))
             record%values(parameter_index(record%group, "schedule"))%is_set = .false.
