@@ -55,14 +55,14 @@ contains
       end associate
    end function history_of_body
 
-   !> Whether the faces of a fracture can touch; else they are open from the start.
+   !> The faces of a fracture can touch; otherwise they are open from the start.
    elemental logical function touches(fracture)
       type(fracture_t), intent(in) :: fracture
 
       touches = fracture%law /= "open"
    end function touches
 
-   !> Displacement, stress, and what the fracture faces do.
+   !> Displacement, stress, and the jumps and tractions of the fracture faces.
    function body_snapshot(simulation) result(snapshot)
       class(loaded_body_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
@@ -110,7 +110,7 @@ contains
       end do
    end subroutine probes_of_body
 
-   !> Take note of a state in equilibrium, before it is accepted.
+   !> Check the limits of the run in a state of equilibrium, before it is accepted.
    subroutine watch_body(self)
       class(loaded_body_t), intent(inout) :: self
       character(len=:), allocatable :: when

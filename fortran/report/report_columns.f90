@@ -1,9 +1,9 @@
 !> The one table of the contents of a run's files: every column, key and field.
 !!
-!! The tables of a run take the names and the order of their columns from here, and so does
-!! the table of names (report_describe); tests hold the keys of run.json and network.json and the
-!! fields of the VTU files against it. A new column is one entry here, at the place where it shall
-!! stand, and one line in report_tables that says where its value comes from.
+!! The tables of a run take the names and the order of their columns from here, and so does the
+!! table of names (report_describe); tests hold the keys of run.json and network.json and the fields
+!! of the VTU files against it. A new column is one entry here, at the place where it shall stand,
+!! and one line in report_tables that says where its value comes from.
 module report_columns
    use scene_types, only: scene_t
    implicit none(type, external)

@@ -123,8 +123,8 @@ contains
       fields_due = time >= self%next_fields - 1.0e-6_rk*self%interval
    end function fields_due
 
-   !> Write the fields of the state in the last row of history.csv: VTU files, if the scene has them,
-   !! and the rows of fractures.csv.
+   !> Write the fields of the state in the last row of history.csv: VTU files, if the scene has
+   !! them, and the rows of fractures.csv.
    subroutine write_fields(self, fields, error, with_rows, with_vtu)
       class(run_output_t), intent(inout) :: self
       type(snapshot_t), intent(in) :: fields

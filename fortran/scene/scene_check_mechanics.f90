@@ -109,8 +109,8 @@ contains
       bears = side%displacement_given .or. side%spring > 0.0_rk
    end function bears
 
-   !> Add a part of the boundary to the sums of held_motions: the ends of a polygon's edges, or three
-   !! points of an arc.
+   !> Add a part of the boundary to the sums of held_motions: the ends of a polygon's edges, or
+   !! three points of an arc.
    pure subroutine hold_part(domain, part, held)
       type(domain_t), intent(in) :: domain
       type(boundary_part_t), intent(in) :: part

@@ -85,8 +85,8 @@ contains
       end do
    end subroutine check_regions
 
-   !> Storage is positive, and what a load makes in pressure at once no larger than the load, in
-   !! the rock of the region; it cannot bear growth alone.
+   !> Storage is positive, and what a load makes in pressure at once no larger than the load, in the
+   !! rock of the region; it cannot bear growth alone.
    pure subroutine check_rock(sheet, record, scene, region, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record

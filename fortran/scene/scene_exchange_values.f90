@@ -1,5 +1,5 @@
-!> Transfers single values, the rock, and the supports and loads of the body between the groups of
-!! a sheet and the components of a scene, in both directions.
+!> Transfers single values, the rock, and the supports and loads of the body between the groups of a
+!! sheet and the components of a scene, in both directions.
 module scene_exchange_values
    use base_kinds, only: ik, lk, radians, rk
    use scene_sheet, only: parameter_index, record_t
@@ -15,9 +15,9 @@ module scene_exchange_values
    public :: exchange, exchange_material, exchange_part, exchange_point_load, exchange_region
    public :: exchange_restraint, exchange_side, exchange_word, not_given, set_text, to_degrees
 
-   !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's component;
-   !! else from the component into the sheet. A component that equals `nothing`, or a list that is
-   !! not allocated, is not set in the sheet.
+   !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's
+   !! component; else from the component into the sheet. A component that equals `nothing`, or a
+   !! list that is not allocated, is not set in the sheet.
    interface exchange
       module procedure exchange_real
       module procedure exchange_reals

@@ -1,6 +1,6 @@
-!> Divides the text of a scene file into tokens with their lines, and evaluates expressions: numbers,
-!! named values, + - * / ^ and brackets. A name must be defined before it is used, so no name can
-!! depend on itself.
+!> Divides the text of a scene file into tokens with their lines, and evaluates expressions:
+!! numbers, named values, + - * / ^ and brackets. A name must be defined before it is used, so no
+!! name can depend on itself.
 !!
 !! The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
 !! end of the line, texts in single or double quotes in which a doubled quote stands for one.
@@ -369,8 +369,8 @@ contains
       end do
    end function word_length
 
-   !> Length of the quoted text at the beginning of a source, with both quotes; 0 if it is not closed
-   !! on its line.
+   !> Length of the quoted text at the beginning of a source, with both quotes; 0 if it is not
+   !! closed on its line.
    pure integer function text_length(source) result(length)
       character(len=*), intent(in) :: source
       integer :: i

@@ -228,8 +228,8 @@ contains
       end do
    end subroutine resolve_defaults
 
-   !> Wells without a name are called after their number; with stages they begin with the first,
-   !! and one rate or pressure is that of all.
+   !> Wells without a name are called after their number; with stages they begin with the first, and
+   !! one rate or pressure is that of all.
    pure subroutine name_wells(wells)
       type(injection_t), intent(inout) :: wells(:)
       integer(ik) :: i

@@ -179,8 +179,8 @@ contains
       end associate
    end function circle
 
-   !> Angles of the given points, vertices of fractures and ends of arcs that lie on the circle, each
-   !! of them once [rad].
+   !> Angles of the given points, vertices of fractures and ends of arcs that lie on the circle,
+   !! each of them once [rad].
    pure function fixed_angles(scene, given) result(angles)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: given(:, :)  !< (2, n) [m]

@@ -180,8 +180,8 @@ contains
    end function distance
 
    !> K_IC of the rock that a tip grows in [Pa m^1/2]. From one rock to the next it changes linearly
-   !! over the last piece of the way there, so that there is an equilibrium: a tip that tougher
-   !! rock holds stands within that piece before it.
+   !! over the last piece of the way there, so that there is an equilibrium: a tip that tougher rock
+   !! holds stands within that piece before it.
    pure real(rk) function toughness_ahead(places, scene, xy, direction, reach) result(toughness)
       type(rock_places_t), intent(in) :: places
       type(scene_t), intent(in) :: scene

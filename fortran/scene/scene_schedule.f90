@@ -158,7 +158,8 @@ contains
          reason = "the row has "//integer_text(size(cells, kind=ik))//" values but must have "// &
                   integer_text(size(item, kind=ik))//", one per column"
          if (mark == "," .and. size(cells) > size(item)) then
-            reason = reason//"; with decimal commas, columns must be separated by semicolons or tabs"
+            reason = reason//"; with decimal commas, columns must be separated by semicolons "// &
+                     "or tabs"
          end if
          return
       end if

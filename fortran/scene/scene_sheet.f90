@@ -199,8 +199,8 @@ contains
       end if
    end function line_text
 
-   !> Raise an error about a parameter of a group: file, line, group, name, reason, and where to read
-   !! about it.
+   !> Raise an error about a parameter of a group: file, line, group, name, reason, and where to
+   !! read about it.
    pure subroutine refuse(error, sheet, record, name, reason)
       type(error_t), allocatable, intent(out) :: error
       type(sheet_t), intent(in) :: sheet

@@ -59,8 +59,8 @@ contains
       end do
    end function lower_case
 
-   !> Insertions, deletions, replacements and swaps of neighbours that turn a into b
-   !> (optimal string alignment; Damerau 1964).
+   !> Insertions, deletions, replacements and swaps of neighbours that turn a into b (optimal string
+   !! alignment; Damerau 1964).
    pure integer function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
       integer :: d(-1:len(a), -1:len(b))
@@ -124,7 +124,7 @@ contains
    end function is_beginning
 
    !> Letters, digits, `_`, `-` and `.`, beginning with a letter or a digit: safe as a file name and
-   !> as part of a column name.
+   !! as part of a column name.
    pure logical function is_identifier(word)
       character(len=*), intent(in) :: word
       character(len=*), parameter :: alphanumeric = "abcdefghijklmnopqrstuvwxyz"// &
