@@ -1,7 +1,5 @@
-!> Reading of a scene file.
-!!
-!! Defaults that depend on other values: resolved only here, so that scene.nml shows the numbers
-!! used.
+!> Reads a scene file. Defaults that depend on other values are resolved only here, so that
+!! scene.nml shows the numbers used.
 module scene_namelist
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -27,8 +25,8 @@ module scene_namelist
 
 contains
 
-   !> Read a scene, fill in its defaults and check it. On an error the scene is not to be used.
-   !! Whether its geometry can be meshed is not for this room to judge.
+   !> Read a scene, fill in its defaults and check it. On an error the scene must not be used.
+   !! Whether the geometry can be meshed is checked by app_geometry.
    subroutine read_scene(path, scene, error, source)
       character(len=*), intent(in) :: path
       type(scene_t), intent(out) :: scene
@@ -87,7 +85,7 @@ contains
       end do
    end subroutine complete_sheet
 
-   !> A scene without a name is called as its file.
+   !> Name a scene without a name after its file.
    pure subroutine name_by_file(sheet, error)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -112,7 +110,7 @@ contains
       end associate
    end subroutine name_by_file
 
-   !> Scenes with and without fluid have groups and names of their own.
+   !> Refuse groups and names of scenes with a fluid in one without, and the reverse.
    pure subroutine refuse_foreign(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -189,12 +187,12 @@ contains
       end associate
    end function described
 
-   !> Give every value that is still 0, for it was not given, what it stands for.
+   !> Set values that are not given to their defaults, which depend on other values.
    pure subroutine resolve_defaults(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
 
-      if (.not. scene%has_fluid()) then  ! the programme takes one unit of time
+      if (.not. scene%has_fluid()) then  ! the load programme lasts one unit of time
          scene%time%end = 1.0_rk
          scene%time%step = 1.0_rk/real(scene%load%steps, rk)
       end if
@@ -228,8 +226,8 @@ contains
       end do
    end subroutine resolve_defaults
 
-   !> Wells without a name are called after their number; with stages they begin with the first, and
-   !! one rate or pressure is that of all.
+   !> Name wells without a name after their number. Wells with stages start with the first; a single
+   !! rate or pressure is that of all stages.
    pure subroutine name_wells(wells)
       type(injection_t), intent(inout) :: wells(:)
       integer(ik) :: i
@@ -243,7 +241,7 @@ contains
       end do
    end subroutine name_wells
 
-   !> One value is that of all stages.
+   !> Extend a list of one value to n equal ones.
    pure subroutine repeat_value(list, n)
       real(rk), allocatable, intent(inout) :: list(:)  !< [any unit]
       integer, intent(in) :: n
@@ -252,7 +250,7 @@ contains
       if (size(list) == 1) list = spread(list(1), 1, n)
    end subroutine repeat_value
 
-   !> The rock of regions is that of the scene but for what they give themselves.
+   !> Complete the rock of regions by the properties of the scene's rock that they do not give.
    pure subroutine complete(material, regions)
       type(material_t), intent(in) :: material  !< of the scene
       type(region_t), intent(inout) :: regions(:)
@@ -277,15 +275,16 @@ contains
       end do
    end subroutine complete
 
+   !> Replace a value by that of a region, if given.
    pure subroutine take(own, value)
-      real(rk), intent(in) :: own  !< what is given, or not_given [any unit]
+      real(rk), intent(in) :: own  !< value of the region, or not_given [any unit]
       real(rk), intent(inout) :: value  !< [unit of own]
 
       if (own < not_given) value = own
    end subroutine take
 
-   !> Steps of a given length, or such that their error is small; fields as often as they are given,
-   !! or a hundred times.
+   !> Set the defaults of the tolerance, the smallest step and the interval of written fields, which
+   !! without a step is a hundredth of the run.
    pure subroutine choose_steps(scene)
       type(scene_t), intent(inout) :: scene
       real(rk), parameter :: usual_tolerance = 0.01_rk
@@ -302,8 +301,8 @@ contains
       end associate
    end subroutine choose_steps
 
-   !> Whether stresses and pressures of the scene are those of a state in situ, and not changes of
-   !! one that it does not tell: only then 0 is vacuum.
+   !> Stresses and pressures are those of a state in situ, and not changes of an unknown state: only
+   !! then a pressure of 0 is vacuum.
    pure logical function is_pressed(scene)
       type(scene_t), intent(in) :: scene
 
@@ -321,6 +320,7 @@ contains
       end associate
    end function is_pressed
 
+   !> Set a value that is not positive, and so not given, to a default.
    pure subroutine default(value, otherwise)
       real(rk), intent(inout) :: value  !< [any unit]
       real(rk), intent(in) :: otherwise  !< [unit of value]

@@ -20,18 +20,18 @@ module scene_parameters
    integer, parameter :: kind_logical = 4
    integer, parameter :: kind_text = 5
    integer, parameter :: kind_name = 6  !< a text that is safe as a file name
-   integer, parameter :: kind_choice = 7  !< a text out of `choices`
-   integer, parameter :: kind_wholes = 8  !< a list of whole numbers, kept as reals
+   integer, parameter :: kind_choice = 7  !< one of `choices`
+   integer, parameter :: kind_wholes = 8  !< a list of whole numbers, stored as reals
 
    integer, parameter :: need_never = 0
-   integer, parameter :: need_always = 1  !< in every such group
+   integer, parameter :: need_always = 1  !< in every group of this name
    integer, parameter :: need_fluid = 2  !< where there is a fluid
    integer, parameter :: need_fracture = 3  !< where there is a fracture
    integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
    integer, parameter :: need_growth = 5  !< where fractures grow
-   integer, parameter :: need_choice = 6  !< with the choice that it belongs to
+   integer, parameter :: need_choice = 6  !< with the choice of `of`
 
-   ! Scenes that may give a group or a parameter.
+   ! Scenes that may have a group or a parameter.
    integer, parameter :: in_all = 0
    integer, parameter :: in_fluid = 1  !< scenes with &fluid
    integer, parameter :: in_mechanics = 2  !< scenes without &fluid: mechanics only
@@ -42,8 +42,8 @@ module scene_parameters
    type :: group_t
       character(len=12) :: name = ""
       logical :: repeated = .false.  !< one group per item
-      logical :: implied = .false.  !< an absent group stands for one that holds the defaults
-      integer :: scenes = in_all  !< which may have it
+      logical :: implied = .false.  !< an absent group has the defaults
+      integer :: scenes = in_all  !< scenes that may have the group
       character(len=600) :: meaning = ""
    end type group_t
 
@@ -54,18 +54,18 @@ module scene_parameters
       integer :: kind = kind_real
       character(len=8) :: unit = "-"
       integer :: need = need_never
-      character(len=16) :: default = ""  !< as a file would give it; empty: none
-      character(len=40) :: absent = ""  !< what it means if neither given nor defaulted
-      logical :: derived = .false.  !< then `absent` names the default, which follows from others
+      character(len=16) :: default = ""  !< default in the form of a file; empty: none
+      character(len=40) :: absent = ""  !< meaning of an absent name without a default
+      logical :: derived = .false.  !< `absent` is a default that follows from other values
       type(interval_t) :: range = interval_t()
-      integer :: scenes = in_all  !< which may give it
-      !> Separated by `|`; of a single number: words that may stand in its place
+      integer :: scenes = in_all  !< scenes that may have the name
+      !> choices, separated by `|`; for a single number: words allowed instead of it
       character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
-      ! Towards other names of its group:
-      character(len=28) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
-      character(len=20) :: with = ""  !< given only if this is given too
-      character(len=20) :: at_most = ""  !< a number that it must not exceed
+      ! Relations to other names of its group:
+      character(len=28) :: of = ""  !< choice of the name, as `law=slip`; empty: every choice
+      character(len=20) :: with = ""  !< name that must be given with this one
+      character(len=20) :: at_most = ""  !< name of an upper bound
    end type parameter_t
 
    !> Sides of the body in the order of scene_t%sides.
@@ -161,7 +161,7 @@ module scene_parameters
 
 contains
 
-   !> Whether a scene with or without a fluid may have a group or a parameter.
+   !> A scene with or without a fluid may have a group or a parameter.
    elemental logical function applies(scenes, has_fluid)
       integer, intent(in) :: scenes  !< in_all, in_fluid or in_mechanics
       logical, intent(in) :: has_fluid
@@ -169,7 +169,7 @@ contains
       applies = scenes == in_all .or. (scenes == in_fluid .eqv. has_fluid)
    end function applies
 
-   !> The name that makes the choice to which a parameter belongs.
+   !> Name of the choice to which a parameter belongs, as `law`.
    pure function choice_name(parameter) result(name)
       type(parameter_t), intent(in) :: parameter  !< of a choice
       character(len=:), allocatable :: name
@@ -177,7 +177,7 @@ contains
       name = parameter%of(:index(parameter%of, "=") - 1)
    end function choice_name
 
-   !> What that name must be.
+   !> Value of the choice to which a parameter belongs, as `slip`.
    pure function choice_value(parameter) result(value)
       type(parameter_t), intent(in) :: parameter  !< of a choice
       character(len=:), allocatable :: value

@@ -1,6 +1,5 @@
-!> Reads a scene file into a sheet: checks syntax, names, kinds and ranges one by one.
-!!
-!! Named values: those of &define groups, and expressions with them in the place of numbers.
+!> Reads a scene file into a sheet: checks syntax, names, kinds and ranges one by one. Named values
+!! of &define groups, and expressions with them, may replace numbers.
 module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -22,8 +21,8 @@ module scene_parse
    public :: parse_scene
 
    integer, parameter :: most_groups = 10000
-   integer, parameter :: most_included = 1000  !< files, each as often as it is included
-   integer, parameter :: most_nested = 20  !< files that include each other
+   integer, parameter :: most_included = 1000  !< included files, each as often as it is included
+   integer, parameter :: most_nested = 20  !< nesting of files that include each other
 
    integer, parameter :: most_constants = 1000
 
@@ -46,9 +45,9 @@ contains
       call parse_file([text_t ::], sheet, error)
    end subroutine parse_scene
 
-   !> The groups of the file sheet%path, and of those that it includes.
+   !> Add the groups of the file sheet%path, and of the files that it includes, to the sheet.
    recursive subroutine parse_file(parents, sheet, error)
-      type(text_t), intent(in) :: parents(:)  !< paths of the files that include it, from the first
+      type(text_t), intent(in) :: parents(:)  !< paths of the including files, from the first
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: source, fault
@@ -71,11 +70,11 @@ contains
       end if
    end subroutine parse_file
 
-   !> The first that is no comment is the name of a group or an include, or there is nothing else.
+   !> The first token is the name of a group or an include, or there is none.
    pure logical function begins_as_scene(source, tokens, is_cut)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
-      logical, intent(in) :: is_cut  !< at something that is no token
+      logical, intent(in) :: is_cut  !< the list ends at a character that belongs to no token
 
       associate (token => tokens%items(1))
          select case (token%kind)
@@ -89,8 +88,8 @@ contains
       end associate
    end function begins_as_scene
 
-   !> `include 'path'` between groups: the groups of that file stand here. Its path is seen from the
-   !! folder of the file that includes it.
+   !> Add the groups of the file of `include 'path'` between groups. The path is relative to the
+   !! folder of the including file.
    recursive subroutine include_file(quoted, line, parents, sheet, error)
       character(len=*), intent(in) :: quoted  !< the path in its quotes
       integer(ik), intent(in) :: line
@@ -130,7 +129,7 @@ contains
       if (.not. allocated(error)) sheet%path = here
    end subroutine include_file
 
-   !> All groups of a file.
+   !> Add all groups of a file to the sheet.
    recursive subroutine parse_groups(source, tokens, parents, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
@@ -190,7 +189,7 @@ contains
       end do
    end subroutine parse_groups
 
-   !> What stands between `&group` and `/`, into the last record.
+   !> Read the values between `&group` and `/` into the last record.
    pure subroutine parse_values(source, tokens, next, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
@@ -242,7 +241,7 @@ contains
       next = next + 1
    end subroutine parse_values
 
-   !> The word include with a text behind it; the last token, token_end, is never one.
+   !> A token and the next one are the word include and a text.
    pure logical function is_include(source, token, next)
       character(len=*), intent(in) :: source
       type(token_t), intent(in) :: token, next
@@ -252,7 +251,7 @@ contains
       is_include = lower_case(source(token%first:token%last)) == "include"
    end function is_include
 
-   !> Message for a group that there is not.
+   !> Message for an unknown group.
    pure function unknown_group(word) result(message)
       character(len=*), intent(in) :: word
       character(len=:), allocatable :: message, likely
@@ -263,7 +262,7 @@ contains
       message = message//" (see docs/input.md)"
    end function unknown_group
 
-   !> Message for a name that the group does not have.
+   !> Message for an unknown name of a group.
    pure function unknown_name(group, word) result(message)
       integer, intent(in) :: group
       character(len=*), intent(in) :: word
@@ -287,7 +286,7 @@ contains
       message = message//" (see docs/input.md)"
    end function unknown_name
 
-   !> Values where texts stand for numbers: below a &define those are expressions.
+   !> Read values; after a &define, texts instead of numbers are expressions.
    pure subroutine read_resolved(parameter, source, items, constants, value, reason)
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: source
@@ -309,14 +308,14 @@ contains
       resolved = repeat(" ", sum(max(items%last - items%first, number_width) + 2))
       length = 0
       do k = 1, size(items)
-         associate (piece => source(items(k)%first:items(k)%last))
+         associate (item => source(items(k)%first:items(k)%last))
             if (items(k)%kind /= token_text) then
-               call add_word(resolved, length, piece)
+               call add_word(resolved, length, item)
                cycle
             end if
-            call evaluate(unquoted(piece), constants, number, fault)
+            call evaluate(unquoted(item), constants, number, fault)
             if (allocated(fault)) then
-               reason = "is "//shortened(piece)//", which is no expression: "//fault
+               reason = "is "//shortened(item)//", which is no expression: "//fault
                return
             end if
             call add_word(resolved, length, real_text(number))
@@ -326,7 +325,7 @@ contains
       call read_value(parameter, resolved, tokens%items(:tokens%length - 1), value, reason)
    end subroutine read_resolved
 
-   !> Put a word and a blank behind the first characters of a text that has room for them.
+   !> Put a word and a blank after the first characters of a text of sufficient length.
    pure subroutine add_word(text, length, word)
       character(len=:), allocatable, intent(inout) :: text
       integer, intent(inout) :: length  !< characters in use
@@ -336,7 +335,7 @@ contains
       length = length + len(word) + 1
    end subroutine add_word
 
-   !> Numbers, unless a text may stand in their place.
+   !> A parameter takes expressions: numbers for which no word is allowed.
    pure logical function takes_expressions(parameter)
       type(parameter_t), intent(in) :: parameter
 
@@ -344,7 +343,7 @@ contains
                           len_trim(parameter%choices) == 0
    end function takes_expressions
 
-   !> What stands between `&define` and `/`: names and what they stand for, from top to bottom.
+   !> Read the named values between `&define` and `/`.
    pure subroutine parse_constants(source, tokens, next, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens

@@ -1,40 +1,36 @@
 !> Warnings for scenes that can be simulated but are probably not intended: values out of the usual
-!! range, as wrong units give, and values that are inconsistent. Scenes that cannot be simulated are
-!! refused (scene_check).
+!! range, as from wrong units, inconsistent values, and ends of fractures that almost touch
+!! something or just pass it. Scenes that cannot be simulated are refused (scene_check).
 !!
-!! The regime of growth of a fracture that a well supplies: dominated by the toughness of the rock
-!! or by the viscosity of the fluid.
-!!
-!! In plane strain, at a constant rate Q and without leak-off, it is given by the dimensionless
-!! toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12
-!! mu (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
-!!
-!! Ends of fractures that almost touch another fracture or a side of the body, or that lie just
-!! beyond a fracture that they cross: probably not intended where fractures grow.
+!! The growth regime of a fracture with a well: in plane strain, at a constant rate Q and without
+!! leak-off, it is given by the dimensionless toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' =
+!! sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu (Detournay 2004, International Journal of
+!! Geomechanics 4, 35), which is constant in time.
 module scene_plausible
    use base_kinds, only: degrees, ik, pi, rk
-   use base_plane, only: meeting, nearest_share, point_distance, polygon_area
+   use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
-   use base_tolerances, only: round_off, same_place, same_time
+   use base_tolerances, only: round_off, same_time
+   use scene_check_geometry, only: near_end_t, near_ends
    use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
    use scene_fluid_law, only: skempton
    use scene_region_outline, only: body_part
    use scene_sides, only: normal_tractions
-   use scene_types, only: domain_t, fracture_t, scene_t
+   use scene_types, only: fracture_t, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
    private
 
-   public :: doubt_t, doubts, doubts_of_scene, find_regime, regime_words
+   public :: doubts, doubts_of_scene, find_regime, regime_words
 
-   !> A value that is doubted, and why.
+   !> A plausibility check.
    type :: doubt_t
       character(len=12) :: group = ""
       character(len=16) :: name = ""
       character(len=8) :: unit = "-"
-      character(len=64) :: doubtful = ""  !< when, in words
-      character(len=150) :: usual = ""  !< what would be, or what follows; a sentence
+      character(len=64) :: doubtful = ""  !< condition of the warning, in words
+      character(len=150) :: usual = ""  !< usual values or consequences; a sentence
    end type doubt_t
 
    ! Indices into the table.
@@ -127,25 +123,16 @@ module scene_plausible
          "tips is several per cent off, within their stated errors")]
    !&>
 
-   !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
+   !> Distance below which an end reaches a target (twolevel_pieces) [increments].
    real(rk), parameter :: near_end = 0.05_rk
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
-   real(rk), parameter, public :: least_verified = 1.0_rk  !< K_m, verification/kgd
-
-   !> An end, and what it is near to.
-   type :: near_end_t
-      integer :: fracture = 0  !< whose end it is
-      integer :: other = 0  !< the fracture that it is near to, or 0 for a side
-      integer :: side = 0  !< left, right, bottom, top
-      real(rk) :: distance = 0.0_rk  !< [m]
-      logical :: is_past = .false.  !< the fracture crosses the other one and ends behind it
-   end type near_end_t
+   real(rk), parameter :: least_verified = 1.0_rk  !< smallest verified K_m, verification/kgd [-]
 
 contains
 
-   !> A sentence for each doubt about a scene.
+   !> A sentence for each plausibility check that a scene does not pass.
    pure function doubts_of_scene(scene) result(list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable :: list(:)
@@ -168,6 +155,7 @@ contains
       end if
    end function doubts_of_scene
 
+   !> Check the rock.
    pure subroutine doubt_material(scene, has_fluid, list)
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: has_fluid
@@ -199,6 +187,7 @@ contains
       end associate
    end subroutine doubt_material
 
+   !> Check the laws of the fractures.
    pure subroutine doubt_fractures(fractures, has_fluid, list)
       type(fracture_t), intent(in) :: fractures(:)
       logical, intent(in) :: has_fluid
@@ -216,7 +205,7 @@ contains
       end do
    end subroutine doubt_fractures
 
-   !> Growth by so viscous a fluid, or at such a rate, that none like it has been verified.
+   !> Check the growth regime: viscosity-dominated growth has not been verified.
    pure subroutine doubt_growth(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -230,7 +219,7 @@ contains
                " '"//trim(scene%injections(well)%name)//"'")
    end subroutine doubt_growth
 
-   !> Ends that almost touch something, or lie just past it.
+   !> Check for ends that almost touch something, or just pass it.
    pure subroutine doubt_ends(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -253,7 +242,7 @@ contains
       end do
    end subroutine doubt_ends
 
-   !> Regions that the cells may miss, and their permeability.
+   !> Check the permeability and the width of regions.
    pure subroutine doubt_regions(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -282,7 +271,7 @@ contains
       end do
    end subroutine doubt_regions
 
-   !> Stress and pressure in situ, at the bottom and the top of the body.
+   !> Check stress and pressure in situ, at the bottom and the top of the body.
    pure subroutine doubt_column(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -319,7 +308,7 @@ contains
       end associate
    end subroutine doubt_column
 
-   !> What only a scene with a fluid has: the body is a rectangle then.
+   !> Check the fluid, the wells and the times of a scene with a fluid.
    pure subroutine doubt_flow(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -353,24 +342,25 @@ contains
       end associate
    end subroutine doubt_flow
 
+   !> A value lies between two limits.
    pure logical function within(value, lowest, highest)
-      real(rk), intent(in) :: value, lowest, highest
+      real(rk), intent(in) :: value, lowest, highest  !< [any unit]
 
       within = value >= lowest .and. value <= highest
    end function within
 
-   !> Add the sentence of a doubt that there is.
-   pure subroutine add(list, there_is, doubt, value, whose)
+   !> Add the sentence of a check that has failed.
+   pure subroutine add(list, has_failed, check, value, whose)
       type(text_t), allocatable, intent(inout) :: list(:)
-      logical, intent(in) :: there_is
-      integer, intent(in) :: doubt  !< index into the table
-      real(rk), intent(in) :: value  !< in the doubt's unit
+      logical, intent(in) :: has_failed
+      integer, intent(in) :: check  !< index into the table
+      real(rk), intent(in) :: value  !< in the unit of the check
       character(len=*), intent(in), optional :: whose  !< name of fracture or side, in quotes
       character(len=:), allocatable :: place, unit
       type(doubt_t) :: d
 
-      if (.not. there_is) return
-      d = doubts(doubt)
+      if (.not. has_failed) return
+      d = doubts(check)
       place = "&"//trim(d%group)
       if (present(whose)) place = place//whose
       unit = ""
@@ -379,11 +369,11 @@ contains
                     trim(d%usual))
    end subroutine add
 
-   !> The smallest K_m of the wells with a rate in a fracture, if the scene grows.
+   !> Find the smallest K_m of the wells with a rate in a fracture, in a scene with growth.
    pure subroutine find_regime(scene, dimensionless_toughness, well)
       type(scene_t), intent(in) :: scene
       real(rk), intent(out) :: dimensionless_toughness  !< [-]
-      integer, intent(out) :: well  !< which one has it; 0: there is none
+      integer, intent(out) :: well  !< its well; 0: none
       real(rk) :: modulus, rate, toughness, value
       integer :: i
 
@@ -407,7 +397,7 @@ contains
       end do
    end subroutine find_regime
 
-   !> What decides: viscosity up to a K_m of 1, toughness from 4 on.
+   !> Growth regime: dominated by viscosity up to a K_m of 1, by toughness from 4 on.
    pure function regime_words(dimensionless_toughness) result(words)
       real(rk), intent(in) :: dimensionless_toughness  !< [-]
       character(len=:), allocatable :: words
@@ -420,91 +410,5 @@ contains
          words = "viscosity-dominated growth"
       end if
    end function regime_words
-
-   !> All ends that are nearer than that to something that they do not touch. Two ends that are near
-   !! to each other are told once.
-   pure function near_ends(fractures, domain, near) result(list)
-      type(fracture_t), intent(in) :: fractures(:)
-      type(domain_t), intent(in) :: domain  !< its sides count if it is a rectangle
-      real(rk), intent(in) :: near  !< [m]
-      type(near_end_t), allocatable :: list(:)
-      real(rk) :: distance, last(2, 2), room(4)
-      integer :: end, i, j, side
-      logical :: is_at_end, is_past
-
-      allocate (list(0))
-      do i = 1, size(fractures)
-         do end = 1, 2
-            last = last_segment(fractures(i), end)
-            room = [last(1, 1) - domain%x_min, domain%x_max - last(1, 1), &
-                    last(2, 1) - domain%y_min, domain%y_max - last(2, 1)]
-            do side = 1, merge(4, 0, domain%shape == "rectangle")
-               if (is_near(room(side))) list = [list, near_end_t(i, 0, side, room(side))]
-            end do
-            do j = 1, size(fractures)
-               if (j == i) cycle
-               call look_at(last, fractures(j), distance, is_at_end, is_past)
-               if (.not. is_near(distance)) cycle
-               if (is_at_end .and. j < i .and. .not. is_past) cycle
-               list = [list, near_end_t(i, j, 0, distance, is_past)]
-            end do
-         end do
-      end do
-
-   contains
-
-      pure logical function is_near(distance)
-         real(rk), intent(in) :: distance  !< [m]
-
-         is_near = distance > same_place*fractures(i)%length() .and. distance < near
-      end function is_near
-
-   end function near_ends
-
-   !> The segment that a fracture ends with, from its end inwards [m].
-   pure function last_segment(fracture, end) result(ends)
-      type(fracture_t), intent(in) :: fracture
-      integer, intent(in) :: end  !< 1 or 2
-      real(rk) :: ends(2, 2)
-      integer :: first, next
-
-      first = merge(1, size(fracture%x), end == 1)
-      next = merge(2, size(fracture%x) - 1, end == 1)
-      ends(:, 1) = [fracture%x(first), fracture%y(first)]
-      ends(:, 2) = [fracture%x(next), fracture%y(next)]
-   end function last_segment
-
-   !> How near an end is to a fracture, or how far past it.
-   pure subroutine look_at(last, other, distance, is_at_end, is_past)
-      real(rk), intent(in) :: last(2, 2)  !< the segment with the end, which comes first [m]
-      type(fracture_t), intent(in) :: other
-      real(rk), intent(out) :: distance  !< [m]
-      logical, intent(out) :: is_at_end  !< of the other one
-      logical, intent(out) :: is_past
-      real(rk) :: ends(2, 2), here, length, place, share(2)
-      integer(ik) :: n, v
-
-      distance = huge(1.0_rk)
-      is_at_end = .false.
-      is_past = .false.
-      length = norm2(last(:, 2) - last(:, 1))
-      n = size(other%x, kind=ik)
-      do v = 1, n - 1
-         ends = reshape([other%x(v), other%y(v), other%x(v + 1), other%y(v + 1)], [2, 2])
-         here = point_distance(last(:, 1), ends)
-         share = meeting(last, ends)
-         if (all(share >= 0.0_rk .and. share <= 1.0_rk) .and. &
-             here > same_place*length .and. share(1)*length < distance) then
-            distance = share(1)*length
-            is_past = .true.
-            is_at_end = .false.
-         else if (here < distance) then
-            distance = here
-            is_past = .false.
-            place = nearest_share(last(:, 1), ends)
-            is_at_end = (v == 1 .and. place <= 0.0_rk) .or. (v == n - 1 .and. place >= 1.0_rk)
-         end if
-      end do
-   end subroutine look_at
 
 end module scene_plausible
