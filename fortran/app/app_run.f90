@@ -1,6 +1,5 @@
-!> Runs a scene from start to end, with or without a fluid.
-!!
-!! Output of a running scene to its files and to the terminal, with or without a fluid.
+!> Runs a scene from start to end, with output to its files and to the terminal, with or without a
+!! fluid.
 module app_run
    use, intrinsic :: iso_fortran_env, only: output_unit
    use app_interrupts, only: interrupted
@@ -30,9 +29,10 @@ module app_run
    type :: journal_t
       type(run_output_t) :: files
       type(progress_t) :: progress
-      logical :: owes_rows = .false., owes_vtu = .false.  !< fields of the last accepted state
-      integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
-      type(progress_values_t) :: shown  !< of the last accepted state
+      logical :: owes_rows = .false.  !< fractures.csv lacks the last accepted state
+      logical :: owes_vtu = .false.  !< VTU files of the last accepted state are not written
+      integer(ik) :: n_growth = 0  !< number of states of growth with VTU files
+      type(progress_values_t) :: shown  !< values of the last accepted state
    contains
       procedure :: begin => begin_journal
       procedure :: write_state
@@ -41,7 +41,7 @@ module app_run
       procedure :: write_fields
    end type journal_t
 
-   !> Hears of long work: shows it, and ends it as the user wants.
+   !> Listener of long computations, which shows progress and ends them after a signal.
    type, extends(listener_t) :: follower_t
       type(journal_t), pointer :: journal => null()
    contains
@@ -50,7 +50,7 @@ module app_run
 
 contains
 
-   !> Work goes on, unless a signal has come.
+   !> Show progress, or end the computation if a signal has been received.
    subroutine hear(self, ends)
       class(follower_t), intent(inout) :: self
       logical, intent(out) :: ends
@@ -59,13 +59,13 @@ contains
       if (.not. ends) call self%journal%show_work()
    end subroutine hear
 
-   !> Run a scene to its end. `refused`: the directory is a wrong choice, and nothing was written.
+   !> Run a scene to its end. `refused`: the directory cannot be used, and nothing was written.
   subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, error)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: source  !< path of the scene's file; empty: no file
       character(len=*), intent(in) :: directory
       logical, intent(in) :: quiet
-      class(simulation_t), allocatable, intent(out) :: simulation  !< as it is at its end
+      class(simulation_t), allocatable, intent(out) :: simulation  !< state at the end
       logical, intent(out) :: refused, was_interrupted
       type(error_t), allocatable, intent(out) :: error
       type(journal_t), target :: journal
@@ -118,10 +118,11 @@ contains
       call keep_first(trouble, error)
       if (quiet) return
       call show_warnings(record%warnings, output_unit)
-      if (is_meshed) call say_closing(simulation, record, timers%wall_seconds(), directory)
+      if (is_meshed) call print_closing(simulation, record, timers%wall_seconds(), directory)
    end subroutine run_scene
 
-   !> Write everything up to the last good state but run.json, which tells whether that went well.
+   !> Write all files up to the last accepted state except run.json, which has the status of this
+   !! too.
    subroutine write_last_state(simulation, journal, timers, error)
       class(simulation_t), intent(inout) :: simulation
       type(journal_t), intent(inout) :: journal
@@ -139,7 +140,7 @@ contains
       call timers%stop(phase_output)
    end subroutine write_last_state
 
-   !> Where an error comes from, for the log.
+   !> Origin of an error, for the log.
    pure function origin_text(error) result(text)
       type(error_t), allocatable, intent(in) :: error
       character(len=:), allocatable :: text
@@ -149,8 +150,8 @@ contains
       if (len(error%origin) > 0) text = " (in "//error%origin//")"
    end function origin_text
 
-   !> Say what the run was.
-   subroutine say_closing(simulation, record, seconds, directory)
+   !> Print the closing lines of a run.
+   subroutine print_closing(simulation, record, seconds, directory)
       class(simulation_t), intent(in) :: simulation
       type(run_record_t), intent(in) :: record
       real(rk), intent(in) :: seconds  !< wall time of the run [s]
@@ -165,7 +166,7 @@ contains
       do i = 1, size(lines)
          write (output_unit, "(a)") lines(i)%text
       end do
-   end subroutine say_closing
+   end subroutine print_closing
 
    !> From state to state until the scene is over, something fails or the user interrupts.
    subroutine march(simulation, journal, timers, error)
@@ -199,7 +200,7 @@ contains
       end do
    end subroutine march
 
-   !> The scene is meshed: note its network, and begin to tell how the run goes on.
+   !> Begin the progress line, and write the network of the meshed scene.
    subroutine begin_journal(self, quiet, simulation)
       class(journal_t), intent(inout) :: self
       logical, intent(in) :: quiet
@@ -209,6 +210,7 @@ contains
       call write_network(self, simulation)
    end subroutine begin_journal
 
+   !> Add the present network to network.json.
    subroutine write_network(self, simulation)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation
@@ -219,7 +221,7 @@ contains
       call self%files%network_step(simulation%time(), network, mesh)
    end subroutine write_network
 
-   !> An accepted state: history, probes, fields where they are due, the progress line.
+   !> Write an accepted state: history, probes, fields if they are due, the progress line.
    subroutine write_state(self, simulation, error)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(inout) :: simulation
@@ -251,18 +253,18 @@ contains
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
 
-   !> The next state is being looked for: so that a long step shows that it goes on.
+   !> Update the progress line during the search for the next state.
    subroutine show_work(self)
       class(journal_t), intent(inout) :: self
       character(len=:), allocatable :: log_line
 
-      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! there is no state yet
+      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! no state so far
       self%shown%solutions = self%shown%solutions + 1
       call self%progress%show(self%shown, log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine show_work
 
-   !> What has happened since the last time.
+   !> Write the event log to the tables and to run.log, and empty it.
    subroutine write_chronicle(self, simulation)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(inout) :: simulation
@@ -296,8 +298,8 @@ contains
       end associate
    end subroutine write_chronicle
 
-   !> Fields where they are due: at the end of an interval, or without a fluid of a step of the
-   !! load; and at every increment of growth, with VTU files for as many as the scene wants.
+   !> Write fields if they are due: at the end of an interval, or without a fluid of a load step;
+   !! and at every increment of growth, with VTU files for at most growth_states of them.
    subroutine write_due_fields(self, simulation, time, error)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(inout) :: simulation
@@ -324,7 +326,7 @@ contains
       end if
    end subroutine write_due_fields
 
-   !> Fields of the last accepted state, as far as they have not been written.
+   !> Write the fields of the last accepted state, unless they have been written.
    subroutine write_fields(self, simulation, error, with_vtu)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation

@@ -1,17 +1,14 @@
-!> The one table of the contents of a run's files: every column, key and field.
+!> The table of all columns, keys and fields of a run's files.
 !!
-!! The tables of a run take the names and the order of their columns from here, and so does the
-!! table of names (report_describe); tests hold the keys of run.json and network.json and the fields
-!! of the VTU files against it. A new column is one entry here, at the place where it shall stand,
-!! and one line in report_tables that says where its value comes from.
+!! The tables of a run and the table of names (report_describe) take the names and the order of the
+!! columns from here; tests compare the keys of run.json and network.json and the fields of the VTU
+!! files with it. A new column is one entry here, at its position, and one line in report_tables,
+!! the source of its value.
 module report_columns
    use scene_types, only: scene_t
    implicit none(type, external)
    private
 
-   public :: always, with_error, with_fluid, with_fractures, with_growth
-   public :: with_joints, with_toughness, with_wells
-   public :: without_fluid
    public :: applies, column_t, well_count, word_t
    public :: event_columns, fracture_columns, history_columns, probe_columns
    public :: slip_event_columns, tip_columns, well_columns
@@ -39,11 +36,11 @@ module report_columns
    type :: column_t
       character(len=28) :: name = ""
       character(len=8) :: unit = "-"
-      character(len=40) :: runs = always  !< in which it is written
+      character(len=40) :: runs = always  !< runs in which it is written
       character(len=160) :: meaning = ""
    end type column_t
 
-   !> A word that a column or key may hold.
+   !> A possible word of a column or key.
    type :: word_t
       character(len=16) :: word = ""
       character(len=208) :: meaning = ""
@@ -171,7 +168,7 @@ module report_columns
       column_t("state", "-", always, "Contact state"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
-   !> NAME stands for each probe's name; all but the first two repeat for each probe.
+   !> NAME stands for the name of a probe; all columns except the first two repeat for each probe.
    type(column_t), parameter :: probe_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
       column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
@@ -425,7 +422,7 @@ module report_columns
 
 contains
 
-   !> Whether a column is written in the run of a scene, as far as the scene decides.
+   !> A column is written in the run of a scene, as far as that follows from the scene.
    elemental logical function applies(column, scene)
       type(column_t), intent(in) :: column
       type(scene_t), intent(in) :: scene
@@ -450,7 +447,7 @@ contains
       end select
    end function applies
 
-   !> How many wells a scene with a fluid has.
+   !> Number of wells of a scene with a fluid.
    pure integer function well_count(scene) result(n)
       type(scene_t), intent(in) :: scene
 

@@ -1,6 +1,6 @@
-!> The table of names as JSON, for `wingcrack-solver --describe json`: what a scene can say, what
-!! the files of a run hold, limits and plausibility checks. The pages of docs/ and the Python
-!! packages take it from post/wingcrack/names.json, which is this text.
+!> The table of names as JSON, for `wingcrack-solver --describe json`: the names of scene files, the
+!! contents of a run's files, limits and plausibility checks. The pages of docs/ and the Python
+!! packages read this text from post/wingcrack/names.json.
 module report_describe
    use base_kinds, only: rk
    use report_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
@@ -83,7 +83,7 @@ module report_describe
 
 contains
 
-   !> The whole table.
+   !> The table of names as JSON.
    function description(version) result(text)
       character(len=*), intent(in) :: version  !< of the program
       character(len=:), allocatable :: text
@@ -131,6 +131,7 @@ contains
       text = json%text()
    end function description
 
+   !> A group with its names.
    subroutine put_group(json, group)
       type(json_t), intent(inout) :: json
       type(group_t), intent(in) :: group
@@ -149,7 +150,7 @@ contains
       call json%end_object()
    end subroutine put_group
 
-   !> A name of a group; without the members that say nothing of it.
+   !> A name of a group, without the members that do not apply.
    subroutine put_parameter(json, parameter)
       type(json_t), intent(inout) :: json
       type(parameter_t), intent(in) :: parameter
@@ -232,7 +233,7 @@ contains
       call json%end_object()
    end subroutine put_file
 
-   !> The words that a column or key of a file may hold.
+   !> The possible words of a column or key of a file.
    subroutine put_words(json, file, name, words)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: file
@@ -251,7 +252,7 @@ contains
       call json%end_object()
    end subroutine put_words
 
-   !> A row of a table is a line of the text.
+   !> Begin a row of a table, which is one line of the text.
    subroutine begin_row(json, name, unit)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: name, unit
@@ -262,6 +263,7 @@ contains
       call json%add("unit", trim(unit))
    end subroutine begin_row
 
+   !> End a row of a table.
    subroutine end_row(json, meaning)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: meaning
@@ -271,7 +273,7 @@ contains
       json%one_line = .false.
    end subroutine end_row
 
-   !> A text, if there is one.
+   !> A text, unless it is empty.
    subroutine put_text(json, key, text)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: key, text
@@ -279,7 +281,7 @@ contains
       if (text /= "") call json%add(key, trim(text))
    end subroutine put_text
 
-   !> What is false is left out.
+   !> A logical, unless it is false.
    subroutine put_logical(json, key, value)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: key
@@ -288,7 +290,7 @@ contains
       if (value) call json%add_raw(key, "true")
    end subroutine put_logical
 
-   !> Which scenes may have a group or a name, if not all.
+   !> The scenes that may have a group or a name, if not all.
    subroutine put_scenes(json, scenes)
       type(json_t), intent(inout) :: json
       integer, intent(in) :: scenes

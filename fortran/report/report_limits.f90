@@ -1,6 +1,6 @@
-!> The limits of a run: what is watched at each accepted state, from which value on it is worth a
-!! warning, and from which on the results are worth nothing and the run stops. The one table of
-!! them; docs/limits.md says where the numbers come from.
+!> The table of the limits of a run: quantities checked in each accepted state, with the value from
+!! which on there is a warning, and that from which on results are invalid and the run stops.
+!! docs/limits.md has the sources of the numbers.
 module report_limits
    use base_kinds, only: rk
    implicit none(type, external)
@@ -14,14 +14,14 @@ module report_limits
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
-   real(rk), parameter :: never = huge(1.0_rk)  !< the limit of what does not stop a run
+   real(rk), parameter :: never = huge(1.0_rk)  !< limit of a quantity that does not stop a run
 
-   !> A quantity that is watched. Where the limit for a stop is the smaller one, small values are
-   !! bad, else large ones.
+   !> A monitored quantity. If the limit of a stop is below that of a warning, small values are bad,
+   !! otherwise large ones.
    type :: limit_t
       character(len=56) :: name = ""
       character(len=8) :: unit = "-"
-      character(len=16) :: runs = "always"  !< in which it is watched
+      character(len=16) :: runs = "always"  !< runs in which it is monitored
       real(rk) :: warning = never
       real(rk) :: stop = never
       character(len=200) :: meaning = ""
@@ -116,7 +116,7 @@ module report_limits
 
 contains
 
-   !> Whether a value is fine, worth a warning or a reason to stop. What is not a number stops.
+   !> Verdict on a value: verdict_fine, verdict_warning or verdict_stop. NaN stops.
    elemental integer function judge(limit, value) result(verdict)
       integer, intent(in) :: limit  !< index into the table
       real(rk), intent(in) :: value  !< in the limit's unit

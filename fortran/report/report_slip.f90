@@ -1,4 +1,4 @@
-!> Slip events: where and when the faces of fractures slip, composed of the patches of each step.
+!> Slip events of fractures, composed of the slipping patches of each step.
 !!
 !! In a step, a patch is a row of cells of one fracture whose faces slip. Patches of two consecutive
 !! steps belong to the same event if they have faces in common; an event that divides continues as
@@ -16,8 +16,8 @@
 !! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5
 !! (Hanks and Kanamori 1979, in SI units as in the IASPEI standard of 2005).
 !!
-!! Shear tractions of fracture cells at one time, stored by arc length, so that they can be compared
-!! with later ones on another mesh: their fall where faces have slipped.
+!! Shear tractions are stored by arc length, so that they can be compared with those of a later
+!! mesh.
 module report_slip
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_stick
@@ -43,14 +43,15 @@ module report_slip
    type :: amount_t
       real(rk) :: potency = 0.0_rk  !< slip times length [m2]
       real(rk) :: moment = 0.0_rk  !< seismic moment per metre out of the plane [N]
-      real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [N]
-      real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [N]
-      real(rk) :: place(2) = 0.0_rk  !< its first moment [N m]
+      real(rk) :: open = 0.0_rk  !< part of the moment on open faces [N]
+      real(rk) :: sudden = 0.0_rk  !< part of the moment in unstable growth [N]
+      real(rk) :: place(2) = 0.0_rk  !< sum of moment times position [N m]
       real(rk) :: s(2) = [huge(1.0_rk), -huge(1.0_rk)]  !< arc lengths, from and to [m]
-      real(rk) :: rate = 0.0_rk  !< largest of a cell [m/s]
-      real(rk) :: fastest(2) = 0.0_rk  !< where that was first so [m]
+      real(rk) :: rate = 0.0_rk  !< largest slip rate of a cell [m/s]
+      real(rk) :: fastest(2) = 0.0_rk  !< centre of that cell [m]
    end type amount_t
 
+   !> Shear tractions of fracture cells.
    type :: shear_t
       integer(ik), allocatable :: fracture(:)  !< (cells)
       real(rk), allocatable :: s(:, :)  !< (2, cells) arc lengths of their ends [m]
@@ -61,31 +62,32 @@ module report_slip
       procedure :: fall
    end type shear_t
 
-   !> An event that is not over.
+   !> An event that has not ended.
    type :: live_t
-      logical :: has_begun = .false.  !< before the present step
+      logical :: has_begun = .false.  !< the event began before the present step
       type(slip_event_t) :: event
-      type(amount_t) :: before  !< the present step
-      type(amount_t) :: now  !< in it
-      type(shear_t) :: start  !< tractions of its fracture before it
+      type(amount_t) :: before  !< slip before the present step
+      type(amount_t) :: now  !< slip in the present step
+      type(shear_t) :: start  !< tractions of its fracture before the event
    end type live_t
 
-   !> A row of sliding cells in the last step.
+   !> Adjacent sliding cells in the last step.
    type :: patch_t
       integer(ik) :: fracture = 0
       real(rk) :: s(2) = 0.0_rk  !< arc lengths, from and to [m]
-      integer(ik) :: live = 0  !< to which event it belongs
+      integer(ik) :: live = 0  !< index of its event
    end type patch_t
 
-   !> The events so far.
+   !> The slip events of a run.
    type :: slip_catalogue_t
-      real(rk) :: breadth = 1.0_rk  !< out of the plane [m]
-      real(rk) :: least_slip = 0.0_rk  !< mean slip that makes an event [m]
-      real(rk) :: seismic_rate = huge(1.0_rk)  !< slip rate from which an event is seismic [m/s]
-      integer(ik) :: n = 0  !< events that are over
-      type(slip_event_t), allocatable :: news(:)  !< that are over since these were taken
-      type(live_t), allocatable, private :: live(:)  !< in the order of their beginning
-      type(patch_t), allocatable, private :: patch(:)
+      real(rk) :: breadth = 1.0_rk  !< out-of-plane length [m]
+      real(rk) :: least_slip = 0.0_rk  !< smallest mean slip of an event [m]
+      real(rk) :: seismic_rate = huge(1.0_rk)  !< smallest slip rate of seismic events [m/s]
+      integer(ik) :: n = 0  !< number of events that have ended
+      type(slip_event_t), allocatable :: news(:)  !< ended events that have not been logged
+      !> present events, in the order of their beginning
+      type(live_t), allocatable, private :: live(:)
+      type(patch_t), allocatable, private :: patch(:)  !< patches of the last step
       type(shear_t), private :: last  !< tractions after the last step
    contains
       procedure :: begin
@@ -96,12 +98,12 @@ module report_slip
 
 contains
 
-   !> Nothing slides.
+   !> Begin without any event.
    subroutine begin(self, breadth, least_slip, seismic_rate)
       class(slip_catalogue_t), intent(out) :: self
-      real(rk), intent(in) :: breadth  !< out of the plane [m]
-      real(rk), intent(in) :: least_slip  !< mean slip that makes an event [m]
-      real(rk), intent(in) :: seismic_rate  !< slip rate from which it is seismic [m/s]
+      real(rk), intent(in) :: breadth  !< out-of-plane length [m]
+      real(rk), intent(in) :: least_slip  !< smallest mean slip of an event [m]
+      real(rk), intent(in) :: seismic_rate  !< smallest slip rate of seismic events [m/s]
 
       self%breadth = breadth
       self%least_slip = least_slip
@@ -109,7 +111,7 @@ contains
       allocate (self%news(0), self%live(0), self%patch(0))
    end subroutine begin
 
-   !> The state before the first step.
+   !> Keep the tractions before the first step.
    pure subroutine remember(self, fracture, traction)
       class(slip_catalogue_t), intent(inout) :: self
       type(fracture_mesh_t), intent(in) :: fracture
@@ -171,8 +173,8 @@ contains
       end do
    end function last_of_patch
 
-   !> To which event the last one of the patches belongs: the first of those that it has faces in
-   !! common with, which takes in the others, or a new one.
+   !> Assign the last of the patches to an event: the first of those with common faces, with which
+   !! the others are merged, or a new one.
    pure subroutine assign_patch(self, patches)
       class(slip_catalogue_t), intent(inout) :: self
       type(patch_t), intent(inout) :: patches(:)  !< of this step
@@ -193,14 +195,14 @@ contains
          patch%live = keeps
          do i = 1, size(meets)
             if (.not. meets(i) .or. before(i)%live == keeps) cycle
-            call take_in(self, before(i)%live, keeps, patches)
+            call merge_events(self, before(i)%live, keeps, patches)
          end do
       end associate
    end subroutine assign_patch
 
-   !> An event becomes part of another one. What was aseismic in one of them and is seismic in the
-   !! other stays an event of its own, which is over.
-   pure subroutine take_in(self, gone, keeps, patches)
+   !> Merge an event with another one. If one of them is seismic and the other aseismic, the
+   !! aseismic one ends as a separate event.
+   pure subroutine merge_events(self, gone, keeps, patches)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik), value :: gone  !< live events
       integer(ik), intent(in) :: keeps
@@ -230,7 +232,7 @@ contains
       end associate
       where (self%patch%live == gone) self%patch%live = keeps
       where (patches%live == gone) patches%live = keeps
-   end subroutine take_in
+   end subroutine merge_events
 
    !> Slip of successive cells in a step.
    pure function amount_of(fracture, first, last, step) result(amount)
@@ -258,7 +260,7 @@ contains
       end do
    end function amount_of
 
-   !> Slip adds up.
+   !> Add an amount of slip to another.
    pure subroutine add(amount, more)
       type(amount_t), intent(inout) :: amount
       type(amount_t), intent(in) :: more
@@ -301,7 +303,7 @@ contains
       end associate
    end subroutine add_step
 
-   !> Events of which nothing slides any more are over.
+   !> End the events of which no cell slides any more.
    pure subroutine end_quiet(self)
       class(slip_catalogue_t), intent(inout) :: self
       logical :: goes_on(size(self%live))
@@ -317,7 +319,7 @@ contains
       self%live = pack(self%live, goes_on)
    end subroutine end_quiet
 
-   !> The run is over: what still slides is listed as it is.
+   !> End all events with the run.
    pure subroutine end_all(self)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik) :: i
@@ -330,7 +332,7 @@ contains
       self%patch = self%patch(:0)
    end subroutine end_all
 
-   !> List an event, unless it is too small or part of another one by now.
+   !> Add an event that has ended to the list, unless it is too small or merged with another one.
    pure subroutine list(self, live, ended_by)
       class(slip_catalogue_t), intent(inout) :: self
       type(live_t), intent(in) :: live
@@ -366,7 +368,7 @@ contains
       magnitude = (log10(moment) - 9.1_rk)/1.5_rk
    end function magnitude
 
-   !> The tractions of a state.
+   !> Keep the tractions of a state.
    pure subroutine keep(self, mesh, traction)
       class(shear_t), intent(inout) :: self
       type(fracture_mesh_t), intent(in) :: mesh
@@ -377,7 +379,7 @@ contains
       self%traction = traction
    end subroutine keep
 
-   !> Those of one fracture.
+   !> Tractions of one fracture.
    pure function of_fracture(self, fracture) result(part)
       class(shear_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
@@ -391,8 +393,8 @@ contains
       part%traction = self%traction(cells)
    end function of_fracture
 
-   !> How much less the faces bear at a later time, in the direction in which they did before, as
-   !! the mean over a part of the fracture; cells that were not there before do not count [Pa].
+   !> Decrease of the shear traction up to a later time, in its earlier direction, as the mean over
+   !! a part of the fracture without new cells [Pa].
    pure real(rk) function fall(self, later, s)
       class(shear_t), intent(in) :: self  !< of one fracture
       type(shear_t), intent(in) :: later

@@ -1,9 +1,5 @@
-!> Fields at written times: a VTU file for each dimension, collected in PVD files. report_columns
-!! defines the fields.
-!!
-!! Vectors and tensors of a plane state with the components that ParaView expects.
-!!
-!! ParaView collections (.pvd): the file of each time.
+!> Fields at written times: a VTU file for each dimension, with the components that ParaView
+!! expects, and collections of them (.pvd). report_columns defines the fields.
 !!
 !! ParaView expects times in increasing order, and shows files of equal time on top of one another.
 !! So states of equal time have consecutive numbers, and those of a falling load have the last state
@@ -26,18 +22,18 @@ module report_snapshots
 
    public :: collection_t, snapshots_t
 
-   character(len=*), parameter :: folder = "vtu"  !< of the VTU files, in the run's directory
+   character(len=*), parameter :: folder = "vtu"  !< folder of the VTU files in the run's directory
    character(len=*), parameter :: dimension_names(3) = [character(len=13) :: "matrix", &
       & "fractures", "intersections"]
 
-   !> One collection. Only files that are complete may be added.
+   !> One collection, of complete files only.
    type :: collection_t
       integer :: n_files = 0
       character(len=:), allocatable, private :: path
-      logical, private :: is_falling = .false.  !< each time is less than the one before
-      real(rk), private :: last = 0.0_rk  !< time in the collection
-      type(text_buffer_t), private :: entries  !< lines, in the order in which they were added
-      integer, private :: written = 0  !< files in the collection on disk
+      logical, private :: is_falling = .false.  !< times decrease
+      real(rk), private :: last = 0.0_rk  !< last time in the collection
+      type(text_buffer_t), private :: entries  !< lines, in the order of the run
+      integer, private :: written = 0  !< number of files in the collection on disk
    contains
       procedure :: open => open_collection
       procedure :: add
@@ -46,11 +42,11 @@ module report_snapshots
 
    !> The snapshots of a run.
    type :: snapshots_t
-      integer :: n_written = 0  !< times
+      integer :: n_written = 0  !< number of written times
       character(len=:), allocatable, private :: directory
       type(material_t), private :: material
       type(collection_t), private :: collections(3)
-      logical, private :: counts = .false.  !< in these stand rows of the history, and not times
+      logical, private :: counts = .false.  !< times of collections are rows of history.csv
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
@@ -149,6 +145,7 @@ contains
       if (.not. allocated(error)) call self%collections(i)%add(listed, file)
    end subroutine write_one
 
+   !> The grid of the rock.
    subroutine fill_matrix(grid, time, mesh, fields, material)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
@@ -179,6 +176,7 @@ contains
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
+   !> The grid of the fractures.
    subroutine fill_fractures(grid, time, mesh, fields)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
@@ -199,6 +197,7 @@ contains
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
    end subroutine fill_fractures
 
+   !> The grid of the intersections.
    subroutine fill_intersections(grid, time, mesh, fields)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
@@ -259,7 +258,7 @@ contains
       file = folder//"/"//trim(dimension_names(i))//"_"//trim(digits)//".vtu"
    end function file_name
 
-   !> Displacement with the z component that VTK wants.
+   !> Displacement with a z component, as VTK requires.
    pure function displacement_3d(displacement) result(u)
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_cells or n_nodes) [m]
       real(rk) :: u(3, size(displacement, 2))
@@ -277,37 +276,24 @@ contains
       type(matrix_fields_t), intent(in) :: fields
       type(material_t), intent(in) :: material
       real(rk) :: stress(6, size(fields%stress, 2))  !< xx, yy, zz, xy, yz, xz [Pa]
+      real(rk), dimension(size(fields%stress, 2)) :: biot, poisson
 
       stress(1:2, :) = fields%stress(1:2, :)
       stress(3, :) = 0.0_rk
-      if (.not. material%plane_stress) then
-         if (allocated(fields%poisson)) then
-            stress(3, :) = fields%poisson*(fields%stress(1, :) + fields%stress(2, :))
-            if (allocated(fields%pressure)) then
-               stress(3, :) = stress(3, :) &
-                              - (1.0_rk - 2.0_rk*fields%poisson)*fields%biot*fields%pressure
-            end if
-         else
-            stress(3, :) = of_one_rock()
-         end if
-      end if
       stress(4, :) = fields%stress(3, :)
       stress(5:6, :) = 0.0_rk
-
-   contains
-
-      pure function of_one_rock() result(zz)
-         real(rk) :: zz(size(fields%stress, 2))
-
-         zz = material%poisson*(fields%stress(1, :) + fields%stress(2, :))
-         if (allocated(fields%pressure)) then
-            zz = zz - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
-         end if
-      end function of_one_rock
-
+      if (material%plane_stress) return
+      poisson = material%poisson
+      biot = material%biot
+      if (allocated(fields%poisson)) poisson = fields%poisson
+      if (allocated(fields%biot)) biot = fields%biot
+      stress(3, :) = poisson*(fields%stress(1, :) + fields%stress(2, :))
+      if (allocated(fields%pressure)) then
+         stress(3, :) = stress(3, :) - (1.0_rk - 2.0_rk*poisson)*biot*fields%pressure
+      end if
    end function stress_tensor
 
-   !> Permeability as a symmetric tensor; out of the plane nothing flows and zz is 0.
+   !> Permeability as a symmetric tensor; zz is 0, without flow out of the plane.
    pure function permeability_tensor(fields, material, mesh) result(permeability)
       type(matrix_fields_t), intent(in) :: fields
       type(material_t), intent(in) :: material
@@ -329,7 +315,7 @@ contains
    subroutine open_collection(self, path, is_falling)
       class(collection_t), intent(out) :: self
       character(len=*), intent(in) :: path
-      logical, intent(in), optional :: is_falling  !< the times will fall
+      logical, intent(in), optional :: is_falling  !< times decrease; default: they increase
 
       self%path = path
       if (present(is_falling)) self%is_falling = is_falling

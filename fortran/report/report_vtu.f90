@@ -26,14 +26,14 @@ module report_vtu
    !> A field with a value, or several components, in each cell or at each point.
    type :: vtu_field_t
       character(len=:), allocatable :: name
-      character(len=:), allocatable :: components  !< XML attributes; may be empty
-      character(len=:), allocatable :: unit  !< unallocated: without
-      logical :: at_points = .false.
-      real(rk), allocatable :: reals(:)  !< component by component, cell by cell
-      integer(ik), allocatable :: integers(:)  !< or these
+      character(len=:), allocatable :: components  !< XML attributes of the components; may be empty
+      character(len=:), allocatable :: unit  !< unallocated: none
+      logical :: at_points = .false.  !< values at points, and not in cells
+      real(rk), allocatable :: reals(:)  !< all components of the first cell, of the second, ...
+      integer(ik), allocatable :: integers(:)  !< values of an integer field instead of reals
    end type vtu_field_t
 
-   !> One file in the making.
+   !> A grid with its fields.
    type :: vtu_grid_t
       private
       real(rk), allocatable :: points(:)  !< x, y, 0 of each point [m]
@@ -42,7 +42,7 @@ module report_vtu
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
       real(rk) :: time = 0.0_rk  !< [s]
-      integer(ik) :: history_row = 0  !< of history.csv with the same state, from 1; 0: none
+      integer(ik) :: history_row = 0  !< row of history.csv of the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
    contains
@@ -140,7 +140,7 @@ contains
       self%fields(self%n_fields)%integers = values
    end subroutine add_integer
 
-   !> Say which row of history.csv has the same state.
+   !> Set the row of history.csv of the same state.
    pure subroutine set_history_row(self, row)
       class(vtu_grid_t), intent(inout) :: self
       integer(ik), intent(in) :: row  !< from 1
@@ -148,11 +148,11 @@ contains
       self%history_row = row
    end subroutine set_history_row
 
-   !> Give the fields so far their units, as VTK's key UNITS_LABEL.
+   !> Set the units of the fields added so far, VTK's key UNITS_LABEL.
    pure subroutine set_units(self, names, units)
       class(vtu_grid_t), intent(inout) :: self
-      character(len=*), intent(in) :: names(:)  !< of fields, which need not all be there
-      character(len=*), intent(in) :: units(:)  !< of each, `-` without
+      character(len=*), intent(in) :: names(:)  !< names of fields, some of which may be absent
+      character(len=*), intent(in) :: units(:)  !< unit of each; `-`: none
       integer :: i, k
 
       do i = 1, self%n_fields
@@ -163,7 +163,7 @@ contains
       end do
    end subroutine set_units
 
-   !> Write the file whole.
+   !> Write the file.
    subroutine write_grid(self, path, error)
       class(vtu_grid_t), intent(in) :: self
       character(len=*), intent(in) :: path
@@ -293,6 +293,7 @@ contains
             integer_text(self%history_row)//"</DataArray>"
    end function state_number
 
+   !> Add a field without values.
    subroutine new_field(self, name)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -302,6 +303,7 @@ contains
       self%fields(self%n_fields) = vtu_field_t(name=name, components="")
    end subroutine new_field
 
+   !> Write an array of reals after its size.
    subroutine put_reals(file, values)
       type(whole_file_t), intent(inout) :: file
       real(rk), intent(in) :: values(:)  !< [SI]
@@ -310,6 +312,7 @@ contains
       call file%put(values)
    end subroutine put_reals
 
+   !> Write an array of integers after its size.
    subroutine put_integers(file, values)
       type(whole_file_t), intent(inout) :: file
       integer(ik), intent(in) :: values(:)
@@ -318,7 +321,7 @@ contains
       call file%put(values)
    end subroutine put_integers
 
-   !> How this machine orders the bytes of a number.
+   !> Byte order of this machine.
    pure function byte_order() result(name)
       character(len=:), allocatable :: name
       integer(int8) :: bytes(4)
