@@ -171,7 +171,7 @@ contains
          if (search%has_low .and. search%has_high) then
             factor = 0.5_rk*(low + high)
             if (mod(k, 4) /= 0) factor = predicted_onset(search%last, next, low, high, &
-                                                        body%scene%material%toughness)
+                                                         body%scene%material%toughness)
          else if (k == 1) then
             factor = body%factor/(1.0_rk + max(-0.5_rk, body%largest_excess()))
          else if (k <= guesses) then

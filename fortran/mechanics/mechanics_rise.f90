@@ -115,7 +115,7 @@ contains
             next%factor = 0.5_rk*(low%factor + high%factor)  ! extrapolation does not converge
          else
             next%factor = predicted_onset(last, next, low%factor, high%factor, &
-                                         self%scene%material%toughness)
+                                          self%scene%material%toughness)
          end if
          last = self%reading()
          call self%respond(next%factor, timers, error)

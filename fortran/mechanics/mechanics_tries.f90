@@ -192,7 +192,7 @@ contains
       integer(ik) :: i
 
       associate (of => self%tip_group, n => size(self%tip_group, kind=ik))
-         larger = pack([(i, i=1, n)], .not. self%tip_before%arrested .and. &
+         larger = pack([(i, i=1, n)],.not. self%tip_before%arrested .and. &
                        [(any(of(group) == of(i)), i=1, n)])
       end associate
    end function with_tip_groups

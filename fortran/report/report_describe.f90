@@ -19,7 +19,8 @@ module report_describe
 
    public :: description
 
-   ! What the files contain, in whole sentences.
+   ! What the files contain, in whole sentences. The texts keep their own layout.
+   !&<
    character(len=*), parameter :: about_history = &
       "A row per accepted time step, after that of the initial state if it was in equilibrium; "// &
       "without a fluid a row at the end of each step of the load programme and at each onset "// &
@@ -70,16 +71,17 @@ module report_describe
       "Fields of the fracture cells. The names of fractures 1, 2 and so on are in "// &
       "network.json: VTU files contain only numbers, for compatibility with simple readers "// &
       "(meshio)."
+   !&>
 
    !> Names of the kinds of parameters, kind_real to kind_wholes.
    character(len=*), parameter :: kind_words(8) = [character(len=21) :: &
-      "number", "list of numbers", "whole number", "logical", "text", "name", "choice", &
-      "list of whole numbers"]
+                 "number", "list of numbers", "whole number", "logical", "text", "name", "choice", &
+                                                   "list of whole numbers"]
 
    !> Scenes in which a name without a default is required, need_never to need_choice.
    character(len=*), parameter :: need_words(0:6) = [character(len=26) :: &
-      "", "always", "with &fluid", "with &fracture", "with growth or intensities", &
-      "with growth", "with its choice"]
+                      "", "always", "with &fluid", "with &fracture", "with growth or intensities", &
+                                                     "with growth", "with its choice"]
 
 contains
 

@@ -171,9 +171,9 @@ contains
       integer, intent(in) :: item  !< index into parameters
       character(len=:), allocatable :: words
       character(len=46), parameter :: reason(need_always:need_growth) = [character(len=46) :: &
-         "which is always needed", "which a scene with &fluid needs", &
-         "which a scene with a fracture needs", &
-         "which growth and stress intensity factors need", "which growth needs"]
+                                      "which is always needed", "which a scene with &fluid needs", &
+                                                            "which a scene with a fracture needs", &
+                             "which growth and stress intensity factors need", "which growth needs"]
 
       associate (parameter => parameters(item))
          words = trim(parameter%name)

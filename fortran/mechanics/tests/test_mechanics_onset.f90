@@ -29,8 +29,8 @@ contains
       real(rk) :: found
 
       found = predicted_onset(state(1.0_rk, [1.0_rk, 0.5_rk], [0.0_rk, 0.0_rk]), &
-                             state(2.0_rk, [2.0_rk, 3.5_rk], [0.0_rk, 0.0_rk]), &
-                             1.0_rk, 10.0_rk, 5.0_rk)
+                              state(2.0_rk, [2.0_rk, 3.5_rk], [0.0_rk, 0.0_rk]), &
+                              1.0_rk, 10.0_rk, 5.0_rk)
       call checks%is_close(found, 2.5_rk, 10.0_rk*round_off, "opening: 0.5 + 3 (f - 1) = 5")
    end subroutine opening
 
@@ -39,8 +39,8 @@ contains
       real(rk) :: found
 
       found = predicted_onset(state(0.0_rk, [0.0_rk, -9.0_rk], [0.0_rk, 0.0_rk]), &
-                             state(1.0_rk, [0.0_rk, -9.0_rk], [-1.0_rk, 0.0_rk]), &
-                             0.0_rk, 4.0_rk, 2.0_rk)
+                              state(1.0_rk, [0.0_rk, -9.0_rk], [-1.0_rk, 0.0_rk]), &
+                              0.0_rk, 4.0_rk, 2.0_rk)
       call checks%is_close(found, sqrt(3.0_rk), 10.0_rk*round_off, "sliding")
    end subroutine sliding
 

@@ -49,6 +49,7 @@ contains
       character(len=*), intent(in) :: folder
       type(run_output_t) :: output
       type(run_record_t) :: record
+      type(history_row_t) :: row
       integer :: i
 
       ! Leftovers of an earlier and longer run, and of one that died while it wrote.
@@ -71,12 +72,13 @@ contains
 
       call timers%start(phase_output)
       do i = 0, 1
-         call output%tables%history_row(history_row_t(time=2.0_rk*i, dt=2.0_rk, newton_iterations=4_ik, &
-    & well_pressure=[6.8e6_rk, 2.0e6_rk], injected=1.0e-4_rk, leakoff=2.0e-5_rk, prefilled=0.0_rk, &
-            & fracture_volume=1.0e-3_rk, mass_error_relative=1.0e-14_rk, max_slip=1.0e-4_rk, &
-            & max_opening=2.0e-5_rk, n_stick=1_ik, n_slip=1_ik, n_open=1_ik, &
-            & fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
-            & seismic_moment=1.0e6_rk))
+         row = history_row_t(time=2.0_rk*i, dt=2.0_rk, newton_iterations=4_ik, &
+            & well_pressure=[6.8e6_rk, 2.0e6_rk], injected=1.0e-4_rk, leakoff=2.0e-5_rk, &
+            & prefilled=0.0_rk, fracture_volume=1.0e-3_rk, mass_error_relative=1.0e-14_rk, &
+            & max_slip=1.0e-4_rk, max_opening=2.0e-5_rk, n_stick=1_ik, n_slip=1_ik, &
+            & n_open=1_ik, fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
+            & seismic_moment=1.0e6_rk)
+         call output%tables%history_row(row)
          call output%tables%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
             & xy=[1.0_rk, 0.5_rk], k1=1.0e6_rk, k2=2.0e5_rk, k1_dc=1.1e6_rk, k2_dc=2.1e5_rk, &
             & keq=1.05e6_rk, g=30.0_rk, angle=pi/4.0_rk, advance=0.0_rk, &
@@ -85,13 +87,15 @@ contains
             & k2_corrected=2.005e5_rk))
          call output%tables%probe_row(2.0_rk*i, probes)
          call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
-         call output%write_fields(snapshot_t(2.0_rk*i, mesh, matrix, fracture, intersections), error)
+        call output%write_fields(snapshot_t(2.0_rk*i, mesh, matrix, fracture, intersections), error)
          call checks%no_error(error, "fields")
          call checks%is_true(.not. output%fields_due(2.0_rk*i + 0.02_rk), "not at the short steps")
          call output%network_step(2.0_rk*i, network, mesh)
       end do
-      call output%tables%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])
-      call output%tables%event_row(2.0_rk, event_step_cut, "from 2 s to 1 s, as Newton did not converge")
+      associate (tables => output%tables)
+         call tables%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])
+        call tables%event_row(2.0_rk, event_step_cut, "from 2 s to 1 s, as Newton did not converge")
+      end associate
       call output%log("two steps, ""quoted""")
       call output%tick(error)
       call checks%is_true(.not. file_exists(folder//"/history.csv"), "tables wait for their time")
