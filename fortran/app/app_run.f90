@@ -60,7 +60,8 @@ contains
    end subroutine hear
 
    !> Run a scene to its end. `refused`: the directory cannot be used, and nothing was written.
-  subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, error)
+   subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, &
+                        error)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: source  !< path of the scene's file; empty: no file
       character(len=*), intent(in) :: directory
@@ -100,9 +101,25 @@ contains
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
       call simulation%tell_limits()
-      record%summary_t = simulation%summary
       record%scene = trim(scene%name)
       record%version = version
+      call set_end(record, simulation, was_interrupted, error)
+      call journal%files%log(record%status//": "//record%reason//origin_text(error))
+      call journal%files%close(record, timers, trouble)
+      call keep_first(trouble, error)
+      if (quiet) return
+      call show_warnings(record%warnings, output_unit)
+      if (is_meshed) call print_closing(simulation, record, timers%wall_seconds(), directory)
+   end subroutine run_scene
+
+   !> Set the summary, the status and the reason of the end of a run.
+   subroutine set_end(record, simulation, was_interrupted, error)
+      type(run_record_t), intent(inout) :: record
+      class(simulation_t), intent(in) :: simulation
+      logical, intent(in) :: was_interrupted
+      type(error_t), allocatable, intent(in) :: error  !< allocated: the run has failed
+
+      record%summary_t = simulation%summary
       if (allocated(error)) then
          record%status = status_failed
          record%reason = error%message
@@ -113,13 +130,7 @@ contains
          record%status = status_finished
          record%reason = simulation%ending
       end if
-      call journal%files%log(record%status//": "//record%reason//origin_text(error))
-      call journal%files%close(record, timers, trouble)
-      call keep_first(trouble, error)
-      if (quiet) return
-      call show_warnings(record%warnings, output_unit)
-      if (is_meshed) call print_closing(simulation, record, timers%wall_seconds(), directory)
-   end subroutine run_scene
+   end subroutine set_end
 
    !> Write all files up to the last accepted state except run.json, which has the status of this
    !! too.
@@ -168,7 +179,7 @@ contains
       end do
    end subroutine print_closing
 
-   !> From state to state until the scene is over, something fails or the user interrupts.
+   !> Proceed from state to state until the end of the scene, a failure or an interruption.
    subroutine march(simulation, journal, timers, error)
       class(simulation_t), intent(inout) :: simulation
       type(journal_t), intent(inout) :: journal

@@ -68,7 +68,7 @@ contains
    subroutine build(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
@@ -94,7 +94,7 @@ contains
    subroutine grow(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: no_patch
@@ -130,7 +130,7 @@ contains
    subroutine refine(self, scene, start, network, relative, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       real(rk), intent(in) :: relative  !< target error over the norm of the solution [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error

@@ -61,7 +61,7 @@ module mechanics_equilibrium
       integer(ik), allocatable :: tip_group(:)  !< (tip) tip group of equal advances, from 1
       type(tip_t), allocatable :: begun(:)  !< (all tips) tips at the ends of new segments
       logical :: is_placed = .false.  !< the tips have been evaluated there
-      real(rk), allocatable :: room(:)  !< (tip) distance to the end of its segment [m]
+      real(rk), allocatable :: remaining(:)  !< (tip) distance to the end of its segment [m]
       real(rk), allocatable :: advance(:)  !< (tip) [m]
       real(rk) :: share = 1.0_rk  !< fraction of the advances that the load limit permits [-]
       real(rk), allocatable :: lack(:)  !< (tip) K_IC - K_eq [Pa m^1/2]
@@ -97,7 +97,7 @@ contains
       self%has_grown = .false.
       ! Shorter path segments may lead to an equilibrium where longer ones do not.
       do cut = 0, most_cuts
-         self%tries%piece = body%rules%increment/2.0_rk**cut
+         self%tries%longest = body%rules%increment/2.0_rk**cut
          call try_segments(self, body, limit, group, timers, error)
          if (allocated(error) .or. self%misfit <= far_off) exit
       end do
@@ -210,7 +210,7 @@ contains
          call probe_group(self, body, search, limit, timers, error)
          if (allocated(error)) return
          if (.not. self%prefers_one .and. search%misses(body)) then
-            search%advance = search%room
+            search%advance = search%remaining
             call correct(self, body, search, has_moved)
          end if
       end if
@@ -255,10 +255,10 @@ contains
       search%tip = group
       search%tip_group = numbered(self%tries%tip_group(group))
       search%begun = body%tip
-      search%room = self%tries%rooms(group)
+      search%remaining = self%tries%remaining_lengths(group)
       search%is_placed = all(.not. self%tries%segment_before(group)%is_open)
       search%advance = fitted(merge(self%pace(group), 1.0_rk, self%pace(group) > 0.0_rk), &
-                              search%room, self%tries%segment(group)%accepted, &
+                              search%remaining, self%tries%segment(group)%accepted, &
                               least*body%rules%increment)
       allocate (search%slope(size(body%tip)))
    end subroutine begin_search
@@ -272,23 +272,24 @@ contains
    end function misses
 
    !> Evaluate the tips at their advances, and balance the load.
-   subroutine respond(self, body, search, limit, learns, timers, error)
+   subroutine respond(self, body, search, limit, updates_matrix, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       type(group_search_t), intent(inout) :: search
       real(rk), intent(in) :: limit  !< the largest load factor [-]
-      logical, intent(in) :: learns  !< the matrix is updated, at the load of the last evaluation
+      !> the matrix is updated, at the load of the last evaluation
+      logical, intent(in) :: updates_matrix
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       associate (group => search%tip)
-         if (.not. (search%is_placed .and. all(search%advance >= search%room))) then
+         if (.not. (search%is_placed .and. all(search%advance >= search%remaining))) then
             call self%tries%place(body, group, search%share*search%advance, search%begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
          end if
          search%is_placed = .false.
-         if (learns .and. size(group) > 1) then
+         if (updates_matrix .and. size(group) > 1) then
             call learn_from_trial(self%matrix, search%share*search%advance - search%placed, &
                                   body%tip(group)%drive%intensity - search%intensity)
          end if
@@ -361,9 +362,9 @@ contains
       real(rk) :: advance(size(search%tip)), intensity(size(search%tip))
       integer :: j
 
-      associate (group => search%tip, room => search%room, tip_group => search%tip_group)
+      associate (group => search%tip, remaining => search%remaining, tip_group => search%tip_group)
          if (.not. search%is_placed) then
-            call self%tries%place(body, group, room, search%begun)
+            call self%tries%place(body, group, remaining, search%begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
          end if
@@ -378,12 +379,12 @@ contains
          if (allocated(self%matrix)) deallocate (self%matrix)
          allocate (self%matrix(size(group), size(group)))
          do j = 1, size(group)
-            advance = room
-            advance(j) = (1.0_rk - probe)*room(j)
+            advance = remaining
+            advance(j) = (1.0_rk - probe)*remaining(j)
             call self%tries%place(body, group, advance, search%begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
-            self%matrix(:, j) = (intensity - body%tip(group)%drive%intensity)/(probe*room(j))
+            self%matrix(:, j) = (intensity - body%tip(group)%drive%intensity)/(probe*remaining(j))
          end do
          self%preference = preference(self%matrix, search%slope(group))*body%rules%increment &
                            /body%rules%toughness
@@ -409,7 +410,7 @@ contains
          slope = of_kinds(tip_group, means(tip_group, search%slope(search%tip)))/needed
          shortest = of_kinds(tip_group, max(0.0_rk, least*body%rules%increment - accepted))
          call search%control%improve(excess, matrix_of_kinds(tip_group, self%matrix)/needed, &
-                                     slope, of_kinds(tip_group, search%room), shortest, &
+                                     slope, of_kinds(tip_group, search%remaining), shortest, &
                                      tolerance, advance, has_moved)
          search%advance = advance(tip_group)
       end associate

@@ -72,7 +72,7 @@ contains
    !> Set the prescribed slip of the nodes of fracture cells at load factor 1.
    pure subroutine prescribe_slip(scene, start, network, fine, jump)
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(inout) :: jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
       logical :: is_free(2)

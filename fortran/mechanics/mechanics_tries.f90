@@ -29,13 +29,13 @@ module mechanics_tries
       type(segment_t), allocatable :: segment_before(:)  !< (tips)
       type(network_t) :: network_before
       type(tip_t), allocatable :: tip_before(:)
-      real(rk) :: piece = 0.0_rk  !< largest advance [m]
+      real(rk) :: longest = 0.0_rk  !< largest advance [m]
       integer(ik), allocatable :: tip_group(:)  !< (tips) first tip of the tip group of each
    contains
       procedure :: begin
       procedure :: go_back
       procedure :: begin_segments
-      procedure :: rooms
+      procedure :: remaining_lengths
       procedure :: place
       procedure :: keep_paths
       procedure :: find_tip_groups
@@ -83,7 +83,7 @@ contains
       advance = 0.0_rk
       do k = 1, size(group, kind=ik)
          i = group(k)
-         if (.not. self%segment(i)%is_open) advance(i) = self%piece
+         if (.not. self%segment(i)%is_open) advance(i) = self%longest
       end do
       if (.not. any(advance > 0.0_rk)) return
       call body%grow_by(advance, any_grew, timers, error)
@@ -98,13 +98,13 @@ contains
    end subroutine begin_segments
 
    !> Largest possible advances of the tips of a group on their segments.
-   pure function rooms(self, group) result(room)
+   pure function remaining_lengths(self, group) result(remaining)
       class(tries_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tips
-      real(rk) :: room(size(group))  !< [m]
+      real(rk) :: remaining(size(group))  !< [m]
 
-      room = min(self%piece, self%segment(group)%length - self%segment(group)%accepted)
-   end function rooms
+      remaining = min(self%longest, self%segment(group)%length - self%segment(group)%accepted)
+   end function remaining_lengths
 
    !> Place the tips of a group on their path segments. Tips that do not advance have no new
    !! segment.
@@ -112,7 +112,7 @@ contains
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: group(:)  !< tips
-      real(rk), intent(in) :: advance(:)  !< of the group [m]
+      real(rk), intent(in) :: advance(:)  !< (group) [m]
       type(tip_t), intent(in) :: begun(:)  !< (all tips) tips at the ends of new segments
       integer(ik) :: k
 
@@ -141,7 +141,7 @@ contains
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: group(:)  !< tips
-      real(rk), intent(in) :: advance(:)  !< of the group [m]
+      real(rk), intent(in) :: advance(:)  !< (group) [m]
       type(tip_t) :: stood
       integer(ik) :: i, k
 
@@ -244,15 +244,15 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: most_tries = 30
       type(tip_t) :: begun(size(body%tip))
-      real(rk) :: excess, excess_high, excess_low, high, low, lowest, room(size(group)), share
+      real(rk) :: excess, excess_high, excess_low, high, low, lowest, remaining(size(group)), share
       logical :: is_placed
       integer :: try
 
       begun = body%tip
-      room = tries%rooms(group)
+      remaining = tries%remaining_lengths(group)
       is_placed = all(.not. tries%segment_before(group)%is_open)
       associate (shortest => least*body%rules%increment - tries%segment_before(group)%accepted)
-         lowest = maxval(max(shortest, 0.0_rk)/room)
+         lowest = maxval(max(shortest, 0.0_rk)/remaining)
       end associate
       low = 0.0_rk
       excess_low = maxval(tries%tip_before(group)%drive%intensity)/body%rules%toughness - 1.0_rk
@@ -261,7 +261,7 @@ contains
       share = 1.0_rk
       do try = 1, most_tries
          if (.not. (is_placed .and. try == 1)) then
-            call tries%place(body, group, share*room, begun)
+            call tries%place(body, group, share*remaining, begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
          end if
@@ -280,7 +280,7 @@ contains
                                           mod(try, 3) == 0)
          share = max(share, lowest)
       end do
-      call tries%keep_paths(body, group, share*room)
+      call tries%keep_paths(body, group, share*remaining)
    end subroutine run_loosely
 
 end module mechanics_tries

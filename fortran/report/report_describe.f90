@@ -19,7 +19,7 @@ module report_describe
 
    public :: description
 
-   ! What the files contain, in whole sentences. The texts keep their own layout.
+   ! Contents of the files in whole sentences. The texts keep their own layout.
    !&<
    character(len=*), parameter :: about_history = &
       "A row per accepted time step, after that of the initial state if it was in equilibrium; "// &
@@ -74,14 +74,16 @@ module report_describe
    !&>
 
    !> Names of the kinds of parameters, kind_real to kind_wholes.
-   character(len=*), parameter :: kind_words(8) = [character(len=21) :: &
-                 "number", "list of numbers", "whole number", "logical", "text", "name", "choice", &
-                                                   "list of whole numbers"]
+   character(len=*), parameter :: kind_words(8) = [character(len=21) :: "number", &
+                                                     "list of numbers", "whole number", "logical", &
+                                                                         "text", "name", "choice", &
+                                                                            "list of whole numbers"]
 
    !> Scenes in which a name without a default is required, need_never to need_choice.
-   character(len=*), parameter :: need_words(0:6) = [character(len=26) :: &
-                      "", "always", "with &fluid", "with &fracture", "with growth or intensities", &
-                                                     "with growth", "with its choice"]
+   character(len=*), parameter :: need_words(0:6) = [character(len=26) :: "", "always", &
+                                                                  "with &fluid", "with &fracture", &
+                                                                     "with growth or intensities", &
+                                                                   "with growth", "with its choice"]
 
 contains
 

@@ -77,7 +77,7 @@ module report_files
          integer(c_int) :: status
       end function c_mkdir
 
-      !> Rename, replacing what has the new name, in one step that no reader sees half done.
+      !> Rename, replacing a file with the new name, in one step for all readers.
       function c_rename(old_path, new_path) result(status) bind(C, name="rename")
          import :: c_char, c_int
          implicit none(type, external)

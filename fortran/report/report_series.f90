@@ -65,30 +65,30 @@ contains
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(rk), intent(in) :: value  !< [unit of the name]
-      character(len=number_width + 1) :: piece  ! with the comma behind it
+      character(len=number_width + 1) :: item  ! with a comma after it
       integer :: length
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
       if (.not. is_wanted) return
-      call format_real(value, piece(1:number_width), length)
-      piece(length + 1:length + 1) = ","
-      call self%buffer%append(piece(1:length + 1))
+      call format_real(value, item(1:number_width), length)
+      item(length + 1:length + 1) = ","
+      call self%buffer%append(item(1:length + 1))
    end subroutine put_real
 
    subroutine put_integer(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: value
-      character(len=number_width + 1) :: piece  ! with the comma behind it
+      character(len=number_width + 1) :: item  ! with a comma after it
       integer :: length
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
       if (.not. is_wanted) return
-      call format_integer(int(value, lk), piece(1:number_width), length)
-      piece(length + 1:length + 1) = ","
-      call self%buffer%append(piece(1:length + 1))
+      call format_integer(int(value, lk), item(1:number_width), length)
+      item(length + 1:length + 1) = ","
+      call self%buffer%append(item(1:length + 1))
    end subroutine put_integer
 
    subroutine put_text(self, name, value)

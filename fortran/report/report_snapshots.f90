@@ -223,8 +223,8 @@ contains
       call grid%add(name, both, [character(len=10) :: "normal", "tangential"])
    end subroutine add_pair
 
-   !> Remove the snapshots of an earlier run, the last one first so that an interrupted removal can
-   !! go on.
+   !> Remove the snapshots of an earlier run, the last one first, so that an interrupted removal can
+   !! be continued.
    subroutine remove_earlier(directory)
       character(len=*), intent(in) :: directory
       logical :: was_there

@@ -32,7 +32,7 @@ module report_text
       type(text_buffer_t) :: buffer
       integer :: depth = 0
       logical :: has_members(0:deepest) = .false.
-      logical :: one_line = .false.  !< what follows has no line breaks
+      logical :: one_line = .false.  !< text from here on without line breaks
    contains
       procedure :: begin_object
       procedure :: end_object
@@ -54,20 +54,20 @@ module report_text
 contains
 
    !> Append a text.
-   pure subroutine append(self, piece)
+   pure subroutine append(self, item)
       class(text_buffer_t), intent(inout) :: self
-      character(len=*), intent(in) :: piece
+      character(len=*), intent(in) :: item
       character(len=:), allocatable :: larger
       integer(lk) :: length  ! afterwards
 
-      length = self%length + len(piece, kind=lk)
+      length = self%length + len(item, kind=lk)
       if (.not. allocated(self%storage)) allocate (character(len=1024) :: self%storage)
       if (length > len(self%storage, kind=lk)) then
          allocate (character(len=2_lk*length) :: larger)
          larger(1:self%length) = self%storage(1:self%length)
          call move_alloc(larger, self%storage)
       end if
-      self%storage(self%length + 1:length) = piece
+      self%storage(self%length + 1:length) = item
       self%length = length
    end subroutine append
 
@@ -75,11 +75,11 @@ contains
    pure subroutine append_real(self, x)
       class(text_buffer_t), intent(inout) :: self
       real(rk), intent(in) :: x  !< [any unit]
-      character(len=number_width) :: piece
+      character(len=number_width) :: item
       integer :: length
 
-      call format_real(x, piece, length)
-      call self%append(piece(1:length))
+      call format_real(x, item, length)
+      call self%append(item(1:length))
    end subroutine append_real
 
    !> Replace the last character.

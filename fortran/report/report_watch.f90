@@ -48,7 +48,7 @@ contains
       integer, intent(in) :: limit  !< index into the table of limits
       real(rk), intent(in) :: value  !< in the limit's unit
       character(len=*), intent(in) :: when  !< "3600 s", "load factor 0.5"
-      real(rk), intent(in), optional :: xy(2)  !< where [m]
+      real(rk), intent(in), optional :: xy(2)  !< position [m]
       character(len=:), allocatable :: at
       integer :: verdict
       logical :: is_worst

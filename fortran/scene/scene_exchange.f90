@@ -44,7 +44,7 @@ contains
          n(record%group) = n(record%group) + 1
          call exchange_group(record, scene, n(record%group))
       end do
-      do i = 1, size(scene%injections)  ! the fractures may come after the wells
+      do i = 1, size(scene%injections)  ! fractures may follow the wells in the file
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          if (.not. value%is_set) cycle
          do f = 1, size(scene%fractures)
@@ -62,7 +62,7 @@ contains
       type(record_t) :: record
       integer :: group, i
 
-      source = scene  ! exchange takes what it may write to
+      source = scene  ! the argument of exchange_group is intent(inout)
       sheet%path = ""
       do group = 1, size(groups)
          if (.not. applies(groups(group)%scenes, source%has_fluid())) cycle

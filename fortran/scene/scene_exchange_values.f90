@@ -36,7 +36,7 @@ contains
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       real(rk), intent(inout) :: component  !< [unit of the name]
-      real(rk), intent(in), optional :: nothing  !< what an absent value is [unit of the name]
+      real(rk), intent(in), optional :: nothing  !< value of an absent name [unit of the name]
 
       associate (value => record%values(parameter_index(record%group, name)))
          if (record%reading) then
@@ -124,7 +124,7 @@ contains
       end if
    end subroutine exchange_text
 
-   !> Copy whether a word stands in the place of a number.
+   !> Copy whether a name has a word instead of a number.
    pure subroutine exchange_word(record, name, word, is_word)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name, word
@@ -306,7 +306,7 @@ contains
       integer, intent(in) :: quantity  !< index into side_quantities
       real(rk), intent(inout) :: value  !< [unit of the quantity]
       type(side_course_t), intent(inout) :: course
-      real(rk), intent(in), optional :: nothing  !< what an absent value is
+      real(rk), intent(in), optional :: nothing  !< value of an absent name [unit of the quantity]
       real(rk), allocatable :: list(:)
       character(len=:), allocatable :: name
 

@@ -31,7 +31,7 @@ module scene_expression
       character(len=:), allocatable :: text  !< in lower case, with a blank at its end
       integer :: position = 1
       integer :: depth = 0  !< nesting of brackets, signs and exponents
-      character(len=:), allocatable :: fault  !< what is wrong; unallocated: nothing so far
+      character(len=:), allocatable :: fault  !< reason of a failure; unallocated: none so far
    end type reading_t
 
    integer, parameter :: token_group = 1  !< `&name`; the range holds the name alone
@@ -46,7 +46,7 @@ module scene_expression
    type :: token_t
       integer :: kind = token_end
       integer :: first = 1, last = 0
-      integer(ik) :: line = 0  !< on which it begins, from 1
+      integer(ik) :: line = 0  !< line of its beginning, from 1
    end type token_t
 
    !> The tokens of one source; the last one is of the kind token_end.
@@ -64,7 +64,7 @@ contains
       character(len=*), intent(in) :: expression
       type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value  !< [any unit]
-      character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: good
+      character(len=:), allocatable, intent(out) :: fault  !< reason of a failure; unallocated: good
       type(reading_t) :: reading
 
       value = 0.0_rk
@@ -272,7 +272,7 @@ contains
    pure subroutine tokenize(source, tokens, fault, fault_line)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(out) :: tokens
-      character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: good
+      character(len=:), allocatable, intent(out) :: fault  !< reason of a failure; unallocated: good
       integer(ik), intent(out) :: fault_line  !< 0 without a fault
       integer, parameter :: marks(3) = [token_equals, token_comma, token_slash]
       integer :: kind, last, position

@@ -45,7 +45,7 @@ contains
       if (present(source)) source = sheet
    end subroutine read_scene
 
-   !> Fill in the defaults of a sheet that has been parsed, and refuse what lacks a required value.
+   !> Fill in the defaults of a parsed sheet, and refuse groups that lack a required value.
    pure subroutine complete_sheet(sheet, error)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -170,10 +170,12 @@ contains
    pure function described(item) result(words)
       integer, intent(in) :: item  !< index into parameters
       character(len=:), allocatable :: words
-      character(len=46), parameter :: reason(need_always:need_growth) = [character(len=46) :: &
-                                      "which is always needed", "which a scene with &fluid needs", &
+      character(len=*), parameter :: reason(need_always:need_growth) = [character(len=46) :: &
+                                                                        "which is always needed", &
+                                                                "which a scene with &fluid needs", &
                                                             "which a scene with a fracture needs", &
-                             "which growth and stress intensity factors need", "which growth needs"]
+                                                 "which growth and stress intensity factors need", &
+                                                                        "which growth needs"]
 
       associate (parameter => parameters(item))
          words = trim(parameter%name)

@@ -1,4 +1,4 @@
-!> What a scene file consists of: the groups, and the properties of the names in them, which
+!> The elements of a scene file: the groups, and the properties of the names in them, which
 !! scene_parameter_table lists. Reading, checks of single values, writing of scene.nml and the table
 !! of names (report_describe) follow from both tables.
 module scene_parameters
@@ -25,10 +25,10 @@ module scene_parameters
 
    integer, parameter :: need_never = 0
    integer, parameter :: need_always = 1  !< in every group of this name
-   integer, parameter :: need_fluid = 2  !< where there is a fluid
-   integer, parameter :: need_fracture = 3  !< where there is a fracture
-   integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
-   integer, parameter :: need_growth = 5  !< where fractures grow
+   integer, parameter :: need_fluid = 2  !< in scenes with a fluid
+   integer, parameter :: need_fracture = 3  !< in scenes with a fracture
+   integer, parameter :: need_tips = 4  !< with growth or stress intensity factors
+   integer, parameter :: need_growth = 5  !< with growth
    integer, parameter :: need_choice = 6  !< with the choice of `of`
 
    ! Scenes that may have a group or a parameter.

@@ -206,7 +206,7 @@ contains
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record  !< index into sheet%records
       character(len=*), intent(in) :: name  !< empty: about the group
-      character(len=*), intent(in) :: reason  !< what is wrong and what would be right
+      character(len=*), intent(in) :: reason  !< the fault and its remedy
       character(len=:), allocatable :: message
       integer(ik) :: line
 
@@ -225,7 +225,7 @@ contains
       end associate
    end subroutine refuse
 
-   !> File and line for messages about the syntax.
+   !> File and line at the beginning of a message about the syntax.
    pure function place(sheet, line) result(words)
       type(sheet_t), intent(in) :: sheet
       integer(ik), intent(in) :: line

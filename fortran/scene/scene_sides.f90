@@ -65,7 +65,7 @@ contains
    elemental subroutine set_time(self, time, since)
       class(boundary_side_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      real(rk), intent(in) :: since  !< at most that [s]
+      real(rk), intent(in) :: since  !< at most `time` [s]
 
       if (.not. self%changes()) return
       call set(of_x_displacement, self%displacement(1))
@@ -94,7 +94,7 @@ contains
 
    !> Value at a time, from those at the times of a course [unit of the values].
    pure real(rk) function in_time(times, values, time)
-      real(rk), intent(in) :: times(:)  !< in rising order [s]
+      real(rk), intent(in) :: times(:)  !< in increasing order [s]
       real(rk), intent(in) :: values(:)
       real(rk), intent(in) :: time  !< [s]
       integer(ik) :: k
@@ -113,7 +113,7 @@ contains
 
    !> Mean value between two times, or the value at a time if they are equal [unit of the values].
    pure real(rk) function mean_in_time(times, values, since, time) result(mean)
-      real(rk), intent(in) :: times(:)  !< in rising order [s]
+      real(rk), intent(in) :: times(:)  !< in increasing order [s]
       real(rk), intent(in) :: values(:)
       real(rk), intent(in) :: since, time  !< [s]
       real(rk) :: ends(2)

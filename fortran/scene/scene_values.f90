@@ -34,7 +34,7 @@ contains
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: source
       type(token_t), intent(in) :: tokens(:)  !< words, texts and commas
-      type(value_t), intent(inout) :: value  !< its line stays as it is
+      type(value_t), intent(inout) :: value  !< its line does not change
       character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       real(rk), allocatable :: numbers(:)
       character(len=:), allocatable :: word

@@ -75,7 +75,7 @@ contains
       self%length = length
    end subroutine put
 
-   !> Add `name = value`, with the unit as a comment; a list follows on lines of its own.
+   !> Add `name = value`, with the unit as a comment; a list follows on separate lines.
    subroutine put_value(lines, parameter, value)
       type(lines_t), intent(inout) :: lines
       type(parameter_t), intent(in) :: parameter
