@@ -24,6 +24,7 @@ module scene_check_regions
                                                  "permeability_xx", "density", "toughness"]
    !> Largest ratio of Young's moduli of adjacent rocks, limited by rounding [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
+   real(rk), parameter :: most_contrast = 1.0e12_rk  !< largest ratio of permeabilities [-]
 
    integer, parameter :: most_points = 1000  !< points of a curve: every pair of edges is compared
 
@@ -73,14 +74,10 @@ contains
          call check_points(sheet, record, scene%regions(i), error)
          if (.not. allocated(error)) call check_outline(sheet, record, scene, i, error)
          if (.not. allocated(error)) call check_rock(sheet, record, scene, scene%regions(i), error)
-         if (scene%has_fluid()) then
-            if (.not. allocated(error)) call check_tensor(sheet, record, &
-                                                          scene%regions(i)%material, error)
+         if (scene%has_fluid() .and. .not. allocated(error)) then
+            call check_tensor(sheet, record, scene%regions(i)%material, error)
          end if
-         if (.not. allocated(error)) call check_stiffness(sheet, scene, i, error)
-         if (.not. allocated(error) .and. scene%has_fluid()) then
-            call check_contrast(sheet, scene, i, error)
-         end if
+         if (.not. allocated(error)) call check_contrasts(sheet, scene, i, error)
          if (allocated(error)) return
       end do
    end subroutine check_regions
@@ -136,59 +133,42 @@ contains
       if (is_first) name = first
    end function either
 
-   !> Young's moduli of the regions and the scene's rock do not differ too much.
-   pure subroutine check_stiffness(sheet, scene, i, error)
+   !> Young's moduli, and with a fluid permeabilities, of a region and of the scene's rock or an
+   !! earlier region do not differ too much for rounding; permeabilities are averaged in cut cells.
+   pure subroutine check_contrasts(sheet, scene, i, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: i  !< region
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: other
-      integer :: k
-
-      do k = 0, i - 1
-         if (k == 0) then
-            other = scene%material%young
-         else
-            other = scene%regions(k)%material%young
-         end if
-         associate (young => scene%regions(i)%material%young)
-            if (max(young/other, other/young) <= stiffest*(1.0_rk + round_off)) cycle
-         end associate
-         call refuse(error, sheet, sheet%find("region", i), "young", "of region '"// &
-                     trim(scene%regions(i)%name)//"' and that of the rock around it or of "// &
-                     "another region differ by more than a factor of 1e9 but must not")
-         return
-      end do
-   end subroutine check_stiffness
-
-   !> Permeabilities of the regions and the scene's rock, which are averaged in cut cells, do not
-   !! differ too much for rounding.
-   pure subroutine check_contrast(sheet, scene, i, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: i  !< region
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: most = 1.0e12_rk  ! ratio of permeabilities
+      type(material_t) :: other
+      character(len=:), allocatable :: name, whose
       real(rk) :: extremes(2), others(2)
-      character(len=:), allocatable :: name
-      integer :: k
+      integer :: k, record
 
-      extremes = principal(scene%regions(i)%material)
+      record = sheet%find("region", i)
+      whose = "of region '"//trim(scene%regions(i)%name)//"' and "
       do k = 0, i - 1
-         if (k == 0) then
-            others = principal(scene%material)
-         else
-            others = principal(scene%regions(k)%material)
-         end if
-         if (max(extremes(2)/others(1), others(2)/extremes(1)) <= most*(1.0_rk + round_off)) cycle
+         other = scene%material
+         if (k > 0) other = scene%regions(k)%material
+         associate (young => scene%regions(i)%material%young)
+            if (max(young/other%young, other%young/young) > stiffest*(1.0_rk + round_off)) then
+              call refuse(error, sheet, record, "young", whose//"that of the rock around it or "// &
+                           "of another region differ by more than a factor of 1e9 but must not")
+               return
+            end if
+         end associate
+         if (.not. scene%has_fluid()) cycle
+         extremes = principal(scene%regions(i)%material)
+         others = principal(other)
+         if (max(extremes(2)/others(1), others(2)/extremes(1)) &
+             <= most_contrast*(1.0_rk + round_off)) cycle
          name = "permeability"
-         if (.not. sheet%records(sheet%find("region", i))%is_given(name)) name = "permeability_xx"
-         call refuse(error, sheet, sheet%find("region", i), name, "of region '"// &
-                    trim(scene%regions(i)%name)//"' and the permeability of the rock around it "// &
+         if (.not. sheet%records(record)%is_given(name)) name = "permeability_xx"
+        call refuse(error, sheet, record, name, whose//"the permeability of the rock around it "// &
                      "or of another region differ by more than a factor of 1e12 but must not")
          return
       end do
-   end subroutine check_contrast
+   end subroutine check_contrasts
 
    !> The least and the largest permeability over all directions.
    pure function principal(material) result(extremes)
