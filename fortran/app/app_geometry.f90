@@ -1,5 +1,5 @@
-!> Whether the geometry of a scene can be simulated, before meshing and output. The mesh library
-!! checks it; here its result becomes a sentence about the scene file.
+!> Checks that the geometry of a scene can be simulated, before meshing and output. The mesh library
+!! checks the geometry; here its faults become sentences about the scene file.
 module app_geometry
    use app_simulations, only: first_mesh
    use base_errors, only: error_t
@@ -24,7 +24,7 @@ contains
 
    !> Refuse a scene whose body or fractures cannot be meshed.
    subroutine check_geometry(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet  !< where the scene comes from
+      type(sheet_t), intent(in) :: sheet  !< file of the scene
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       type(network_t) :: network
@@ -33,12 +33,12 @@ contains
 
       network = network_of_scene(scene)
       call check_mesh_input(first_mesh(scene, network), network, joints, fault)
-      if (allocated(fault)) call blame(sheet, scene, fault, error)
+      if (allocated(fault)) call refuse_fault(sheet, scene, fault, error)
       if (allocated(error) .or. .not. allocated(scene%regions)) return
       if (scene%growth%intensities) call check_interfaces(sheet, scene, network, joints, error)
    end subroutine check_geometry
 
-   !> Refuse tips next to rock of another stiffness, whose intensities the run could not find.
+   !> Refuse tips next to rock of another stiffness, which have no intensities.
    subroutine check_interfaces(sheet, scene, network, joints, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -75,7 +75,7 @@ contains
       !> An end is a tip unless it lies on the boundary or where fractures meet.
       pure logical function is_tip(xy)
          real(rk), intent(in) :: xy(2)  !< [m]
-         real(rk), parameter :: same = 1.0e-6_rk  ! of the size of cells: the mesh library judges
+         real(rk), parameter :: same = 1.0e-6_rk  ! distance of equal points over the size of cells
          integer(ik) :: k, next
 
          is_tip = .false.
@@ -93,8 +93,8 @@ contains
 
    end subroutine check_interfaces
 
-   !> Put a fault into words, at the line of the first culprit.
-   subroutine blame(sheet, scene, fault, error)
+   !> Raise an error about a fault, at the line of the first object concerned.
+   subroutine refuse_fault(sheet, scene, fault, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(fault_t), intent(in) :: fault
@@ -114,15 +114,15 @@ contains
          reason = with_name(reason, "{"//integer_text(int(i, ik))//"}", name)
       end do
       call refuse(error, sheet, first_record, "", reason)
-   end subroutine blame
+   end subroutine refuse_fault
 
-   !> Which group of the file a culprit comes from, and what a sentence calls it.
+   !> Find the group of the file of an object concerned, and its name in a sentence.
    subroutine identify(sheet, scene, culprit, record, name)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(culprit_t), intent(in) :: culprit
-      integer, intent(out) :: record
-      character(len=:), allocatable, intent(out) :: name
+      integer, intent(out) :: record  !< index into sheet%records
+      character(len=:), allocatable, intent(out) :: name  !< name in a sentence
 
       record = sheet%find("domain")
       select case (culprit%kind)

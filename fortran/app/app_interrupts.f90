@@ -1,7 +1,5 @@
-!> Signals that request the end of the program.
-!!
-!! Memory of the process and of the machine. If an allocation fails, the program ends with a
-!! message.
+!> Signals that request the end of the program, and memory of the process and of the machine. If an
+!! allocation fails, the program ends with a message.
 module app_interrupts
    use, intrinsic :: iso_c_binding, only: c_double, c_int
    implicit none(type, external)
@@ -10,8 +8,8 @@ module app_interrupts
    public :: catch_interrupts, interrupt_status, interrupted, machine_memory, prepare_memory
 
    interface
-      !> From now on the first SIGINT or SIGTERM is noted, and a second one ends the program at
-      !! once. A file that grows beyond the user's limit is an error of writing.
+      !> Record the first SIGINT or SIGTERM from now on; a second one ends the program at once. A
+      !! file larger than the user's limit is an error of writing.
       subroutine catch_interrupts() bind(C, name="app_catch_interrupts")
          implicit none(type, external)
       end subroutine catch_interrupts
@@ -31,9 +29,9 @@ module app_interrupts
          real(c_double) :: n_bytes
       end function machine_memory
 
-      !> End the program if there is no memory for the smallest run. Else let BLAS take the buffer
-      !! that it would later ask for again and again in vain, with one thread unless
-      !! OPENBLAS_NUM_THREADS wants more; and keep freed memory for the next factorization.
+      !> End the program if there is not enough memory for the smallest run. Otherwise let BLAS
+      !! allocate its buffer, with one thread unless OPENBLAS_NUM_THREADS is larger; later attempts
+      !! without memory would not end. Freed memory is kept for the next factorization.
       subroutine prepare_memory() bind(C, name="app_prepare_memory")
          implicit none(type, external)
       end subroutine prepare_memory
@@ -41,12 +39,12 @@ module app_interrupts
 
 contains
 
-   !> The user has asked the run to stop.
+   !> A signal has requested the end of the run.
    logical function interrupted()
       interrupted = c_interrupted() /= 0
    end function interrupted
 
-   !> Exit status of a run that has been asked to stop: 128 and the number of the signal.
+   !> Exit status after a signal: 128 plus its number.
    integer function interrupt_status() result(status)
       status = 128 + c_interrupted()
    end function interrupt_status

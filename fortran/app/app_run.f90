@@ -1,6 +1,5 @@
-!> Runs a scene from start to end, with or without a fluid.
-!!
-!! Output of a running scene to its files and to the terminal, with or without a fluid.
+!> Runs a scene from start to end, with output to its files and to the terminal, with or without a
+!! fluid.
 module app_run
    use, intrinsic :: iso_fortran_env, only: output_unit
    use app_interrupts, only: interrupted
@@ -30,9 +29,10 @@ module app_run
    type :: journal_t
       type(run_output_t) :: files
       type(progress_t) :: progress
-      logical :: owes_rows = .false., owes_vtu = .false.  !< fields of the last accepted state
-      integer(ik) :: n_growth = 0  !< VTU files written of increments of growth
-      type(progress_values_t) :: shown  !< of the last accepted state
+      logical :: owes_rows = .false.  !< fractures.csv lacks the last accepted state
+      logical :: owes_vtu = .false.  !< VTU files of the last accepted state are not written
+      integer(ik) :: n_growth = 0  !< number of states of growth with VTU files
+      type(progress_values_t) :: shown  !< values of the last accepted state
    contains
       procedure :: begin => begin_journal
       procedure :: write_state
@@ -41,7 +41,7 @@ module app_run
       procedure :: write_fields
    end type journal_t
 
-   !> Hears of long work: shows it, and ends it as the user wants.
+   !> Listener of long computations, which shows progress and ends them after a signal.
    type, extends(listener_t) :: follower_t
       type(journal_t), pointer :: journal => null()
    contains
@@ -50,7 +50,7 @@ module app_run
 
 contains
 
-   !> Work goes on, unless a signal has come.
+   !> Show progress, or end the computation if a signal has been received.
    subroutine hear(self, ends)
       class(follower_t), intent(inout) :: self
       logical, intent(out) :: ends
@@ -59,13 +59,14 @@ contains
       if (.not. ends) call self%journal%show_work()
    end subroutine hear
 
-   !> Run a scene to its end. `refused`: the directory is a wrong choice, and nothing was written.
-  subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, error)
+   !> Run a scene to its end. `refused`: the directory cannot be used, and nothing was written.
+   subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, &
+                        error)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: source  !< path of the scene's file; empty: no file
       character(len=*), intent(in) :: directory
       logical, intent(in) :: quiet
-      class(simulation_t), allocatable, intent(out) :: simulation  !< as it is at its end
+      class(simulation_t), allocatable, intent(out) :: simulation  !< state at the end
       logical, intent(out) :: refused, was_interrupted
       type(error_t), allocatable, intent(out) :: error
       type(journal_t), target :: journal
@@ -100,9 +101,25 @@ contains
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
       call simulation%tell_limits()
-      record%summary_t = simulation%summary
       record%scene = trim(scene%name)
       record%version = version
+      call set_end(record, simulation, was_interrupted, error)
+      call journal%files%log(record%status//": "//record%reason//origin_text(error))
+      call journal%files%close(record, timers, trouble)
+      call keep_first(trouble, error)
+      if (quiet) return
+      call show_warnings(record%warnings, output_unit)
+      if (is_meshed) call print_closing(simulation, record, timers%wall_seconds(), directory)
+   end subroutine run_scene
+
+   !> Set the summary, the status and the reason of the end of a run.
+   subroutine set_end(record, simulation, was_interrupted, error)
+      type(run_record_t), intent(inout) :: record
+      class(simulation_t), intent(in) :: simulation
+      logical, intent(in) :: was_interrupted
+      type(error_t), allocatable, intent(in) :: error  !< allocated: the run has failed
+
+      record%summary_t = simulation%summary
       if (allocated(error)) then
          record%status = status_failed
          record%reason = error%message
@@ -113,15 +130,10 @@ contains
          record%status = status_finished
          record%reason = simulation%ending
       end if
-      call journal%files%log(record%status//": "//record%reason//origin_text(error))
-      call journal%files%close(record, timers, trouble)
-      call keep_first(trouble, error)
-      if (quiet) return
-      call show_warnings(record%warnings, output_unit)
-      if (is_meshed) call say_closing(simulation, record, timers%wall_seconds(), directory)
-   end subroutine run_scene
+   end subroutine set_end
 
-   !> Write everything up to the last good state but run.json, which tells whether that went well.
+   !> Write all files up to the last accepted state except run.json, which has the status of this
+   !! too.
    subroutine write_last_state(simulation, journal, timers, error)
       class(simulation_t), intent(inout) :: simulation
       type(journal_t), intent(inout) :: journal
@@ -139,7 +151,7 @@ contains
       call timers%stop(phase_output)
    end subroutine write_last_state
 
-   !> Where an error comes from, for the log.
+   !> Origin of an error, for the log.
    pure function origin_text(error) result(text)
       type(error_t), allocatable, intent(in) :: error
       character(len=:), allocatable :: text
@@ -149,8 +161,8 @@ contains
       if (len(error%origin) > 0) text = " (in "//error%origin//")"
    end function origin_text
 
-   !> Say what the run was.
-   subroutine say_closing(simulation, record, seconds, directory)
+   !> Print the closing lines of a run.
+   subroutine print_closing(simulation, record, seconds, directory)
       class(simulation_t), intent(in) :: simulation
       type(run_record_t), intent(in) :: record
       real(rk), intent(in) :: seconds  !< wall time of the run [s]
@@ -165,9 +177,9 @@ contains
       do i = 1, size(lines)
          write (output_unit, "(a)") lines(i)%text
       end do
-   end subroutine say_closing
+   end subroutine print_closing
 
-   !> From state to state until the scene is over, something fails or the user interrupts.
+   !> Proceed from state to state until the end of the scene, a failure or an interruption.
    subroutine march(simulation, journal, timers, error)
       class(simulation_t), intent(inout) :: simulation
       type(journal_t), intent(inout) :: journal
@@ -199,7 +211,7 @@ contains
       end do
    end subroutine march
 
-   !> The scene is meshed: note its network, and begin to tell how the run goes on.
+   !> Begin the progress line, and write the network of the meshed scene.
    subroutine begin_journal(self, quiet, simulation)
       class(journal_t), intent(inout) :: self
       logical, intent(in) :: quiet
@@ -209,6 +221,7 @@ contains
       call write_network(self, simulation)
    end subroutine begin_journal
 
+   !> Add the present network to network.json.
    subroutine write_network(self, simulation)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation
@@ -219,7 +232,7 @@ contains
       call self%files%network_step(simulation%time(), network, mesh)
    end subroutine write_network
 
-   !> An accepted state: history, probes, fields where they are due, the progress line.
+   !> Write an accepted state: history, probes, fields if they are due, the progress line.
    subroutine write_state(self, simulation, error)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(inout) :: simulation
@@ -234,9 +247,9 @@ contains
       if (size(simulation%scene%probes) > 0) then
          call simulation%probes(probes, error)
          if (allocated(error)) return
-         call self%files%probe_row(row%time, probes)
+         call self%files%tables%probe_row(row%time, probes)
       end if
-      call self%files%history_row(row)
+      call self%files%tables%history_row(row)
       call write_due_fields(self, simulation, row%time, error)
       if (allocated(error)) return
       call self%files%tick(error)
@@ -251,18 +264,18 @@ contains
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
 
-   !> The next state is being looked for: so that a long step shows that it goes on.
+   !> Update the progress line during the search for the next state.
    subroutine show_work(self)
       class(journal_t), intent(inout) :: self
       character(len=:), allocatable :: log_line
 
-      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! there is no state yet
+      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! no state so far
       self%shown%solutions = self%shown%solutions + 1
       call self%progress%show(self%shown, log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine show_work
 
-   !> What has happened since the last time.
+   !> Write the event log to the tables and to run.log, and empty it.
    subroutine write_chronicle(self, simulation)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(inout) :: simulation
@@ -272,21 +285,21 @@ contains
          do i = 1, size(chronicle%events, kind=ik)
             associate (event => chronicle%events(i))
                if (event%has_place) then
-                  call self%files%event_row(event%time, event%kind, event%detail, event%fracture, &
-                                            event%xy)
+                  call self%files%tables%event_row(event%time, event%kind, event%detail, &
+                                                   event%fracture, event%xy)
                else
-                  call self%files%event_row(event%time, event%kind, event%detail)
+                  call self%files%tables%event_row(event%time, event%kind, event%detail)
                end if
             end associate
          end do
          do i = 1, size(chronicle%tips, kind=ik)
-            call self%files%tip_row(chronicle%tips(i))
+            call self%files%tables%tip_row(chronicle%tips(i))
          end do
          do i = 1, size(chronicle%wells, kind=ik)
-            call self%files%well_row(chronicle%wells(i))
+            call self%files%tables%well_row(chronicle%wells(i))
          end do
          do i = 1, size(chronicle%slip_events, kind=ik)
-            call self%files%slip_event_row(chronicle%slip_events(i))
+            call self%files%tables%slip_event_row(chronicle%slip_events(i))
          end do
          do i = 1, size(chronicle%remarks, kind=ik)
             call self%files%log(chronicle%remarks(i)%text)
@@ -296,8 +309,8 @@ contains
       end associate
    end subroutine write_chronicle
 
-   !> Fields where they are due: at the end of an interval, or without a fluid of a step of the
-   !! load; and at every increment of growth, with VTU files for as many as the scene wants.
+   !> Write fields if they are due: at the end of an interval, or without a fluid of a load step;
+   !! and at every increment of growth, with VTU files for at most growth_states of them.
    subroutine write_due_fields(self, simulation, time, error)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(inout) :: simulation
@@ -324,7 +337,7 @@ contains
       end if
    end subroutine write_due_fields
 
-   !> Fields of the last accepted state, as far as they have not been written.
+   !> Write the fields of the last accepted state, unless they have been written.
    subroutine write_fields(self, simulation, error, with_vtu)
       class(journal_t), intent(inout) :: self
       class(simulation_t), intent(in) :: simulation
@@ -338,8 +351,7 @@ contains
       if (.not. (self%owes_rows .or. (self%owes_vtu .and. has_vtu))) return
       call simulation%snapshot(fields)
       if (.not. allocated(fields)) return
-      call self%files%write_fields(fields%time, fields%mesh, fields%matrix, fields%fracture, &
-                                   fields%intersection, error, self%owes_rows, has_vtu)
+      call self%files%write_fields(fields, error, self%owes_rows, has_vtu)
       self%owes_rows = .false.
       if (has_vtu) self%owes_vtu = .false.
    end subroutine write_fields

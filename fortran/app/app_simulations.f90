@@ -11,20 +11,20 @@ module app_simulations
    public :: allocate_simulation, first_mesh, simulates_fluids
 
    interface
-      !> This program has a way to simulate scenes with a fluid.
+      !> This program can simulate scenes with a fluid.
       pure module logical function simulates_fluids()
          implicit none(type, external)
       end function simulates_fluids
 
-      !> What is meshed first of the scene.
+      !> Specification of the first mesh of a scene.
       module function first_mesh(scene, network) result(spec)
          implicit none(type, external)
          type(scene_t), intent(in) :: scene
-         type(network_t), intent(in) :: network  !< its own
+         type(network_t), intent(in) :: network  !< network of the scene
          type(mesh_spec_t) :: spec
       end function first_mesh
 
-      !> What simulates the scene; nothing if this program cannot.
+      !> Allocate the simulation of a scene; it remains unallocated if this program has none.
       module subroutine allocate_simulation(scene, simulation)
          implicit none(type, external)
          type(scene_t), intent(in) :: scene

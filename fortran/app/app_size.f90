@@ -1,7 +1,6 @@
-!> The size of a scene before meshing, and whether a machine has enough memory for it. All numbers
-!! are real: the numbers of a scene that is far too large exceed the range of integers.
-!!
-!! Features of a scene that are used and left out, without running it.
+!> The estimated size of a scene before meshing, and whether a machine has enough memory for it;
+!! also the features of a scene. All numbers are real: those of a scene that is far too large exceed
+!! the range of integers.
 module app_size
    use app_warnings, only: show_warnings
    use base_errors, only: error_t
@@ -19,23 +18,23 @@ module app_size
 
    public :: check_size, describe_scene, estimate_t, size_of_scene
 
-   !> Numbers of things at the start of a run, estimated.
+   !> Estimated size of a scene at the start of a run.
    type :: estimate_t
-      real(rk) :: steps = 0.0_rk  !< regular ones
+      real(rk) :: steps = 0.0_rk  !< number of regular steps
       real(rk) :: cells = 0.0_rk
       real(rk) :: fracture_cells = 0.0_rk
-      real(rk) :: unknowns = 0.0_rk  !< of the body
-      ! At least so much memory [byte]
+      real(rk) :: unknowns = 0.0_rk  !< unknowns of the body
+      ! Lower bounds of memory [byte]
       real(rk) :: bytes_of_cells = 0.0_rk  !< mesh, matrix and its factors
       real(rk) :: bytes_of_contact = 0.0_rk  !< the full matrix on the fractures, or sparse factors
-      real(rk) :: bytes_of_tables = 0.0_rk  !< which gather in memory
+      real(rk) :: bytes_of_tables = 0.0_rk  !< tables, which are kept in memory
    end type estimate_t
 
    real(rk), parameter :: byte_per_cell = 8.0e3_rk  !< measured: 10e3 to 14e3 at 3e4 cells
    !> The sparse factors of the fractures' equations; measured: 15e3 to 20e3 at 5e4 to 1e5 cells.
    real(rk), parameter :: byte_per_cell_of_contact = 1.0e4_rk
-   real(rk), parameter :: byte_per_value = 20.0_rk  !< of a table
-   real(rk), parameter :: values_per_step = 15.0_rk  !< of history.csv
+   real(rk), parameter :: byte_per_value = 20.0_rk  !< bytes per value of a table
+   real(rk), parameter :: values_per_step = 15.0_rk  !< values per row of history.csv
    real(rk), parameter :: values_per_probe = 6.0_rk
    real(rk), parameter :: values_per_fracture_cell = 10.0_rk
    !> Matrices are numbered with integers of 32 bits, and have up to 200 entries per cell.
@@ -85,7 +84,7 @@ contains
       estimate%bytes_of_tables = byte_per_value*values
    end function size_of_scene
 
-   !> Steps of a given length, or as many as it usually takes where they are chosen.
+   !> Number of steps of the given length, or the usual number of adaptive steps.
    pure real(rk) function number_of_steps(time)
       type(time_t), intent(in) :: time
       real(rk), parameter :: usual = 100.0_rk
@@ -97,18 +96,19 @@ contains
       end if
    end function number_of_steps
 
-   !> Number of cells: the integral of 1/area over the body. Sizes grow linearly with the distance
-   !! from the fractures, up to half of that of the farthest point (size_field.cpp). Up to a
-   !! distance d from n fractures of length L altogether are 2 L d + n pi d**2. Where these overlap,
-   !! as those of fractures at random do, the share exp(-(2 L d + n pi d**2)/area) of the body is
-   !! farther off (Boolean model: Chiu, Stoyan, Kendall, Mecke, Stochastic Geometry, 2013, ch. 3).
+   !> Number of cells: the integral of 1/area over the body. Sizes increase linearly with the
+   !! distance from the fractures, up to half of that of the farthest point (size_field.cpp). The
+   !! area within a distance d of n fractures of total length L is 2 L d + n pi d**2; since these
+   !! areas overlap, the fraction exp(-(2 L d + n pi d**2)/area) of the body is farther away for
+   !! random fractures (Boolean model: Chiu, Stoyan, Kendall, Mecke, Stochastic Geometry, 2013, ch.
+   !! 3).
    function number_of_cells(scene, length) result(n)
       type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: length  !< of all fractures [m]
+      real(rk), intent(in) :: length  !< total length of all fractures [m]
       real(rk) :: n
       integer, parameter :: layers = 400
       real(rk), parameter :: cells_per_square = 4.0_rk/sqrt(3.0_rk)  ! equilateral triangles
-      !> The farthest point: no more than exp(-5) of the body is beyond it.
+      !> The distance beyond which a fraction of at most exp(-5) of the body lies.
       real(rk), parameter :: covered = 5.0_rk
       type(outline_t) :: outline
       real(rk) :: area, inner, outer, farthest, slope, d, nearest, n_fractures
@@ -148,9 +148,9 @@ contains
 
    !> Refuse a scene that is too large for the machine, or for this program on any machine.
    subroutine check_size(sheet, scene, memory, error)
-      type(sheet_t), intent(in) :: sheet  !< where the scene comes from
+      type(sheet_t), intent(in) :: sheet  !< file of the scene
       type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: memory  !< of the machine [byte]
+      real(rk), intent(in) :: memory  !< memory of the machine [byte]
       type(error_t), allocatable, intent(out) :: error
       type(estimate_t) :: size
       character(len=:), allocatable :: steps, cells, fracture_cells, needed

@@ -8,11 +8,11 @@ module app_warnings
 
    public :: show_warnings
 
-   integer, parameter :: shown = 5  !< at most; run.json has all
+   integer, parameter :: shown = 5  !< largest number of printed warnings; run.json has all
 
 contains
 
-   !> Print how many warnings there are, and the first ones; nothing if there are none.
+   !> Print the number of warnings and the first ones; nothing if there are none.
    subroutine show_warnings(warnings, unit)
       type(text_t), allocatable, intent(in) :: warnings(:)
       integer, intent(in) :: unit

@@ -1,29 +1,28 @@
-!> The load that a network bears: the factor at which the largest K_eq of its tips is K_IC.
-!!
-!! By how much K_eq of tips that grow may miss K_IC, and the load that shares it out.
+!> The equilibrium load of a network: the factor at which the largest K_eq of its tips is K_IC; and
+!! a load that distributes the differences between K_eq and K_IC over the growing tips.
 module mechanics_balance
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_value
-   use mechanics_programme, only: foreseen_onset, reading_t
+   use mechanics_programme, only: predicted_onset, reading_t
    use mechanics_state, only: loaded_body_t
    implicit none(type, external)
    private
 
    public :: at_jump, balance_load, needed_intensity, share_misfit, tolerance
 
-   !> Width of a bracket, over its place, that holds a jump of the intensity and not its root.
+   !> Width of a bracket over its load factor at which it contains a jump of K and no root [-].
    real(rk), parameter :: at_jump = 1.0e-13_rk
 
-   !> The search for a load: the factors between which it lies, and the last evaluation.
+   !> The search for a load: a bracket of load factors, and the last evaluation.
    type :: search_t
-      real(rk) :: started = 0.0_rk, limit = 0.0_rk  !< of balance_load [-]
+      real(rk) :: started = 0.0_rk, limit = 0.0_rk  !< arguments of balance_load [-]
       logical :: has_low = .false., has_high = .false.
-      type(reading_t) :: low  !< the tips are held
-      type(reading_t) :: high  !< a tip exceeds its toughness
-      type(reading_t) :: last
-      real(rk) :: largest = 0.0_rk  !< K_eq then [Pa m^1/2]
+      type(reading_t) :: low  !< end of the bracket at which all K_eq < K_IC
+      type(reading_t) :: high  !< end of the bracket at which a K_eq >= K_IC
+      type(reading_t) :: last  !< previous evaluation
+      real(rk) :: largest = 0.0_rk  !< largest K_eq of the previous evaluation [Pa m^1/2]
    contains
       procedure :: narrow
       procedure :: is_at_jump
@@ -34,17 +33,17 @@ module mechanics_balance
 
 contains
 
-   !> Take the load from the present factor, at which the tips have been evaluated, to that at which
-   !! the next tip is at its toughness: up, no farther than a limit, or down, no farther than where
-   !! the programme begins. `holds` is false where at the limit no tip is there yet. If tips exceed
-   !! their toughness even at the beginning, growth is `loose`, and the load is where it started.
+   !> Change the load from the present factor, at which the tips have been evaluated, to that at
+   !! which the largest K_eq is K_IC: up to the limit, or down to the beginning of the programme.
+   !! `holds` is false if K_eq < K_IC at the limit. If K_eq > K_IC even at the beginning, growth is
+   !! `loose`, and the load is that of the last accepted state. An error: no such load was found.
    !!
    !! Intensities are linear in the factor between changes of contact, and proportional to it where
    !! all loads are: then the first or second evaluation is the last.
    subroutine balance_load(self, started, limit, timers, holds, is_loose, slope, error)
       class(loaded_body_t), intent(inout) :: self
       real(rk), intent(in) :: started  !< the factor of the last accepted state [-]
-      real(rk), intent(in) :: limit  !< the largest factor, on the way of the load [-]
+      real(rk), intent(in) :: limit  !< last factor in the direction of the load programme [-]
       type(timers_t), intent(inout) :: timers
       logical, intent(out) :: holds
       logical, intent(out) :: is_loose  !< loads that do not change with the factor drive the tips
@@ -74,7 +73,7 @@ contains
          end if
          call search%narrow(self)
          if (search%is_at_jump()) then
-            ! Where contact changes the intensity may jump past the toughness: just below that.
+            ! Where contact changes, K may jump past the toughness: take the load below the jump.
             if (self%largest_excess() > 0.0_rk) call self%respond(search%low%factor, timers, error)
             holds = .true.
             return
@@ -87,7 +86,7 @@ contains
       call raise_error(error, "", "no load was found at which the growing tips are in equilibrium")
    end subroutine balance_load
 
-   !> The load is at a factor, compared with the way from where the programme begins to a limit.
+   !> The present load factor equals another one, relative to the range of the programme.
    pure logical function is_at(self, factor, limit)
       class(loaded_body_t), intent(in) :: self
       real(rk), intent(in) :: factor, limit  !< [-]
@@ -95,8 +94,9 @@ contains
       is_at = abs(self%factor - factor) <= same_value*abs(limit - self%bounds(1))
    end function is_at
 
-   !> Tips exceed their toughness where the programme begins: either also where the load started,
-   !! and no factor holds them, or K rises towards both ends, and the load rises from there.
+   !> K_eq > K_IC at the beginning of the programme. If it is so at the load of the last accepted
+   !! state too, there is no equilibrium; otherwise K increases towards both ends, and the search
+   !! continues from there towards the limit.
    subroutine start_again(self, search, timers, is_loose, error)
       class(loaded_body_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -115,7 +115,7 @@ contains
       call self%respond(search%limit, timers, error)
    end subroutine start_again
 
-   !> The present load becomes an end of the bracket.
+   !> Make the present load an end of the bracket.
    subroutine narrow(self, body)
       class(search_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
@@ -129,7 +129,7 @@ contains
       end if
    end subroutine narrow
 
-   !> The bracket is as narrow as rounding lets it be: it holds a jump of the intensity.
+   !> The bracket is as narrow as rounding permits: it contains a jump of the intensity.
    pure logical function is_at_jump(self)
       class(search_t), intent(in) :: self
 
@@ -158,7 +158,7 @@ contains
       call body%respond(factor, timers, error)
    end subroutine step
 
-   !> The factor that is evaluated next, before it is limited [-].
+   !> Load factor of the next evaluation, before it is limited [-].
    real(rk) function next_factor(search, body, next, k) result(factor)
       type(search_t), intent(in) :: search
       class(loaded_body_t), intent(in) :: body
@@ -170,8 +170,8 @@ contains
                  high => search%high%factor)
          if (search%has_low .and. search%has_high) then
             factor = 0.5_rk*(low + high)
-            if (mod(k, 4) /= 0) factor = foreseen_onset(search%last, next, low, high, &
-                                                        body%scene%material%toughness)
+            if (mod(k, 4) /= 0) factor = predicted_onset(search%last, next, low, high, &
+                                                         body%scene%material%toughness)
          else if (k == 1) then
             factor = body%factor/(1.0_rk + max(-0.5_rk, body%largest_excess()))
          else if (k <= guesses) then
@@ -189,7 +189,8 @@ contains
       end associate
    end function next_factor
 
-   !> How many times the last change of the factor again, for the excess to vanish.
+   !> Next change of the load factor over the last one, by linear extrapolation of the excess to
+   !! zero [-].
    pure real(rk) function extrapolation(search, body, next)
       type(search_t), intent(in) :: search
       class(loaded_body_t), intent(in) :: body
@@ -206,21 +207,21 @@ contains
       end if
    end function extrapolation
 
-   !> A divisor.
+   !> The value, or the smallest number of its sign if it is zero, for use as a divisor.
    elemental real(rk) function nonzero(value)
       real(rk), intent(in) :: value
 
       nonzero = sign(max(abs(value), tiny(1.0_rk)), value)
    end function nonzero
 
-   !> The place between two limits, in either order, that is nearest to one.
-   pure real(rk) function within(place, a, b)
-      real(rk), intent(in) :: place, a, b
+   !> The value nearest to a given one between two limits in either order.
+   pure real(rk) function within(value, a, b)
+      real(rk), intent(in) :: value, a, b  !< [-]
 
-      within = min(max(place, min(a, b)), max(a, b))
+      within = min(max(value, min(a, b)), max(a, b))
    end function within
 
-   !> What tips that grow have: K_IC, or where nothing holds them the largest K_eq [Pa m^1/2].
+   !> K_eq of growing tips: K_IC, or without an equilibrium the largest K_eq [Pa m^1/2].
    pure real(rk) function needed_intensity(body)
       class(loaded_body_t), intent(in) :: body
 
@@ -230,10 +231,10 @@ contains
       end if
    end function needed_intensity
 
-   !> The largest K_eq is K_IC, and some of tips that have advanced lack more than the tolerance: a
-   !! load farther along the programme at which the one is too large and the others too small, all
-   !! within the tolerance, if there is one. Tips that hardly answer to the load would fix it by the
-   !! errors of their K.
+   !> Where the largest K_eq is K_IC but that of some advanced tips is too small by more than the
+   !! tolerance: change the load to one farther along the programme at which the first is too large
+   !! and the others too small, all within the tolerance, if there is one. Otherwise tips with a
+   !! small dK_eq/df would determine the load by the errors of their K.
    subroutine share_misfit(body, grown, limit, slope, timers, error)
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: grown(:)  !< tips that have advanced
@@ -241,7 +242,7 @@ contains
       real(rk), intent(in) :: slope(:)  !< (tips) dK_eq/df [Pa m^1/2]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: part_of = 0.9_rk  ! of the tolerance
+      real(rk), parameter :: part_of = 0.9_rk  ! fraction of the tolerance
       real(rk) :: above, allowed, factor, lack(size(grown)), rate(size(slope)), rise, way
 
       allowed = part_of*tolerance*body%rules%toughness

@@ -15,7 +15,7 @@ module mechanics_body
    use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
    use fine_tip_types, only: intensity_t
    use growth_network, only: end_pieces
-   use mechanics_faces, only: body_loads, face_conditions, given_slip, held_boundary
+   use mechanics_faces, only: body_loads, face_conditions, held_boundary, prescribe_slip
    use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
                            mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
@@ -28,7 +28,7 @@ module mechanics_body
 
    public :: body_spec, body_t
 
-   !> What is kept of the mesh before an increment of growth.
+   !> The mesh before an increment of growth.
    type :: before_t
       type(mesher_t) :: mesher
       type(fine_mesh_t) :: fine
@@ -42,16 +42,16 @@ module mechanics_body
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads  !< at the present load factor
       real(rk), allocatable :: displacement(:, :)  !< (2, nodes) [m]
-      type(contact_t) :: contact  !< on the fracture faces, with what they have slipped before
-      !> (tau n, start end mid, fracture cell) jump that the scene gives at load factor 1 [m]
+      type(contact_t) :: contact  !< contact of the fracture faces, with the accepted slip
+      !> (tau n, start end mid, fracture cell) prescribed jump at load factor 1 [m]
       real(rk), allocatable :: given_jump(:, :, :)
       type(intensity_t), allocatable :: intensity(:)  !< (free tips of the mesh)
-      type(tip_probe_t), allocatable :: probe(:)  !< (free tips of the mesh) what finds these
-      type(energy_error_t) :: estimate  !< of the error; on adaptive meshes only
-      real(rk) :: smallest_angle = 0.0_rk  !< of the mesh [rad]
+      type(tip_probe_t), allocatable :: probe(:)  !< (free tips of the mesh) evaluation of intensity
+      type(energy_error_t) :: estimate  !< estimated error; on adaptive meshes only
+      real(rk) :: smallest_angle = 0.0_rk  !< smallest angle of the mesh [rad]
       type(before_t) :: before
-      integer(ik) :: whole_meshes = 0  !< made of the whole body so far
-      integer(ik) :: patched_meshes = 0  !< meshed again around tips only
+      integer(ik) :: whole_meshes = 0  !< meshes of the whole body so far
+      integer(ik) :: patched_meshes = 0  !< meshes changed around tips only
    contains
       procedure :: build
       procedure :: remember
@@ -68,7 +68,7 @@ contains
    subroutine build(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
@@ -80,7 +80,7 @@ contains
       call set_up(self, scene, start, network, timers, error)
    end subroutine build
 
-   !> Keep the present mesh: growth starts from it, however often its direction is corrected.
+   !> Keep the present mesh, from which all meshes of the next increment are made.
    subroutine remember(self)
       class(body_t), intent(inout) :: self
 
@@ -89,12 +89,12 @@ contains
       self%before%contact = self%contact
    end subroutine remember
 
-   !> The body with fractures that have grown since `remember`: new around their ends, or as
-   !! a whole where that does not go, assembled and factorized. Contact is carried over.
+   !> Mesh the body with fractures that have grown since `remember`, around their ends only or, if
+   !! that fails, as a whole; assemble and factorize. Contact is transferred.
    subroutine grow(self, scene, start, network, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(error_t), allocatable :: no_patch
@@ -103,7 +103,7 @@ contains
 
       call timers%start(phase_remesh)
       radii = end_radii(scene, network)
-      if (scene%adaptive%enabled) then  ! rosettes are as small as the error has asked for
+      if (scene%adaptive%enabled) then  ! rosettes remain as small as the error required
          associate (fracture => self%before%fine%fracture)
             do tip = 1, fracture%n_tips
                associate (radius => radii(fracture%tip_end(tip), fracture%tip_fracture(tip)))
@@ -126,13 +126,12 @@ contains
       end if
    end subroutine grow
 
-   !> A mesh whose elements have the sizes that make the error of the present state, where they
-   !! lie, as small as the scene wants.
+   !> Mesh the body with element sizes for a given error of the present state.
    subroutine refine(self, scene, start, network, relative, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
-      real(rk), intent(in) :: relative  !< wanted error over the norm of the solution [-]
+      type(network_t), intent(in) :: start, network  !< initial and grown network
+      real(rk), intent(in) :: relative  !< target error over the norm of the solution [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
@@ -157,7 +156,7 @@ contains
       call set_up(self, scene, start, network, timers, error, fine_before, contact_before)
    end subroutine refine
 
-   !> Rosettes as much smaller as the error around the tips asks for.
+   !> Reduce the rosettes as the error around the tips requires.
    pure subroutine fit_rosettes(mesh, shrinkage, spec)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: shrinkage(:)  !< (n_tips) new radius over the present one [-]
@@ -173,8 +172,8 @@ contains
       end associate
    end subroutine fit_rosettes
 
-   !> Elements, contact, conditions and factors on the present mesh; contact is carried over from
-   !! another mesh if there is one.
+   !> Set up elements, contact, conditions and factors on the present mesh; contact is transferred
+   !! from a previous mesh if that is present.
    subroutine set_up(self, scene, start, network, timers, error, fine_before, contact_before)
       type(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -215,7 +214,7 @@ contains
             call timers%stop(phase_transfer)
          end if
          self%given_jump = 0.0_rk*self%contact%jump
-         call given_slip(scene, start, network, fine, self%given_jump)
+         call prescribe_slip(scene, start, network, fine, self%given_jump)
          call timers%start(phase_factorize)
          call self%model%prepare(face_conditions(scene, start, fine), error, &
                                  held_boundary(scene, fine))
@@ -232,7 +231,7 @@ contains
                                plane_stress=material%plane_stress)
    end function elasticity
 
-   !> The element around the tips by its name.
+   !> Number of the element around the tips from its name.
    pure integer(ik) function tip_element(name)
       character(len=*), intent(in) :: name
 
@@ -246,8 +245,8 @@ contains
       end select
    end function tip_element
 
-   !> Elements within reach of a point load: the size of elements far from fractures, which leaves
-   !! about one of them on each side of the load.
+   !> Elements near a point load, within the size of elements far from fractures: about one element
+   !! on each side of the load.
    pure function near_point_loads(scene, fine) result(is_near)
       type(scene_t), intent(in) :: scene
       type(fine_mesh_t), intent(in) :: fine
@@ -268,7 +267,7 @@ contains
       end do
    end function near_point_loads
 
-   !> Estimate the error of the present state, near point loads left out.
+   !> Estimate the error of the present state without the elements near point loads.
    subroutine estimate_body(self, scene, timers)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -282,7 +281,7 @@ contains
       call timers%stop(phase_remesh)
    end subroutine estimate_body
 
-   !> What to mesh.
+   !> Specification of the mesh of the body.
    pure function body_spec(scene, network) result(spec)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
@@ -304,9 +303,8 @@ contains
       end if
    end function body_spec
 
-   !> Radii of the rosettes at the starts and ends of the fractures, unless something is near [m].
-   !! Two elements fit on the last straight piece, for the domain of the interaction integral ends
-   !! at a kink.
+   !> Largest radii of the rosettes at the starts and ends of the fractures [m]. Two elements fit on
+   !! the last straight part, since the domain of the interaction integral ends at a kink.
    pure function end_radii(scene, network) result(radii)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
@@ -325,7 +323,7 @@ contains
       end do
    end function end_radii
 
-   !> A tip on or next to an interface has no intensities.
+   !> Refuse a tip on or next to an interface, which has no intensities.
    subroutine refuse_interface(self, scene, tip, error)
       type(body_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
@@ -338,7 +336,7 @@ contains
       call keep_off(self%mesh%xy(:, self%mesh%fracture%tip_node(tip)), scene, radius, error)
    end subroutine refuse_interface
 
-   !> Displacements, and stress intensity factors where the scene wants them, at a load factor.
+   !> Find displacements and, with intensities, stress intensity factors at a load factor.
    subroutine respond(self, scene, factor, timers, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -365,7 +363,7 @@ contains
       call timers%stop(phase_tips)
    end subroutine respond
 
-   !> What finds the intensities of the tips of the mesh.
+   !> Prepare the evaluation of the intensities of the tips of the mesh.
    subroutine find_probes(self, scene, error)
       class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -381,7 +379,7 @@ contains
       self%probe = probe
    end subroutine find_probes
 
-   !> Errors of the intensities from that of the whole solution, where no faces touch.
+   !> Estimate the errors of the intensities from that of the whole solution, if no faces touch.
    subroutine correct_intensities(self, timers, error)
       class(body_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers

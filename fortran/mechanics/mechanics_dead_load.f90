@@ -1,6 +1,6 @@
-!> Unstable growth: under a dead load where the longer network would bear less, and under any load
-!! where no load factor keeps the tips in equilibrium. The path consists of networks in equilibrium,
-!! all at the load at which the growth began, until they bear that load again.
+!> Unstable growth: under a dead load if the equilibrium load of the longer network is smaller, and
+!! under any load if no load factor gives an equilibrium. The path consists of networks in
+!! equilibrium at smaller loads, and the load stays until a network is in equilibrium at it again.
 module mechanics_dead_load
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -16,24 +16,25 @@ module mechanics_dead_load
 
    !> The load, and the unstable growth at it.
    type :: dead_load_t
-      real(rk), private :: factor = 0.0_rk  !< before the increment [-]
-      real(rk), private :: borne = 0.0_rk  !< what the network before the increment bears [-]
+      real(rk), private :: factor = 0.0_rk  !< load factor before the increment [-]
+      !> equilibrium load of the network before the increment [-]
+      real(rk), private :: borne = 0.0_rk
       logical, private :: is_unstable = .false.
-      real(rk), private :: length = 0.0_rk  !< of growth since it began [m]
-      real(rk), private :: released = 0.0_rk  !< energy beyond that of new faces since then [J/m]
-      character(len=:), allocatable, private :: end  !< what is to be told of it once accepted
-      real(rk), private :: end_factor = 0.0_rk  !< where that was [-]
-      real(rk), allocatable, private :: energy(:)  !< G of the tips before the increment [J/m2]
+      real(rk), private :: length = 0.0_rk  !< growth since its beginning [m]
+      real(rk), private :: released = 0.0_rk  !< released energy less that of new faces [J/m]
+      character(len=:), allocatable, private :: end  !< event to be added once the state is accepted
+      real(rk), private :: end_factor = 0.0_rk  !< load factor of that event [-]
+      real(rk), allocatable, private :: energy(:)  !< (tips) G before the increment [J/m2]
    contains
       procedure :: begin_increment
       procedure :: end_increment
-      procedure :: tell
+      procedure :: note_end
       procedure :: stop_growth
    end type dead_load_t
 
 contains
 
-   !> Remember the state from which tips grow.
+   !> Keep the state from which tips grow.
    subroutine begin_increment(self, body)
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
@@ -43,8 +44,8 @@ contains
       self%energy = body%tip%drive%energy
    end subroutine begin_increment
 
-   !> The tips have grown, at the load that they bear now: where it is less than before, and does
-   !! not fall, the state is that at the load before.
+   !> After an increment, which ends at the equilibrium load: if that is smaller than before and the
+   !! load does not fall, evaluate the state at the load before the increment.
    subroutine end_increment(self, body, increment, timers, error)
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -69,8 +70,7 @@ contains
             if (allocated(error)) return
             call add_growth(self, body, 1.0_rk)
          else if (self%is_unstable) then
-            ! The network bears the load at some place of this increment, where G is that of new
-            ! faces.
+            ! The equilibrium load reaches the load within this increment.
             share = 1.0_rk
             if (abs(borne - self%factor) > 0.0_rk) share = (self%factor - self%borne) &
                                                            /(borne - self%borne)
@@ -83,8 +83,8 @@ contains
       end associate
    end subroutine end_increment
 
-   !> What the tips have gained in an increment, or the share of it up to their arrest, where they
-   !! have just the energy that new faces need.
+   !> Add the growth and released energy of an increment, or of the part of it up to the arrest of
+   !! the tips, at which G is the energy of new faces.
    pure subroutine add_growth(self, body, share)
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
@@ -106,17 +106,17 @@ contains
       self%released = self%released + share*dot_product(surplus, body%tip%advance)
    end subroutine add_growth
 
-   !> Where unstable growth has ended in the increment that led to the accepted state, say so.
-   subroutine tell(self, body)
+   !> Add the event of unstable growth that has ended in the increment before the accepted state.
+   subroutine note_end(self, body)
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
 
       if (.not. allocated(self%end)) return
       call body%chronicle%add_event(self%end_factor, event_unstable, self%end)
       deallocate (self%end)
-   end subroutine tell
+   end subroutine note_end
 
-   !> The scene is over: unstable growth ends with it.
+   !> End unstable growth with the run.
    subroutine stop_growth(self, body)
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -128,6 +128,7 @@ contains
       self%is_unstable = .false.
    end subroutine stop_growth
 
+   !> Length and released energy of unstable growth, in words.
    pure function words(self)
       type(dead_load_t), intent(in) :: self
       character(len=:), allocatable :: words

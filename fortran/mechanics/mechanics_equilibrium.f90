@@ -21,51 +21,53 @@ module mechanics_equilibrium
 
    public :: increment_t
 
-   !> How far along its new piece a tip is set back to see how the intensities depend on its place.
+   !> Fraction of its new path segment by which a tip is set back to find the dependence of the
+   !! intensities on its advance [-].
    real(rk), parameter :: probe = 0.4_rk
 
-   !> A misfit beyond the errors of the intensities and of their slopes: no equilibrium was found.
+   !> Smallest 1 - K_eq/K_IC at which no equilibrium was found; the errors of the intensities and of
+   !! their slopes are below it [-].
    real(rk), parameter :: far_off = 0.05_rk
 
-   !> What has been learnt about competing tips holds for so many increments.
-   real(rk), parameter :: learnt_for = 8.0_rk
+   !> Growth after which the matrix of tip interaction is computed again [increments].
+   real(rk), parameter :: valid_for = 8.0_rk
 
-   !> One increment of growth, and what the next one can use of it.
+   !> One increment of growth, and the results of it that the next one uses.
    type :: increment_t
       logical :: has_grown = .false.
-      logical :: holds = .false.  !< tips are at their toughness still, at the present load
-      logical :: is_loose = .false.  !< no load factor holds them: K_eq > K_IC
-      logical :: prefers_one = .false.  !< that one of the tips grow alone, in this group
-      real(rk) :: preference = 0.0_rk  !< that of the group, per increment, over K_IC [-]
+      logical :: holds = .false.  !< K_eq = K_IC at the present load
+      logical :: is_loose = .false.  !< K_eq > K_IC at every load factor
+      logical :: prefers_one = .false.  !< growth of one tip of the group alone is stable
+      real(rk) :: preference = 0.0_rk  !< gain of K_eq of a leading tip per increment, over K_IC [-]
       real(rk) :: misfit = 0.0_rk  !< largest 1 - K_eq/K_IC of a tip that has advanced [-]
-      real(rk) :: advance_sum = 0.0_rk  !< of all tips [m]
+      real(rk) :: advance_sum = 0.0_rk  !< sum of the advances of all tips [m]
       type(tries_t), private :: tries
       integer(ik), allocatable :: group(:)  !< tips that were at their toughness together
-      ! What the matrix of growth_competition was found for, and since when.
+      ! The matrix of tip interaction and the state for which it was computed.
       integer(ik), allocatable, private :: known_group(:)
       real(rk), allocatable, private :: matrix(:, :)  !< dK_i/da_j [Pa m^-1/2]
-      real(rk), private :: known_since = 0.0_rk  !< increments ago
-      real(rk), private :: started = 0.0_rk  !< load factor of the state before [-]
-      logical, private :: was_loose = .false.  !< growth to that state was
-      real(rk), allocatable, private :: pace(:)  !< (tips) the last advance over the largest [-]
+      real(rk), private :: known_since = 0.0_rk  !< growth since then [increments]
+      real(rk), private :: started = 0.0_rk  !< load factor of the state before the increment [-]
+      logical, private :: was_loose = .false.  !< is_loose of the previous increment
+      real(rk), allocatable, private :: pace(:)  !< (tips) previous advance over the largest [-]
    contains
       procedure :: take
       procedure :: end_paths
    end type increment_t
 
-   !> The advances of a group of tips that are being looked for.
+   !> Search for the advances of a group of tips.
    type :: group_search_t
-      integer(ik), allocatable :: tip(:)
-      integer(ik), allocatable :: kind(:)  !< of each, from 1: those of one go equally far
-      type(tip_t), allocatable :: begun(:)  !< all tips, at the ends of new segments
-      logical :: is_placed = .false.  !< there they have been evaluated
-      real(rk), allocatable :: room(:)  !< of each, to the end of its segment [m]
-      real(rk), allocatable :: advance(:)  !< of each [m]
-      real(rk) :: share = 1.0_rk  !< of the advances, to the limit of the load [-]
-      real(rk), allocatable :: lack(:)  !< of each, K_IC - K_eq [Pa m^1/2]
+      integer(ik), allocatable :: tip(:)  !< tips of the group
+      integer(ik), allocatable :: tip_group(:)  !< (tip) tip group of equal advances, from 1
+      type(tip_t), allocatable :: begun(:)  !< (all tips) tips at the ends of new segments
+      logical :: is_placed = .false.  !< the tips have been evaluated there
+      real(rk), allocatable :: remaining(:)  !< (tip) distance to the end of its segment [m]
+      real(rk), allocatable :: advance(:)  !< (tip) [m]
+      real(rk) :: share = 1.0_rk  !< fraction of the advances that the load limit permits [-]
+      real(rk), allocatable :: lack(:)  !< (tip) K_IC - K_eq [Pa m^1/2]
       real(rk), allocatable :: slope(:)  !< (all tips) dK_eq/df [Pa m^1/2]
-      real(rk), allocatable :: placed(:)  !< advance of the last evaluation [m]
-      real(rk), allocatable :: intensity(:)  !< K_eq then [Pa m^1/2]
+      real(rk), allocatable :: placed(:)  !< (tip) advance in the last evaluation [m]
+      real(rk), allocatable :: intensity(:)  !< (tip) K_eq in the last evaluation [Pa m^1/2]
       type(length_control_t) :: control
    contains
       procedure :: misses
@@ -73,8 +75,8 @@ module mechanics_equilibrium
 
 contains
 
-   !> Grow by one increment, from a state whose tips have been evaluated. Where the tips need more
-   !! than the limit of the load they go as far as that drives them.
+   !> Grow by one increment, from a state whose tips have been evaluated. If the full increment
+   !! needs more than the limit of the load, the tips advance as far as that load drives them.
    subroutine take(self, body, limit, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -93,10 +95,10 @@ contains
       self%started = body%factor
       self%was_loose = self%is_loose
       self%has_grown = .false.
-      ! What does not come to an equilibrium may do so with shorter pieces.
+      ! Shorter path segments may lead to an equilibrium where longer ones do not.
       do cut = 0, most_cuts
-         self%tries%piece = body%rules%increment/2.0_rk**cut
-         call try_pieces(self, body, limit, group, timers, error)
+         self%tries%longest = body%rules%increment/2.0_rk**cut
+         call try_segments(self, body, limit, group, timers, error)
          if (allocated(error) .or. self%misfit <= far_off) exit
       end do
       body%is_trying = .false.
@@ -113,7 +115,7 @@ contains
       end if
    end subroutine take
 
-   !> Tips that have not come to the ends of their pieces need not go on straight.
+   !> End all path segments: tips need not continue straight.
    pure subroutine end_paths(self)
       class(increment_t), intent(inout) :: self
 
@@ -121,45 +123,45 @@ contains
       if (allocated(self%known_group)) deallocate (self%known_group)
    end subroutine end_paths
 
-   !> Let the tips at their toughness go along pieces of the present length.
-   subroutine try_pieces(self, body, limit, group, timers, error)
+   !> Let the tips with K_eq = K_IC advance along path segments of the present length.
+   subroutine try_segments(self, body, limit, group, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       real(rk), intent(in) :: limit  !< the largest load factor [-]
-      integer(ik), allocatable, intent(out) :: group(:)  !< tips that have
+      integer(ik), allocatable, intent(out) :: group(:)  !< tips that have advanced
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: attempt, attempts
       logical :: has_joined, is_done
 
       self%misfit = 0.0_rk
-      call self%tries%find_alike(body)
+      call self%tries%find_tip_groups(body)
       call self%tries%go_back(body)
-      group = self%tries%with_their_like(leading_tips(body, together))
+      group = self%tries%with_tip_groups(leading_tips(body, together))
       attempts = 3_ik*size(body%tip, kind=ik)
       do attempt = 1, attempts
          is_done = .false.
          call self%tries%go_back(body)
          if (size(group) == 0) exit
-         call self%tries%begin_pieces(body, group, timers, error)
+         call self%tries%begin_segments(body, group, timers, error)
          if (allocated(error)) exit
          has_joined = any(body%tip(group)%joined)
          if (has_joined .and. .not. all(body%tip(group)%joined)) then
-            group = pack(group, body%tip(group)%joined)  ! these leap, the others wait
+            group = pack(group, body%tip(group)%joined)  ! these join first
             cycle
          else if (.not. all(self%tries%segment(group)%is_open)) then
-            ! Something has come to a tip: there it ends.
+            ! Another tip has joined this one, which is no tip any more.
             body%tip(pack(group,.not. self%tries%segment(group)%is_open))%arrested = .true.
             self%tries%tip_before%arrested = self%tries%tip_before%arrested .or. body%tip%arrested
             group = pack(group, self%tries%segment(group)%is_open)
             cycle
          end if
          if (has_joined) then
-            call settle_load(self, body, limit, timers, error)
+            call find_load(self, body, limit, timers, error)
             is_done = .true.
          else if (is_driven(self, body, group)) then
             call run_loosely(self%tries, body, group, timers, error)
-            if (.not. allocated(error)) call settle_load(self, body, limit, timers, error)
+            if (.not. allocated(error)) call find_load(self, body, limit, timers, error)
             self%misfit = 1.0_rk - maxval(body%tip(group)%drive%intensity)/body%rules%toughness
             is_done = .true.
          else
@@ -168,10 +170,10 @@ contains
          end if
          if (allocated(error) .or. is_done) exit
       end do
-   end subroutine try_pieces
+   end subroutine try_segments
 
-   !> The load at the present network. Where it has no need to fall, as after a joint, it stays.
-   subroutine settle_load(self, body, limit, timers, error)
+   !> Find the load of the present network. It stays where K_eq < K_IC, as after a joint.
+   subroutine find_load(self, body, limit, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       real(rk), intent(in) :: limit  !< the largest load factor [-]
@@ -184,9 +186,9 @@ contains
       if (.not. body%largest_excess() >= 0.0_rk) return
       call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, slope, &
                         error)
-   end subroutine settle_load
+   end subroutine find_load
 
-   !> How far the tips of a group go. Not done: another group has to be tried.
+   !> Find the advances of the tips of a group.
    subroutine find_advances(self, body, limit, is_last, group, timers, is_done, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -194,7 +196,7 @@ contains
       logical, intent(in) :: is_last  !< no other group is tried
       integer(ik), allocatable, intent(inout) :: group(:)  !< tips
       type(timers_t), intent(inout) :: timers
-      logical, intent(out) :: is_done
+      logical, intent(out) :: is_done  !< .false.: the reduced group has to be tried
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: tries = 15
       type(group_search_t) :: search
@@ -208,7 +210,7 @@ contains
          call probe_group(self, body, search, limit, timers, error)
          if (allocated(error)) return
          if (.not. self%prefers_one .and. search%misses(body)) then
-            search%advance = search%room
+            search%advance = search%remaining
             call correct(self, body, search, has_moved)
          end if
       end if
@@ -226,7 +228,7 @@ contains
             call judge_group(self, body, search, group)
             if (size(group) /= size(search%tip)) return
          end if
-         associate (lack => means(search%kind, search%lack))
+         associate (lack => means(search%tip_group, search%lack))
             if (maxval(merge(lack, 0.0_rk, search%advance > 0.0_rk)) &
                 <= tolerance*body%rules%toughness) exit
             if (self%prefers_one .and. .not. is_last) then
@@ -243,7 +245,7 @@ contains
       call self%tries%keep_paths(body, group, search%share*search%advance)
    end subroutine find_advances
 
-   !> Begin with advances in proportion to the last ones; one tip goes to the end of its segment.
+   !> Begin with advances proportional to the previous ones; one tip reaches the end of its segment.
    subroutine begin_search(self, body, group, search)
       class(increment_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
@@ -251,42 +253,43 @@ contains
       type(group_search_t), intent(out) :: search
 
       search%tip = group
-      search%kind = numbered(self%tries%alike(group))
+      search%tip_group = numbered(self%tries%tip_group(group))
       search%begun = body%tip
-      search%room = self%tries%rooms(group)
+      search%remaining = self%tries%remaining_lengths(group)
       search%is_placed = all(.not. self%tries%segment_before(group)%is_open)
       search%advance = fitted(merge(self%pace(group), 1.0_rk, self%pace(group) > 0.0_rk), &
-                              search%room, self%tries%segment(group)%accepted, &
+                              search%remaining, self%tries%segment(group)%accepted, &
                               least*body%rules%increment)
       allocate (search%slope(size(body%tip)))
    end subroutine begin_search
 
-   !> Some tips of a group need more than the tolerance to be at their toughness.
+   !> K_IC - K_eq of a tip of the group exceeds the tolerance.
    pure logical function misses(self, body)
       class(group_search_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
 
-      misses = maxval(means(self%kind, self%lack)) > tolerance*body%rules%toughness
+      misses = maxval(means(self%tip_group, self%lack)) > tolerance*body%rules%toughness
    end function misses
 
    !> Evaluate the tips at their advances, and balance the load.
-   subroutine respond(self, body, search, limit, learns, timers, error)
+   subroutine respond(self, body, search, limit, updates_matrix, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       type(group_search_t), intent(inout) :: search
       real(rk), intent(in) :: limit  !< the largest load factor [-]
-      logical, intent(in) :: learns  !< the matrix is updated, at the load of the last evaluation
+      !> the matrix is updated, at the load of the last evaluation
+      logical, intent(in) :: updates_matrix
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       associate (group => search%tip)
-         if (.not. (search%is_placed .and. all(search%advance >= search%room))) then
+         if (.not. (search%is_placed .and. all(search%advance >= search%remaining))) then
             call self%tries%place(body, group, search%share*search%advance, search%begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
          end if
          search%is_placed = .false.
-         if (learns .and. size(group) > 1) then
+         if (updates_matrix .and. size(group) > 1) then
             call learn_from_trial(self%matrix, search%share*search%advance - search%placed, &
                                   body%tip(group)%drive%intensity - search%intensity)
          end if
@@ -302,8 +305,8 @@ contains
       end associate
    end subroutine respond
 
-   !> The limit of the load does not drive the tips so far: their advances are bisected, unless one
-   !! is nearly at its toughness or they are too short for the mesh.
+   !> Halve the advances, since the limit of the load does not drive the tips so far, unless K_eq of
+   !! a tip is nearly K_IC or the advances are too short for the mesh.
    pure subroutine reduce_share(body, search, is_over)
       class(loaded_body_t), intent(in) :: body
       type(group_search_t), intent(inout) :: search
@@ -315,8 +318,8 @@ contains
       is_over = search%share*maxval(search%advance) < least*body%rules%increment
    end subroutine reduce_share
 
-   !> If all tips of a group are below their toughness, another one is ahead of them and joins the
-   !! group. Tips that differ from the others of their kind are a kind of their own.
+   !> If K_eq < K_IC for all tips of a group, the tips with the largest K_eq join the group. Tips
+   !! that differ from the others of their tip group form groups of their own.
    subroutine judge_group(self, body, search, group)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
@@ -325,17 +328,18 @@ contains
       logical :: differs(size(search%lack))
 
       if (minval(search%lack) > tolerance*body%rules%toughness) then
-         group = joined_groups(group, self%tries%with_their_like(leading_tips(body, together)))
+         group = joined_groups(group, self%tries%with_tip_groups(leading_tips(body, together)))
          return
       end if
-      differs = abs(search%lack - means(search%kind, search%lack)) > tolerance*body%rules%toughness
+      differs = abs(search%lack - means(search%tip_group, search%lack)) &
+                > tolerance*body%rules%toughness
       if (.not. any(differs)) return
-      call self%tries%part(group, differs)
-      search%kind = numbered(self%tries%alike(group))
+      call self%tries%split_groups(group, differs)
+      search%tip_group = numbered(self%tries%tip_group(group))
       search%control = length_control_t()
    end subroutine judge_group
 
-   !> What has been found for a group holds for it still.
+   !> The matrix of tip interaction is that of this group and still valid.
    pure logical function knows(self, group)
       class(increment_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tips
@@ -343,11 +347,11 @@ contains
       knows = .false.
       if (.not. allocated(self%known_group)) return
       if (size(group) /= size(self%known_group)) return
-      knows = all(group == self%known_group) .and. self%known_since < learnt_for
+      knows = all(group == self%known_group) .and. self%known_since < valid_for
    end function knows
 
-   !> How the intensities of a group depend on the places of its tips: from the ends of their
-   !! segments one after the other is set back.
+   !> Find the matrix of tip interaction of a group, dK_i/da_j: from the ends of the segments one
+   !! tip after the other is set back.
    subroutine probe_group(self, body, search, limit, timers, error)
       class(increment_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -358,9 +362,9 @@ contains
       real(rk) :: advance(size(search%tip)), intensity(size(search%tip))
       integer :: j
 
-      associate (group => search%tip, room => search%room, kind => search%kind)
+      associate (group => search%tip, remaining => search%remaining, tip_group => search%tip_group)
          if (.not. search%is_placed) then
-            call self%tries%place(body, group, room, search%begun)
+            call self%tries%place(body, group, remaining, search%begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
          end if
@@ -375,45 +379,45 @@ contains
          if (allocated(self%matrix)) deallocate (self%matrix)
          allocate (self%matrix(size(group), size(group)))
          do j = 1, size(group)
-            advance = room
-            advance(j) = (1.0_rk - probe)*room(j)
+            advance = remaining
+            advance(j) = (1.0_rk - probe)*remaining(j)
             call self%tries%place(body, group, advance, search%begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
-            self%matrix(:, j) = (intensity - body%tip(group)%drive%intensity)/(probe*room(j))
+            self%matrix(:, j) = (intensity - body%tip(group)%drive%intensity)/(probe*remaining(j))
          end do
          self%preference = preference(self%matrix, search%slope(group))*body%rules%increment &
                            /body%rules%toughness
-         ! No kind of tips grows along with another where the error of the intensities decides.
-         self%prefers_one = preference(matrix_of_kinds(kind, self%matrix), &
-                                       of_kinds(kind, means(kind, search%slope(group)))) &
+         ! Tip groups do not grow together where the difference is within the error of K.
+         self%prefers_one = preference(matrix_of_kinds(tip_group, self%matrix), &
+                                       of_kinds(tip_group, means(tip_group, search%slope(group)))) &
                             *body%rules%increment > -2.0_rk*together*body%rules%toughness
       end associate
    end subroutine probe_group
 
-   !> Better advances, with which one of the tips comes to the end of its segment.
+   !> Improve the advances; one of the tips reaches the end of its segment.
    subroutine correct(self, body, search, has_moved)
       class(increment_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
       type(group_search_t), intent(inout) :: search
       logical, intent(out) :: has_moved
-      real(rk) :: advance(maxval(search%kind))
+      real(rk), dimension(maxval(search%tip_group)) :: advance, excess, shortest, slope
 
-      associate (needed => needed_intensity(body), kind => search%kind, &
+      associate (needed => needed_intensity(body), tip_group => search%tip_group, &
                  accepted => self%tries%segment(search%tip)%accepted)
-         advance = of_kinds(kind, search%advance)
-         call search%control%improve(of_kinds(kind, means(kind, -search%lack))/needed, &
-                                     matrix_of_kinds(kind, self%matrix)/needed, &
-                                     of_kinds(kind, means(kind, search%slope(search%tip))) &
-                                     /needed, of_kinds(kind, search%room), &
-                                     of_kinds(kind, max(0.0_rk, least*body%rules%increment &
-                                                        - accepted)), &
+         advance = of_kinds(tip_group, search%advance)
+         excess = of_kinds(tip_group, means(tip_group, -search%lack))/needed
+         slope = of_kinds(tip_group, means(tip_group, search%slope(search%tip)))/needed
+         shortest = of_kinds(tip_group, max(0.0_rk, least*body%rules%increment - accepted))
+         call search%control%improve(excess, matrix_of_kinds(tip_group, self%matrix)/needed, &
+                                     slope, of_kinds(tip_group, search%remaining), shortest, &
                                      tolerance, advance, has_moved)
-         search%advance = advance(kind)
+         search%advance = advance(tip_group)
       end associate
    end subroutine correct
 
-   !> No load held the tips of a group in the state before. A dead load has not tried to.
+   !> K_eq exceeded K_IC in the previous state at every load, so that the tips advance without an
+   !! equilibrium. Under a dead load no other load has been tried.
    pure logical function is_driven(self, body, group)
       class(increment_t), intent(in) :: self
       class(loaded_body_t), intent(in) :: body
@@ -424,7 +428,7 @@ contains
                   > (1.0_rk + tolerance)*body%rules%toughness
    end function is_driven
 
-   !> The tips whose K_eq lacks at most a share of the largest.
+   !> Tips whose K_eq is at least (1 - share) times the largest.
    pure function leading_tips(body, share) result(group)
       class(loaded_body_t), intent(in) :: body
       real(rk), intent(in) :: share  !< [-]

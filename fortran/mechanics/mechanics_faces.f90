@@ -1,12 +1,10 @@
-!> Conditions on the fracture faces of the body: the contact law of each cell, and the prescribed
-!! slip.
+!> Conditions of the body from the scene: the contact law and prescribed slip of the fracture faces,
+!! and supports and loads: prescribed displacements, tractions, forces, gravity and the stress in
+!! situ.
 !!
-!! New faces, which growth has made, have the contact law of their fracture. Next to a prescribed
-!! slip, which is defined for the initial fracture, they touch without friction, and they may open
-!! even if the fracture is held closed. A pressure on the faces acts on all of them.
-!!
-!! Supports and loads of the body from the scene: prescribed displacements, tractions, forces,
-!! gravity and the stress in situ.
+!! New faces, due to growth, have the contact law of their fracture. Next to a prescribed slip,
+!! which is defined for the initial fracture, they touch without friction, and they may open even if
+!! the fracture is held closed. A pressure on the faces acts on all of them.
 module mechanics_faces
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
@@ -24,7 +22,7 @@ module mechanics_faces
    implicit none(type, external)
    private
 
-   public :: body_loads, face_conditions, given_slip, held_boundary
+   public :: body_loads, face_conditions, prescribe_slip, held_boundary
 
 contains
 
@@ -60,7 +58,7 @@ contains
       pressure = scene%fractures(fine%fracture%cell_fracture(:fine%fracture%n_cells))%face_pressure
    end function face_pressure
 
-   !> A cell belongs to the fracture as it was at the start.
+   !> A cell belongs to the initial fracture.
    pure logical function was_there(start, f, s)
       type(network_t), intent(in) :: start
       integer(ik), intent(in) :: f
@@ -71,11 +69,10 @@ contains
       end associate
    end function was_there
 
-   !> The slip that the scene gives to the nodes of fracture cells at load factor 1, in `jump` (tau
-   !! n, start end mid, fracture cell) [m].
-   pure subroutine given_slip(scene, start, network, fine, jump)
+   !> Set the prescribed slip of the nodes of fracture cells at load factor 1.
+   pure subroutine prescribe_slip(scene, start, network, fine, jump)
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network  !< of the scene, and as it has grown
+      type(network_t), intent(in) :: start, network  !< initial and grown network
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(inout) :: jump(:, :, :)  !< (tau n, start end mid, fracture cells) [m]
       logical :: is_free(2)
@@ -96,11 +93,11 @@ contains
          end do
       end do
       call turn_at_kinks(scene, start, fine, jump)
-   end subroutine given_slip
+   end subroutine prescribe_slip
 
-   !> Where a given slip d leads into a wing, the node of both has the mean of their directions as
-   !! its tangent (fine_faces): along it goes the part of d that points that way; what is across,
-   !! the opening of the wing's mouth, is left to contact.
+   !> Where a prescribed slip d meets a wing, the common node has the mean of both directions as its
+   !! tangent (fine_faces): prescribed is the component of d along it. The component across, an
+   !! opening of the wing, follows from contact.
    pure subroutine turn_at_kinks(scene, start, fine, jump)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start
@@ -127,8 +124,8 @@ contains
       end do
    end subroutine turn_at_kinks
 
-   !> The slip at an arc length for load factor 1 [m]. Next to an end from which nothing has grown
-   !! it rises as a quarter of an ellipse; an end that leads into a wing slips like the middle.
+   !> Prescribed slip at an arc length for load factor 1 [m]. It increases from an end without
+   !! growth as a quarter of an ellipse; an end with a wing slips like the middle.
    pure real(rk) function tapered_slip(fracture, length, is_free, s) result(slip)
       type(fracture_t), intent(in) :: fracture
       real(rk), intent(in) :: length  !< [m]
@@ -145,7 +142,7 @@ contains
       end do
    end function tapered_slip
 
-   !> Which displacements are given, and what stands on springs.
+   !> Prescribed displacements and springs.
    pure function held_boundary(scene, fine) result(boundary)
       type(scene_t), intent(in) :: scene
       type(fine_mesh_t), intent(in) :: fine
@@ -221,7 +218,7 @@ contains
       end do
    end function body_loads
 
-   !> The stress in situ, and the tractions on the outer boundary that hold it in equilibrium.
+   !> Add the stress in situ, and the tractions on the outer boundary that balance it.
    pure subroutine add_in_situ(in_situ, fine, loads)
       type(in_situ_t), intent(in) :: in_situ
       type(fine_mesh_t), intent(in) :: fine

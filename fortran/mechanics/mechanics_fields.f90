@@ -101,7 +101,7 @@ contains
       lambda = reference_place([third, third, third], body%model%mesh%tip_corner(cell))
    end function middle_of
 
-   !> Reference coordinates from those in space: a quarter-point element maps 1 - lambda of the
+   !> Reference coordinates from area coordinates: a quarter-point element maps 1 - lambda of the
    !! tip's corner to its square.
    pure function reference_place(area_coordinates, tip_corner) result(lambda)
       real(rk), intent(in) :: area_coordinates(3)  !< [-]
@@ -116,7 +116,7 @@ contains
       lambda(tip_corner) = 1.0_rk - t
    end function reference_place
 
-   !> Stress, the one in situ included: xx, yy, xy [Pa].
+   !> Stress with that in situ: xx, yy, xy [Pa].
    pure function stress_at(body, cell, lambda, area_coordinates) result(stress)
       type(body_t), intent(in) :: body
       integer(ik), intent(in) :: cell

@@ -1,6 +1,5 @@
-!> Output of the state of a loaded body: the row of the history, fields, probes.
-!!
-!! Quantities that the limits of a run check in a body without fluid (report_limits).
+!> Output of the state of a loaded body: the row of the history, fields, probes; and the quantities
+!! checked by the limits of a run without a fluid (report_limits).
 module mechanics_results
    use base_errors, only: error_t
    use base_kinds, only: degrees, ik, rk
@@ -55,14 +54,14 @@ contains
       end associate
    end function history_of_body
 
-   !> Whether the faces of a fracture can touch; else they are open from the start.
+   !> The faces of a fracture can touch; otherwise they are open from the start.
    elemental logical function touches(fracture)
       type(fracture_t), intent(in) :: fracture
 
       touches = fracture%law /= "open"
    end function touches
 
-   !> Displacement, stress, and what the fracture faces do.
+   !> Displacement, stress, and the jumps and tractions of the fracture faces.
    function body_snapshot(simulation) result(snapshot)
       class(loaded_body_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
@@ -110,7 +109,7 @@ contains
       end do
    end subroutine probes_of_body
 
-   !> Take note of a state in equilibrium, before it is accepted.
+   !> Check the limits of the run in a state of equilibrium, before it is accepted.
    subroutine watch_body(self)
       class(loaded_body_t), intent(inout) :: self
       character(len=:), allocatable :: when

@@ -1,26 +1,26 @@
-!> The load changes to each onset of growth, up or down, and never exceeds it.
+!> Changes of the load up to the next onset of growth, which is not passed.
 !!
-!! Loads that change direction: where slip is locked in, K_eq need not rise over a whole part of the
-!! load programme. It may fall at first, from the toughness that the tips have reached, and it may
-!! have its largest value within the part, where faces begin to slip back.
+!! Loads that change direction: with locked-in slip K_eq need not increase over a whole part of the
+!! load programme. It may decrease at first, from K_IC, and its largest value may be within the
+!! part, where faces begin to slip back.
 module mechanics_rise
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use base_tolerances, only: same_value
    use mechanics_balance, only: at_jump
-   use mechanics_programme, only: foreseen_onset, reading_t, strongest
+   use mechanics_programme, only: predicted_onset, reading_t, strongest
    use mechanics_state, only: loaded_body_t
    implicit none(type, external)
    private
 
    public :: go_to_peak, rise
 
-   integer(ik), parameter :: places = 8  !< on the way, at which the intensities are looked at
+   integer(ik), parameter :: places = 8  !< number of loads at which a part is evaluated
 
 contains
 
-   !> Take the load up or down to a factor, or to the onset of growth if that comes first.
+   !> Change the load up or down to a factor, or to the onset of growth if that is nearer.
    !!
    !! Without contact the intensities are linear in the factor. The equivalent intensity, the
    !! largest over all angles of linear functions, is then convex: where it is below the toughness
@@ -80,8 +80,8 @@ contains
       call find_onset(self, low, high, timers, error)
    end subroutine rise
 
-   !> Take the load back from a target, where no tip grows, to where one does since K_eq is largest
-   !! on the way; if there is such a place.
+   !> Look for an onset of growth between two loads at which K_eq < K_IC: at the largest K_eq.
+   !! Without one the load is the target.
    subroutine look_between(self, begun, target, timers, error)
       class(loaded_body_t), intent(inout) :: self
       real(rk), intent(in) :: begun, target  !< factors [-]
@@ -94,7 +94,7 @@ contains
       if (self%largest_excess() < -same_value) call self%respond(target, timers, error)
    end subroutine look_between
 
-   !> The load between one at which no tip grows and one at which some do, the present one.
+   !> Find the onset between a load at which K_eq < K_IC and the present one, at which K_eq > K_IC.
    subroutine find_onset(self, low, high, timers, error)
       class(loaded_body_t), intent(inout) :: self
       type(reading_t), intent(inout) :: low, high
@@ -112,10 +112,10 @@ contains
          if (abs(self%largest_excess()) <= same_value) return
          width(k) = abs(high%factor - low%factor)
          if (k > 3 .and. width(k) > 0.5_rk*width(max(k - 3, 0))) then
-            next%factor = 0.5_rk*(low%factor + high%factor)  ! the lines lead nowhere
+            next%factor = 0.5_rk*(low%factor + high%factor)  ! extrapolation does not converge
          else
-            next%factor = foreseen_onset(last, next, low%factor, high%factor, &
-                                         self%scene%material%toughness)
+            next%factor = predicted_onset(last, next, low%factor, high%factor, &
+                                          self%scene%material%toughness)
          end if
          last = self%reading()
          call self%respond(next%factor, timers, error)
@@ -135,8 +135,8 @@ contains
       call raise_error(error, "", "the load of the next onset of growth was not found")
    end subroutine find_onset
 
-   !> The onset where all loads change in proportion: until contact changes, or locked-in slip is
-   !! left, the intensities do so too. The present factor where that says nothing.
+   !> Load factor of the onset if all loads and intensities are proportional to it: until contact
+   !! changes, and without locked-in slip. The present factor if they are not.
    pure real(rk) function proportional_onset(self) result(onset)
       class(loaded_body_t), intent(in) :: self
 
@@ -148,15 +148,15 @@ contains
       if (self%largest_excess() > -1.0_rk) onset = self%factor/(1.0_rk + self%largest_excess())
    end function proportional_onset
 
-   !> Take the load to where, between the present factor and a target, K_eq is largest; where it
-   !! stays far from the toughness, to about there.
+   !> Change the load to that of the largest K_eq between the present factor and a target; where
+   !! K_eq is far below K_IC, to about that load.
    subroutine go_to_peak(body, target, timers, error)
       class(loaded_body_t), intent(inout) :: body
       real(rk), intent(in) :: target  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: far = 0.2_rk  ! of the toughness
-      integer, parameter :: halvings = 16  ! leave about a thousandth of the way
+      integer, parameter :: halvings = 16  ! to about a thousandth of the change of load
       real(rk) :: best, begun, excess, found, left, place, right
       integer(ik) :: at, k
       integer :: halving
@@ -165,15 +165,15 @@ contains
       best = body%largest_excess()
       at = 0
       do k = 1, places
-         call body%respond(on_the_way(begun, target, k), timers, error)
+         call body%respond(place_between(begun, target, k), timers, error)
          if (allocated(error)) return
          if (body%largest_excess() > best) at = k
          best = max(best, body%largest_excess())
       end do
       if (at == places) return
-      found = on_the_way(begun, target, at)
-      left = on_the_way(begun, target, max(0_ik, at - 1_ik))
-      right = on_the_way(begun, target, at + 1_ik)
+      found = place_between(begun, target, at)
+      left = place_between(begun, target, max(0_ik, at - 1_ik))
+      right = place_between(begun, target, at + 1_ik)
       do halving = 1, merge(halvings, 0, best > -far)
          associate (is_right => abs(right - found) > abs(found - left))
             place = 0.5_rk*(found + merge(right, left, is_right))
@@ -195,16 +195,16 @@ contains
       call body%respond(found, timers, error)
    end subroutine go_to_peak
 
-   !> Tips at their toughness do not grow while K_eq falls: go on towards a target until they are
-   !! below it. If K_eq rises instead, there is an onset of growth: at the present factor, or on the
-   !! way, from which it rises again.
+   !> Tips with K_eq = K_IC do not grow while K_eq decreases: change the load towards a target until
+   !! K_eq < K_IC. If K_eq increases instead, at the present factor or later, there is an onset of
+   !! growth.
    subroutine leave_turn(body, target, has_onset, timers, error)
       class(loaded_body_t), intent(inout) :: body
       real(rk), intent(in) :: target  !< [-]
       logical, intent(out) :: has_onset
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: beside = 1.0e-4_rk  ! share of the way
+      real(rk), parameter :: small = 1.0e-4_rk  ! fraction of the change of load
       real(rk) :: before, begun, last
       integer(ik) :: k
 
@@ -215,9 +215,9 @@ contains
          before = body%largest_excess()
          last = body%factor
          if (k == 0) then
-            call body%respond(begun + beside*(target - begun), timers, error)
+            call body%respond(begun + small*(target - begun), timers, error)
          else
-            call body%respond(on_the_way(begun, target, k), timers, error)
+            call body%respond(place_between(begun, target, k), timers, error)
          end if
          if (allocated(error)) return
          has_onset = .not. body%largest_excess() < before
@@ -229,13 +229,13 @@ contains
       end do
    end subroutine leave_turn
 
-   !> The k-th place on the way.
-   pure real(rk) function on_the_way(begun, target, k)
+   !> The k-th of `places` equally spaced loads up to a target [-].
+   pure real(rk) function place_between(begun, target, k)
       real(rk), intent(in) :: begun, target  !< [-]
       integer(ik), intent(in) :: k
 
-      on_the_way = begun + (target - begun)*real(k, rk)/real(places, rk)
-      if (k == places) on_the_way = target
-   end function on_the_way
+      place_between = begun + (target - begun)*real(k, rk)/real(places, rk)
+      if (k == places) place_between = target
+   end function place_between
 
 end module mechanics_rise

@@ -21,19 +21,18 @@ module mechanics_simulation
 
    public :: mechanics_simulation_t
 
-   !> The scene, and where its load programme stands.
+   !> A scene without a fluid, with the position in its load programme.
    type, extends(loaded_body_t) :: mechanics_simulation_t
       type(programme_t) :: programme
       logical :: has_onset = .false.  !< growth has stopped the load
-      real(rk) :: accepted_factor = 0.0_rk  !< of the present or last accepted state [-]
-      logical :: has_increment = .false.  !< of growth in equilibrium: the next state is found
+      real(rk) :: accepted_factor = 0.0_rk  !< load factor of the last accepted state [-]
+      logical :: has_increment = .false.  !< growth in equilibrium has found the next state
       type(increment_t) :: increment
       type(dead_load_t) :: dead_load
-      logical :: was_bifurcation = .false.  !< in the last increment
-      ! Of the accepted state, while the next one is found already.
-      type(network_t) :: shown_network
-      type(mesh_t) :: shown_mesh
-      type(snapshot_t), allocatable :: good  !< of the last accepted state
+      logical :: was_bifurcation = .false.  !< the last increment was a bifurcation
+      type(network_t) :: shown_network  !< network of the accepted state
+      type(mesh_t) :: shown_mesh  !< mesh of the accepted state
+      type(snapshot_t), allocatable :: good  !< fields of the last accepted state
    contains
       procedure :: begin
       procedure :: next_state
@@ -49,7 +48,7 @@ module mechanics_simulation
 
 contains
 
-   !> Mesh the body; nothing is loaded yet.
+   !> Mesh the body without load.
    subroutine begin(self, scene, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -64,7 +63,7 @@ contains
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
-   !> What the scene uses and does without.
+   !> Add the features that the scene uses, and those that it does not, to the summary.
    subroutine note_features(self)
       class(mechanics_simulation_t), intent(inout) :: self
 
@@ -79,15 +78,15 @@ contains
       end associate
    end subroutine note_features
 
-   !> Take the load to the end of the programme's step, or to the next onset of growth. The state
-   !! after the last increment is accepted at the load of that.
+   !> Change the load to the end of the programme's step, or to the next onset of growth. The state
+   !! after an increment of growth in equilibrium is accepted at its load.
    subroutine next_state(self, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. self%has_increment) then
-         call begin_piece(self)
+         call begin_part(self)
          self%has_onset = .false.
          if (.not. self%owes_state) then
             call rise(self, self%programme%target(), self%has_onset, timers, error)
@@ -102,24 +101,24 @@ contains
       call note_state(self)
    end subroutine next_state
 
-   !> Where the load has turned, tips may turn too, and its bounds are others.
-   subroutine begin_piece(self)
+   !> Take the bounds of the programme's part; where they change, the path segments of the tips end.
+   subroutine begin_part(self)
       class(mechanics_simulation_t), intent(inout) :: self
 
       associate (bounds => self%programme%bounds())
          if (any(abs(bounds - self%bounds) > 0.0_rk)) call self%increment%end_paths()
          self%bounds = bounds
       end associate
-   end subroutine begin_piece
+   end subroutine begin_part
 
-   !> Tips grow in equilibrium, else by the law of advances at one load.
+   !> Tips grow in equilibrium, and not by the Paris-type law.
    pure logical function is_equilibrium(self)
       class(mechanics_simulation_t), intent(in) :: self
 
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> An accepted state: contact, the run's largest values, the fields to fall back on.
+   !> Add an accepted state to the summary and the event log, and keep its fields.
    subroutine note_state(self)
       class(mechanics_simulation_t), intent(inout) :: self
       logical :: closes(size(self%scene%fractures))
@@ -173,7 +172,7 @@ contains
       else
          self%tip%advance = 0.0_rk
          if (.not. self%owes_state) then
-            call self%programme%go_on(self%factor)
+            call self%programme%advance(self%factor)
             if (self%programme%is_over()) self%ending = "the scene's last load factor"
          end if
          self%owes_state = .false.
@@ -188,8 +187,8 @@ contains
       self%owes_state = allocated(self%ending)
    end subroutine grow
 
-   !> Note the tips of the present state; where some are at their toughness, let them grow by an
-   !! increment to the next one, which is accepted by next_state.
+   !> Log the tips of the present state. Tips with K_eq = K_IC grow by an increment to the next
+   !! state, which next_state accepts.
    subroutine grow_in_equilibrium(self, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -206,7 +205,7 @@ contains
       self%shown_network = self%network
       self%shown_mesh = self%body%mesh
       if (.not. allocated(self%ending) .and. self%has_onset) then
-         call refuse_doubt(self, error)
+         call refuse_uncertain(self, error)
          if (allocated(error)) return
          call self%dead_load%begin_increment(self)
          call find_limit(self, limit, timers, error)
@@ -228,14 +227,14 @@ contains
          self%has_onset = self%increment%holds
       end if
       if (.not. (self%has_increment .or. allocated(self%ending))) then
-         call self%programme%go_on(self%factor)
+         call self%programme%advance(self%factor)
          if (self%programme%is_over()) self%ending = "the scene's last load factor"
       end if
       if (allocated(self%ending)) call self%dead_load%stop_growth(self)
    end subroutine grow_in_equilibrium
 
-   !> Up to which factor more load drives the tips: the end of the programme's piece, or where it
-   !! has turned round, that of the largest K_eq.
+   !> Load factor up to which the load drives the tips: the end of the programme's part, or for
+   !! loads that change direction that of the largest K_eq.
    subroutine find_limit(self, limit, timers, error)
       class(mechanics_simulation_t), intent(inout) :: self
       real(rk), intent(out) :: limit  !< [-]
@@ -252,8 +251,8 @@ contains
       if (.not. allocated(error)) call self%respond(begun, timers, error)
    end subroutine find_limit
 
-   !> No tip grows whose intensities are not known.
-   subroutine refuse_doubt(self, error)
+   !> Stop the run at tips whose intensities are too uncertain for growth.
+   subroutine refuse_uncertain(self, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
@@ -267,9 +266,9 @@ contains
             return
          end associate
       end do
-   end subroutine refuse_doubt
+   end subroutine refuse_uncertain
 
-   !> The tips have grown in the increment that led to the present state.
+   !> Log the increment of growth that led to the present state.
    subroutine note_increment(self)
       class(mechanics_simulation_t), intent(inout) :: self
 
@@ -277,12 +276,12 @@ contains
       call self%note_growth()
       call self%note_mesh(self%body%mesh)
       call note_competition(self)
-      call self%dead_load%tell(self)
+      call self%dead_load%note_end(self)
       self%summary%increments = self%summary%increments + 1
       call self%end_at_gain()
    end subroutine note_increment
 
-   !> Tips of which one could run ahead, and states that miss the equilibrium.
+   !> Log bifurcations, where one of several tips could lead, and states that miss the equilibrium.
    subroutine note_competition(self)
       class(mechanics_simulation_t), intent(inout) :: self
       real(rk), parameter :: largest_misfit = 1.0e-2_rk
@@ -309,7 +308,7 @@ contains
       end associate
    end subroutine note_competition
 
-   !> The network, and the mesh that follows it.
+   !> Network and mesh of the accepted state.
    subroutine present_network(self, network, mesh)
       class(mechanics_simulation_t), intent(in) :: self
       type(network_t), intent(out) :: network
@@ -347,21 +346,21 @@ contains
       if (allocated(self%good)) fields = self%good
    end subroutine snapshot
 
-   !> What stands for the time: the accepted load factor [-].
+   !> The accepted load factor, instead of a time [-].
    pure real(rk) function time(self)
       class(mechanics_simulation_t), intent(in) :: self
 
       time = self%accepted_factor
    end function time
 
-   !> How much of the load's programme is done [-].
+   !> Completed fraction of the load programme [-].
    pure real(rk) function share_of_way(self) result(share)
       class(mechanics_simulation_t), intent(in) :: self
 
       share = self%programme%share_done(self%accepted_factor)
    end function share_of_way
 
-   !> The last accepted load factor.
+   !> The last accepted load factor in words.
    pure function last_state(self) result(words)
       class(mechanics_simulation_t), intent(in) :: self
       character(len=:), allocatable :: words

@@ -1,7 +1,5 @@
 !> A body under a load factor: its state on a mesh that is adapted to growth and to the error
-!! estimate, and its tips.
-!!
-!! Whether fractures have cut the body into parts.
+!! estimate, and its tips; whether fractures have cut the body into parts.
 module mechanics_state
    use base_errors, only: error_t
    use base_groups, only: groups_t, single_groups
@@ -24,28 +22,27 @@ module mechanics_state
 
    public :: cuts_through, loaded_body_t, together
 
-   !> Share of the toughness that tips may lack to grow together with the first: about the error of
-   !! the intensities, so that equal tips stay equal.
+   !> Largest relative difference of K_eq of tips that grow together: about the error of the
+   !! intensities, so that equal tips remain equal [-].
    real(rk), parameter :: together = 2.0e-3_rk
 
-   !> Ends and kinks lie on the way of a tip that passes them nearer than that, in increments: no
-   !! mesh of good shape fits between.
+   !> Distance below which ends and kinks are targets of a tip that passes them, since no mesh of
+   !! good shape fits between [increments].
    real(rk), parameter :: near_way = 0.02_rk
 
-   !> Share of the estimated error that one new mesh is made for.
+   !> Target error of a new mesh over the present estimated error [-].
    real(rk), parameter :: error_step = 0.4_rk
 
-   !> A body, the factor of its load, and what depends on both.
+   !> A body under a load factor.
    type, abstract, extends(simulation_t) :: loaded_body_t
-      logical :: is_cut = .false.  !< fractures have cut off a piece that nothing holds
+      logical :: is_cut = .false.  !< fractures have cut off an unsupported part of the body
       type(body_t) :: body
-      integer :: meshed_vertices = 0  !< of the network that the mesh was last made for
-      !> Meshes of trials are made from the one that the body has remembered, whatever they change.
-      logical :: is_trying = .false.
-      real(rk) :: factor = 0.0_rk  !< of the load [-]
-      !> Between which factors a load that the network bears is looked for, in the order of its way
-      real(rk) :: bounds(2) = 0.0_rk  ! [-]
-      logical :: turns = .false.  !< the load goes to and fro
+      integer :: meshed_vertices = 0  !< vertices of the network for which the mesh was made
+      logical :: is_trying = .false.  !< meshes are made from that kept by the body (tries)
+      real(rk) :: factor = 0.0_rk  !< load factor [-]
+      !> load factors from which to which equilibrium is searched [-]
+      real(rk) :: bounds(2) = 0.0_rk
+      logical :: turns = .false.  !< the load may change direction
       real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
    contains
       procedure :: mesh_body
@@ -61,7 +58,7 @@ module mechanics_state
 
 contains
 
-   !> Mesh the body; nothing is loaded yet.
+   !> Mesh the body without load.
    subroutine mesh_body(self, scene, timers, error)
       class(loaded_body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -87,7 +84,7 @@ contains
       if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)
    end subroutine mesh_body
 
-   !> State and tips at a load factor.
+   !> Find the state of the body and of its tips at a load factor.
    subroutine respond(self, factor, timers, error)
       class(loaded_body_t), intent(inout) :: self
       real(rk), intent(in) :: factor  !< [-]
@@ -102,7 +99,7 @@ contains
       if (self%scene%growth%intensities) call take_intensities(self)
    end subroutine respond
 
-   !> The tips learn what the body's mesh has at theirs.
+   !> Take the intensities of the tips from the tips of the body's mesh.
    subroutine take_intensities(self)
       class(loaded_body_t), intent(inout) :: self
       type(tip_frame_t) :: frame
@@ -113,7 +110,7 @@ contains
             associate (tip => self%tip(i))
                k = findloc(fracture%tip_fracture == tip%fracture .and. &
                            fracture%tip_end == tip%end, .true., dim=1)
-               tip%is_free = k > 0  ! else it has joined something, or something has joined it
+               tip%is_free = k > 0  ! otherwise it has joined a target, or was joined
                if (.not. tip%is_free) then
                   tip%arrested = .true.
                   cycle
@@ -129,7 +126,7 @@ contains
       end associate
    end subroutine take_intensities
 
-   !> Errors of the intensities from that of the whole solution, where that is known.
+   !> Estimate the errors of the intensities from that of the whole solution.
    subroutine correct_intensities(self, timers, error)
       class(loaded_body_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -139,12 +136,11 @@ contains
       if (.not. allocated(error)) call take_intensities(self)
    end subroutine correct_intensities
 
-   !> Let the mesh follow the error at a load, if the scene wants it. A coarse mesh shows the error
-   !! of a much finer one poorly, so the error falls in steps, each of which makes a mesh about
-   !! twice as large.
+   !> With &adaptive, adapt the mesh to the error at a load. A coarse mesh estimates the error of a
+   !! much finer one poorly, so the error decreases in steps, each with about twice the elements.
    subroutine adapt(self, factor, timers, error)
       class(loaded_body_t), intent(inout) :: self
-      real(rk), intent(in) :: factor  !< of the load [-]
+      real(rk), intent(in) :: factor  !< load factor [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: pass
@@ -163,15 +159,15 @@ contains
       end do
    end subroutine adapt
 
-   !> The state on a mesh of the present network, made from the one before the increment, at the
-   !! same load.
+   !> Find the state at the present load on a mesh of the present network, made from the mesh before
+   !! the increment.
    subroutine evaluate(self, timers, error)
       class(loaded_body_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       if (size(self%network%xy, 2) > self%meshed_vertices .and. .not. self%is_trying) then
-         ! It has not only turned.
+         ! The network has new vertices: a new increment.
          call self%body%remember()
          self%meshed_vertices = size(self%network%xy, 2)
       end if
@@ -196,7 +192,7 @@ contains
       reading%k2 = pack(self%tip%intensity%k2,.not. self%tip%arrested)
    end function reading
 
-   !> What the faces have slipped so far becomes the history of their next slip.
+   !> Accept the slip of the faces as the history of further slip.
    subroutine accept(self)
       class(loaded_body_t), intent(inout) :: self
 
@@ -228,7 +224,7 @@ contains
       end associate
    end function seismic_moment
 
-   !> By how much the tip nearest to growth exceeds the toughness, relative to it.
+   !> Largest K_eq/K_IC - 1 of the tips that may grow; -1 if there are none [-].
    pure real(rk) function largest_excess(self)
       class(loaded_body_t), intent(in) :: self
 
@@ -239,8 +235,8 @@ contains
       end if
    end function largest_excess
 
-   !> Fractures, with the outer boundary as one more, form a ring: they cut a piece off the body.
-   !! Without a mesh nothing is known to.
+   !> Fractures form a ring, possibly with the outer boundary, and cut off a part of the body;
+   !! .false. without a mesh.
    pure logical function cuts_through(fracture)
       type(fracture_mesh_t), intent(in) :: fracture
       type(groups_t) :: groups

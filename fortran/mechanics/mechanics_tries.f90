@@ -1,8 +1,6 @@
-!> The tries of one increment of growth: which tips advance along which path segments, and how far.
-!! Each try begins from the state before.
-!!
-!! Growth without an equilibrium load factor: loads that do not change with the load factor drive
-!! the tips.
+!> The tries of one increment of growth: tips, their path segments and their advances. Each try
+!! begins from the state before the increment. Also growth without an equilibrium load factor,
+!! driven by loads that do not change with the load factor.
 module mechanics_tries
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -20,34 +18,35 @@ module mechanics_tries
 
    public :: least, run_loosely, tries_t
 
-   !> Shares of a new piece: what the mesh around a tip can hold at least; from where on the piece
-   !! may end at an accepted state, so that none is left that is too short.
+   !> Fractions of a new path segment: the smallest advance that a mesh can resolve; and the advance
+   !! from which on the segment ends at an accepted state, so that its remainder is not too short
+   !! [-].
    real(rk), parameter :: least = 0.05_rk, whole = 0.5_rk
 
-   !> Tips on their pieces, and the state before.
+   !> Tips on their path segments, and the state before the increment.
    type :: tries_t
       type(segment_t), allocatable :: segment(:)  !< (tips)
-      type(segment_t), allocatable :: segment_before(:)
+      type(segment_t), allocatable :: segment_before(:)  !< (tips)
       type(network_t) :: network_before
       type(tip_t), allocatable :: tip_before(:)
-      real(rk) :: piece = 0.0_rk  !< how far the tips go on at most [m]
-      integer(ik), allocatable :: alike(:)  !< (tips) the first one that is like each
+      real(rk) :: longest = 0.0_rk  !< largest advance [m]
+      integer(ik), allocatable :: tip_group(:)  !< (tips) first tip of the tip group of each
    contains
       procedure :: begin
       procedure :: go_back
-      procedure :: begin_pieces
-      procedure :: rooms
+      procedure :: begin_segments
+      procedure :: remaining_lengths
       procedure :: place
       procedure :: keep_paths
-      procedure :: find_alike
-      procedure :: with_their_like
-      procedure :: part
+      procedure :: find_tip_groups
+      procedure :: with_tip_groups
+      procedure :: split_groups
       procedure :: finish
    end type tries_t
 
 contains
 
-   !> Begin from the present state, whose tips have been evaluated.
+   !> Keep the present state, whose tips have been evaluated, as the state before the increment.
    pure subroutine begin(self, body)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
@@ -58,7 +57,7 @@ contains
       self%segment_before = self%segment
    end subroutine begin
 
-   !> Back to the network before; its tips know what drives them there.
+   !> Restore the network and the evaluated tips of the state before the increment.
    pure subroutine go_back(self, body)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -68,9 +67,10 @@ contains
       self%segment = self%segment_before
    end subroutine go_back
 
-   !> New pieces for the tips of a group that stand at the ends of theirs, in the direction in which
-   !! the criterion holds at their ends. All tips are evaluated there.
-   subroutine begin_pieces(self, body, group, timers, error)
+   !> Begin new path segments of the tips of a group that are at the ends of theirs, in the
+   !! direction in which the criterion holds at the ends of the new ones. All tips are evaluated
+   !! there.
+   subroutine begin_segments(self, body, group, timers, error)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: group(:)  !< tips
@@ -83,7 +83,7 @@ contains
       advance = 0.0_rk
       do k = 1, size(group, kind=ik)
          i = group(k)
-         if (.not. self%segment(i)%is_open) advance(i) = self%piece
+         if (.not. self%segment(i)%is_open) advance(i) = self%longest
       end do
       if (.not. any(advance > 0.0_rk)) return
       call body%grow_by(advance, any_grew, timers, error)
@@ -95,24 +95,25 @@ contains
             segment%reached = segment%length
          end associate
       end do
-   end subroutine begin_pieces
+   end subroutine begin_segments
 
-   !> How far the tips of a group may go on.
-   pure function rooms(self, group) result(room)
+   !> Largest possible advances of the tips of a group on their segments.
+   pure function remaining_lengths(self, group) result(remaining)
       class(tries_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tips
-      real(rk) :: room(size(group))  !< [m]
+      real(rk) :: remaining(size(group))  !< [m]
 
-      room = min(self%piece, self%segment(group)%length - self%segment(group)%accepted)
-   end function rooms
+      remaining = min(self%longest, self%segment(group)%length - self%segment(group)%accepted)
+   end function remaining_lengths
 
-   !> Put the tips of a group on their pieces. Those that do not advance have no new piece.
+   !> Place the tips of a group on their path segments. Tips that do not advance have no new
+   !! segment.
    pure subroutine place(self, body, group, advance, begun)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: group(:)  !< tips
-      real(rk), intent(in) :: advance(:)  !< of the group [m]
-      type(tip_t), intent(in) :: begun(:)  !< all tips, at the ends of new pieces
+      real(rk), intent(in) :: advance(:)  !< (group) [m]
+      type(tip_t), intent(in) :: begun(:)  !< (all tips) tips at the ends of new segments
       integer(ik) :: k
 
       body%network = self%network_before
@@ -135,12 +136,12 @@ contains
       end do
    end subroutine place
 
-   !> Tips that have not begun their new pieces after all stand as they stood.
+   !> Restore the paths of tips that have not advanced on their new segments.
    pure subroutine keep_paths(self, body, group, advance)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
       integer(ik), intent(in) :: group(:)  !< tips
-      real(rk), intent(in) :: advance(:)  !< of the group [m]
+      real(rk), intent(in) :: advance(:)  !< (group) [m]
       type(tip_t) :: stood
       integer(ik) :: i, k
 
@@ -157,12 +158,12 @@ contains
       end do
    end subroutine keep_paths
 
-   !> The first tip that is like each: those that have come equally far, and that the error of the
-   !! intensities does not tell from each other.
-   pure subroutine find_alike(self, body)
+   !> Find the tip groups: tips of equal growth so far whose intensities differ by less than their
+   !! errors.
+   pure subroutine find_tip_groups(self, body)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(in) :: body
-      real(rk), parameter :: as_far = 1.0e-2_rk  ! difference over an increment
+      real(rk), parameter :: same_gain = 1.0e-2_rk  ! difference of growth over an increment
       logical :: alike(size(body%tip), size(body%tip))
       real(rk) :: gain(size(body%tip)), scale
       integer(ik) :: i
@@ -175,41 +176,42 @@ contains
       associate (drive => self%tip_before%drive%intensity)
          scale = maxval(drive, mask=.not. self%tip_before%arrested)
          do i = 1, size(body%tip, kind=ik)
-            alike(:, i) = abs(gain - gain(i)) <= as_far*body%rules%increment
+            alike(:, i) = abs(gain - gain(i)) <= same_gain*body%rules%increment
             alike(:, i) = alike(:, i) .and. abs(drive - drive(i)) <= scale &
                           *merge(tolerance, together, min(gain, gain(i)) > 0.0_rk)
          end do
       end associate
-      self%alike = likes(alike)
-   end subroutine find_alike
+      self%tip_group = likes(alike)
+   end subroutine find_tip_groups
 
-   !> The tips of a group, and those that are like them.
-   pure function with_their_like(self, group) result(larger)
+   !> The given tips and all others of their tip groups.
+   pure function with_tip_groups(self, group) result(larger)
       class(tries_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tips
       integer(ik), allocatable :: larger(:)
       integer(ik) :: i
 
-      larger = pack([(i, i=1, size(self%alike, kind=ik))], &
-                    .not. self%tip_before%arrested .and. &
-                    [(any(self%alike(group) == self%alike(i)), i=1, size(self%alike, kind=ik))])
-   end function with_their_like
+      associate (of => self%tip_group, n => size(self%tip_group, kind=ik))
+         larger = pack([(i, i=1, n)],.not. self%tip_before%arrested .and. &
+                       [(any(of(group) == of(i)), i=1, n)])
+      end associate
+   end function with_tip_groups
 
-   !> Tips of a group that are not alike after all, and those that were like them, go by themselves.
-   pure subroutine part(self, group, differs)
+   !> Divide tip groups in which tips differ into single tips.
+   pure subroutine split_groups(self, group, differs)
       class(tries_t), intent(inout) :: self
       integer(ik), intent(in) :: group(:)  !< tips
-      logical, intent(in) :: differs(:)
-      integer(ik), allocatable :: kinds(:)
+      logical, intent(in) :: differs(:)  !< (group) the tip differs from others of its tip group
+      integer(ik), allocatable :: divided(:)
       integer(ik) :: i
 
-      kinds = self%alike(pack(group, differs))
-      do i = 1, size(self%alike, kind=ik)
-         if (any(kinds == self%alike(i))) self%alike(i) = i
+      divided = self%tip_group(pack(group, differs))
+      do i = 1, size(self%tip_group, kind=ik)
+         if (any(divided == self%tip_group(i))) self%tip_group(i) = i
       end do
-   end subroutine part
+   end subroutine split_groups
 
-   !> The last try is that which is accepted: how far the tips have gone in it.
+   !> Accept the last try: set the advances of the tips and the state of their segments.
    subroutine finish(self, body)
       class(tries_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
@@ -221,9 +223,9 @@ contains
             tip%advance = end_gain(body%network, body%start, tip%fracture, tip%end) &
                           - end_gain(self%network_before, body%start, tip%fracture, tip%end)
             if (tip%advance < same_place*body%rules%increment) tip%advance = 0.0_rk
-            if (self%segment_before(i)%is_open) tip%kink = 0.0_rk  ! it went straight on
+            if (self%segment_before(i)%is_open) tip%kink = 0.0_rk  ! a straight continuation
             segment%accepted = segment%reached
-            ! The rest of the last piece before growth is over is too short for one of its own.
+            ! The last segment before the end of growth is not divided.
             share = whole
             if (end_gain(body%network, body%start, tip%fracture, tip%end) + segment%length &
                 - segment%reached > (1.0_rk - same_place)*body%rules%stop_gain) share = 1.0_rk
@@ -232,8 +234,8 @@ contains
       end do
    end subroutine finish
 
-   !> What no load held goes on at the same load as far as that drives it: to the ends of its pieces
-   !! or until K_eq has fallen to K_IC.
+   !> Let the tips of a group, for which no load gives an equilibrium, advance at the same load to
+   !! the ends of their segments or until K_eq has fallen to K_IC.
    subroutine run_loosely(tries, body, group, timers, error)
       type(tries_t), intent(inout) :: tries
       class(loaded_body_t), intent(inout) :: body
@@ -242,15 +244,15 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: most_tries = 30
       type(tip_t) :: begun(size(body%tip))
-      real(rk) :: excess, excess_high, excess_low, high, low, lowest, room(size(group)), share
+      real(rk) :: excess, excess_high, excess_low, high, low, lowest, remaining(size(group)), share
       logical :: is_placed
       integer :: try
 
       begun = body%tip
-      room = tries%rooms(group)
+      remaining = tries%remaining_lengths(group)
       is_placed = all(.not. tries%segment_before(group)%is_open)
       associate (shortest => least*body%rules%increment - tries%segment_before(group)%accepted)
-         lowest = maxval(max(shortest, 0.0_rk)/room)
+         lowest = maxval(max(shortest, 0.0_rk)/remaining)
       end associate
       low = 0.0_rk
       excess_low = maxval(tries%tip_before(group)%drive%intensity)/body%rules%toughness - 1.0_rk
@@ -259,7 +261,7 @@ contains
       share = 1.0_rk
       do try = 1, most_tries
          if (.not. (is_placed .and. try == 1)) then
-            call tries%place(body, group, share*room, begun)
+            call tries%place(body, group, share*remaining, begun)
             call body%evaluate(timers, error)
             if (allocated(error)) return
          end if
@@ -278,7 +280,7 @@ contains
                                           mod(try, 3) == 0)
          share = max(share, lowest)
       end do
-      call tries%keep_paths(body, group, share*room)
+      call tries%keep_paths(body, group, share*remaining)
    end subroutine run_loosely
 
 end module mechanics_tries

@@ -1,17 +1,14 @@
-!> The one table of the contents of a run's files: every column, key and field.
+!> The table of all columns, keys and fields of a run's files.
 !!
-!! The tables of a run take the names and the order of their columns from here, and so does
-!! the table of names (report_describe); tests hold the keys of run.json and network.json and the
-!! fields of the VTU files against it. A new column is one entry here, at the place where it shall
-!! stand, and one line in report_tables that says where its value comes from.
+!! The tables of a run and the table of names (report_describe) take the names and the order of the
+!! columns from here; tests compare the keys of run.json and network.json and the fields of the VTU
+!! files with it. A new column is one entry here, at its position, and one line in report_tables,
+!! the source of its value.
 module report_columns
    use scene_types, only: scene_t
    implicit none(type, external)
    private
 
-   public :: always, with_error, with_fluid, with_fractures, with_growth
-   public :: with_joints, with_toughness, with_wells
-   public :: without_fluid
    public :: applies, column_t, well_count, word_t
    public :: event_columns, fracture_columns, history_columns, probe_columns
    public :: slip_event_columns, tip_columns, well_columns
@@ -39,11 +36,11 @@ module report_columns
    type :: column_t
       character(len=28) :: name = ""
       character(len=8) :: unit = "-"
-      character(len=40) :: runs = always  !< in which it is written
+      character(len=40) :: runs = always  !< runs in which it is written
       character(len=160) :: meaning = ""
    end type column_t
 
-   !> A word that a column or key may hold.
+   !> A possible word of a column or key.
    type :: word_t
       character(len=16) :: word = ""
       character(len=208) :: meaning = ""
@@ -57,24 +54,23 @@ module report_columns
       column_t("dt_s", "s", with_fluid, "Step size: time_s since the previous row"), &
       column_t("newton_iterations", "-", always, "Contact iterations in the step"), &
       column_t("well_pressure_pa", "Pa", at_most_one, &
-               "Fluid pressure at the well in fracture or rock; in a fracture the mean over "// &
-               "the cells and joints it supplies; 0 without a well"), &
+         "Fluid pressure at the well in fracture or rock; in a fracture the mean over the "// &
+         "cells and joints it supplies; 0 without a well"), &
       column_t("NAME_well_pressure_pa", "Pa", with_several, &
-               "The same for each well by name: one column per well"), &
+         "The same for each well by name: one column per well"), &
       column_t("injected_m2", "m2", with_fluid, &
-               "Injected volume so far, less the produced volume (produced_m2)"), &
+         "Injected volume so far, less the produced volume (produced_m2)"), &
       column_t("leakoff_m2", "m2", with_fluid, &
-               "Leak-off from the fractures into the rock so far; negative: into the fractures"), &
-      column_t("prefilled_m2", "m2", with_fluid, &
-               "Initial fluid of new fracture cells so far"), &
+         "Leak-off from the fractures into the rock so far; negative: into the fractures"), &
+      column_t("prefilled_m2", "m2", with_fluid, "Initial fluid of new fracture cells so far"), &
       column_t("outflow_m2", "m2", with_fluid, &
-               "Outflow through fracture ends on sides with prescribed pressure so far; "// &
-               "negative: inflow"), &
+         "Outflow through fracture ends on sides with prescribed pressure so far; negative: "// &
+         "inflow"), &
       column_t("fracture_volume_m2", "m2", always, &
-               "Volume of the fractures: aperture, without a fluid opening, times length"), &
+         "Volume of the fractures: aperture, without a fluid opening, times length"), &
       column_t("mass_error_relative", "-", with_fluid, &
-               "Numerical error of the fluid mass so far, relative to the injected volume or "// &
-               "the fracture volume"), &
+         "Numerical error of the fluid mass so far, relative to the injected volume or the "// &
+         "fracture volume"), &
       column_t("max_slip_m", "m", always, "Largest absolute slip"), &
       column_t("max_opening_m", "m", always, "Largest normal jump"), &
       column_t("n_stick", "-", always, "Fracture cells that stick"), &
@@ -84,78 +80,72 @@ module report_columns
       column_t("n_tips", "-", always, "Free tips"), &
       column_t("n_intersections", "-", always, "Intersections of fractures"), &
       column_t("seismic_moment_nm", "N m/m", always, &
-               "Sum over all cells of shear modulus times slip so far times length"), &
+         "Sum over all cells of shear modulus times slip so far times length"), &
       column_t("fracture_length_error_m", "m", with_fluid, &
-               "Estimated error of fracture_length_m if tips have grown; -1 with law = "// &
-               "'paris' (no estimate)"), &
+         "Estimated error of fracture_length_m if tips have grown; -1 with law = 'paris' (no "// &
+         "estimate)"), &
       column_t("well_pressure_error_pa", "Pa", with_fluid, &
-               "Estimated error of the well pressure, with several wells of their mean; -1 "// &
-               "with law = 'paris'"), &
+         "Estimated error of the well pressure, with several wells of their mean; -1 with law "// &
+         "= 'paris'"), &
       column_t("strain_energy_j", "J/m", without_fluid, "Elastic energy of the body"), &
-      column_t("injection_rate_m2_s", "m2/s", with_wells, &
-               "Net flow from all wells in the step"), &
+      column_t("injection_rate_m2_s", "m2/s", with_wells, "Net flow from all wells in the step"), &
       column_t("injectivity_m2_s_pa", "m2/s/Pa", with_one_well, &
-               "injection_rate_m2_s of a well in a fracture over the rise of well_pressure_pa "// &
-               "above the initial pressure of the surrounding rock; 0 without a rise"), &
+         "injection_rate_m2_s of a well in a fracture over the rise of well_pressure_pa above "// &
+         "the initial pressure of the surrounding rock; 0 without a rise"), &
       column_t("produced_m2", "m2", with_wells, "Produced volume so far"), &
       column_t("fracture_fluid_m2", "m2", with_fractures, &
-               "Increase of fluid in the fractures so far, by volume and compression; joints "// &
-               "have no volume"), &
+         "Increase of fluid in the fractures so far, by volume and compression; joints have no "// &
+         "volume"), &
       column_t("rock_fluid_m2", "m2", with_fluid, "Increase of fluid in the rock so far"), &
       column_t("rock_outflow_m2", "m2", with_fluid, &
-              "Outflow from the rock through sides with prescribed pressure so far; negative: "// &
-              "inflow"), &
+         "Outflow from the rock through sides with prescribed pressure so far; negative: inflow"), &
       column_t("stimulated_length_m", "m", with_fractures, &
-               "Length of fractures that are new, or have at any time slipped or opened by "// &
-               "more than stimulated_jump of &output since the start"), &
+         "Length of fractures that are new, or have at any time slipped or opened by more than "// &
+         "stimulated_jump of &output since the start"), &
       column_t("connected_length_m", "m", with_wells, &
-               "Length of the fractures connected to the wells along fractures and through "// &
-               "joints"), &
+         "Length of the fractures connected to the wells along fractures and through joints"), &
       column_t("connected_stimulated_m", "m", with_wells, &
-               "Connected part of stimulated_length_m"), &
+         "Connected part of stimulated_length_m"), &
       column_t("n_clusters", "-", with_fractures, "Clusters of connected fractures"), &
-      column_t("max_slip_rate_m_s", "m/s", with_fluid, &
-               "Largest slip rate, mean over the step"), &
+      column_t("max_slip_rate_m_s", "m/s", with_fluid, "Largest slip rate, mean over the step"), &
       column_t("connections_per_branch", "-", with_fractures, &
-               "Mean number of connected ends of a branch of the network: 0 to 2 (Sanderson "// &
-               "and Nixon 2015)")]
+         "Mean number of connected ends of a branch of the network: 0 to 2 (Sanderson and "// &
+         "Nixon 2015)")]
 
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
       column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
       column_t("tip", "-", always, &
-               "Number of the tip, from 1: the same in all rows and in network.json"), &
+         "Number of the tip, from 1: the same in all rows and in network.json"), &
       column_t("fracture", "-", always, "Number of its fracture, from 1 in the scene's order"), &
       column_t("x_m", "m", always, "Position of the tip before the increment"), &
       column_t("y_m", "m", always, "Position of the tip before the increment"), &
       column_t("k1_pa_sqrtm", "Pa m^1/2", always, &
-               "Mode I stress intensity factor, by the interaction integral"), &
+         "Mode I stress intensity factor, by the interaction integral"), &
       column_t("k2_pa_sqrtm", "Pa m^1/2", always, &
-               "Mode II stress intensity factor, by the interaction integral"), &
+         "Mode II stress intensity factor, by the interaction integral"), &
       column_t("k1_dc_pa_sqrtm", "Pa m^1/2", always, &
-               "Mode I stress intensity factor, by displacement correlation"), &
+         "Mode I stress intensity factor, by displacement correlation"), &
       column_t("k2_dc_pa_sqrtm", "Pa m^1/2", always, &
-               "Mode II stress intensity factor, by displacement correlation"), &
+         "Mode II stress intensity factor, by displacement correlation"), &
       column_t("keq_pa_sqrtm", "Pa m^1/2", always, &
-               "Equivalent stress intensity factor in the direction of growth, compared with "// &
-               "the toughness"), &
+         "Equivalent stress intensity factor in the direction of growth, compared with the "// &
+         "toughness"), &
       column_t("g_j_m2", "J/m2", always, "Energy release rate in the direction of growth"), &
       column_t("angle_deg", "degree", always, &
-               "Direction of growth from straight ahead, positive counter-clockwise"), &
+         "Direction of growth from straight ahead, positive counter-clockwise"), &
       column_t("advance_m", "m", always, "Advance in this increment; 0: none"), &
       column_t("k1_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k1_pa_sqrtm"), &
       column_t("k2_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k2_pa_sqrtm"), &
       column_t("g_ahead_j_m2", "J/m2", always, &
-               "Energy release rate straight ahead, by the J-integral"), &
+         "Energy release rate straight ahead, by the J-integral"), &
       column_t("g_ahead_error_j_m2", "J/m2", always, "Estimated error of g_ahead_j_m2"), &
       column_t("k1_dc_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k1_dc_pa_sqrtm"), &
       column_t("k2_dc_error_pa_sqrtm", "Pa m^1/2", always, "Estimated error of k2_dc_pa_sqrtm"), &
       column_t("k1_corrected_pa_sqrtm", "Pa m^1/2", always, &
-               "k1_pa_sqrtm corrected for the error of the mesh, where that is known; else "// &
-               "the same"), &
+         "k1_pa_sqrtm corrected for the error of the mesh, where that is known; else the same"), &
       column_t("k2_corrected_pa_sqrtm", "Pa m^1/2", always, &
-               "k2_pa_sqrtm corrected for the error of the mesh, where that is known; else "// &
-               "the same"), &
+         "k2_pa_sqrtm corrected for the error of the mesh, where that is known; else the same"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
    type(column_t), parameter :: fracture_columns(*) = [ &
@@ -163,8 +153,7 @@ module report_columns
       column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
       column_t("fracture", "-", always, "Number of the fracture, from 1 in the scene's order"), &
       column_t("s_m", "m", always, &
-               "Arc length of the cell centre along the fracture; negative where it grew at "// &
-               "its start"), &
+         "Arc length of the cell centre along the fracture; negative where it grew at its start"), &
       column_t("x_m", "m", always, "Cell centre"), &
       column_t("y_m", "m", always, "Cell centre"), &
       column_t("aperture_m", "m", always, "Hydraulic aperture; empty without a fluid"), &
@@ -175,11 +164,11 @@ module report_columns
       column_t("pressure_pa", "Pa", with_fluid, "Fluid pressure in the fracture"), &
       column_t("void_m", "m", with_fluid, "Part of the aperture filled with vapour"), &
       column_t("flow_m2_s", "m2/s", with_fluid, &
-               "Flow along the fracture, mean of the cell's two ends"), &
+         "Flow along the fracture, mean of the cell's two ends"), &
       column_t("state", "-", always, "Contact state"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
-   !> NAME stands for each probe's name; all but the first two repeat for each probe.
+   !> NAME stands for the name of a probe; all columns except the first two repeat for each probe.
    type(column_t), parameter :: probe_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
       column_t("load_factor", "-", without_fluid, "Load factor, as in history.csv"), &
@@ -206,76 +195,69 @@ module report_columns
       column_t("control", "-", with_wells, "Active control, see below"), &
       column_t("rate_m2_s", "m2/s", with_wells, "Rate into the well head, mean over the step"), &
       column_t("flow_m2_s", "m2/s", with_wells, &
-               "Flow from the well into fracture or rock: rate_m2_s less wellbore storage"), &
+         "Flow from the well into fracture or rock: rate_m2_s less wellbore storage"), &
       column_t("pressure_pa", "Pa", with_wells, &
-            "Fluid pressure at the well in fracture or rock; mean over the cells it supplies"), &
+         "Fluid pressure at the well in fracture or rock; mean over the cells it supplies"), &
       column_t("head_pressure_pa", "Pa", with_wells, &
-          "Pressure at the well head, with pressure losses; without the weight of the fluid"), &
+         "Pressure at the well head, with pressure losses; without the weight of the fluid"), &
       column_t("injected_m2", "m2", with_wells, "Volume into the well head so far"), &
       column_t("injectivity_m2_s_pa", "m2/s/Pa", with_wells, &
-               "flow_m2_s over the rise of pressure_pa since the start"), &
-      column_t("asked_m2_s", "m2/s", with_wells, &
-               "Prescribed rate of its stage; 0 without one")]
+         "flow_m2_s over the rise of pressure_pa since the start"), &
+      column_t("asked_m2_s", "m2/s", with_wells, "Prescribed rate of its stage; 0 without one")]
 
    type(word_t), parameter :: well_words(*) = [ &
       word_t("rate", "the prescribed rate"), &
       word_t("pressure", "the prescribed pressure"), &
       word_t("limit", &
-               "the pressure limit of a rate; no flow if the pressure around the well exceeds "// &
-               "it"), &
+         "the pressure limit of a rate; no flow if the pressure around the well exceeds it"), &
       word_t("shut", &
-               "no rate at the head: before its start, or after its end, when stored fluid "// &
-               "still flows")]
+         "no rate at the head: before its start, or after its end, when stored fluid still flows")]
 
    type(column_t), parameter :: slip_event_columns(*) = [ &
     column_t("event", "-", with_fluid, "Number of the event, from 1, in the order of end times"), &
       column_t("time_s", "s", with_fluid, &
-               "Start of slip of the patch, or time at which it passed seismic_slip_rate"), &
+         "Start of slip of the patch, or time at which it passed seismic_slip_rate"), &
       column_t("end_s", "s", with_fluid, &
-               "End of slip, or time at which it passed seismic_slip_rate, or end of the run"), &
+         "End of slip, or time at which it passed seismic_slip_rate, or end of the run"), &
       column_t("fracture", "-", with_fluid, &
-               "Number of the fracture, from 1 in the scene's order"), &
+         "Number of the fracture, from 1 in the scene's order"), &
       column_t("x_m", "m", with_fluid, "Slip-weighted centre of the event"), &
       column_t("y_m", "m", with_fluid, "Slip-weighted centre of the event"), &
       column_t("s_from_m", "m", with_fluid, &
-               "Start of the slipped part, arc length as in fractures.csv"), &
+         "Start of the slipped part, arc length as in fractures.csv"), &
       column_t("s_to_m", "m", with_fluid, "End of the slipped part"), &
       column_t("area_m2", "m2", with_fluid, &
-               "Slipped length times out_of_plane_length of &output"), &
+         "Slipped length times out_of_plane_length of &output"), &
       column_t("mean_slip_m", "m", with_fluid, "Mean absolute slip over that area"), &
       column_t("moment_nm", "N m", with_fluid, &
-               "Seismic moment: shear modulus times mean slip times area"), &
+         "Seismic moment: shear modulus times mean slip times area"), &
       column_t("largest_moment_rate_nm_s", "N m/s", with_fluid, &
-               "Largest moment rate, mean over a time step"), &
+         "Largest moment rate, mean over a time step"), &
       column_t("magnitude", "-", with_fluid, &
-               "Moment magnitude (log10(moment_nm) - 9.1)/1.5 (Hanks and Kanamori 1979)"), &
+         "Moment magnitude (log10(moment_nm) - 9.1)/1.5 (Hanks and Kanamori 1979)"), &
       column_t("open_share", "-", with_fluid, &
-               "Share of the moment from open cells, without friction"), &
+         "Share of the moment from open cells, without friction"), &
       column_t("sudden_share", "-", with_fluid, &
-               "Share of the moment from steps with unstable growth, which is instantaneous"), &
+         "Share of the moment from steps with unstable growth, which is instantaneous"), &
       column_t("ended_by", "-", with_fluid, "Reason of its end"), &
       column_t("kind", "-", with_fluid, &
-               "Whether the largest slip rate exceeds seismic_slip_rate of &output in every "// &
-               "step"), &
+         "Whether the largest slip rate exceeds seismic_slip_rate of &output in every step"), &
       column_t("duration_s", "s", with_fluid, "end_s - time_s"), &
       column_t("x_onset_m", "m", with_fluid, &
-               "Nucleation point: centre of the cell with the largest slip rate in its first "// &
-               "step"), &
+         "Nucleation point: centre of the cell with the largest slip rate in its first step"), &
       column_t("y_onset_m", "m", with_fluid, "y of the same"), &
       column_t("largest_slip_rate_m_s", "m/s", with_fluid, &
-               "Largest slip rate of a cell, mean over a time step"), &
+         "Largest slip rate of a cell, mean over a time step"), &
       column_t("mean_slip_rate_m_s", "m/s", with_fluid, "Mean slip over duration"), &
       column_t("stress_drop_pa", "Pa", with_fluid, &
-               "Static stress drop: decrease of the shear traction in the event, mean over "// &
-               "its area")]
+         "Static stress drop: decrease of the shear traction in the event, mean over its area")]
 
    type(column_t), parameter :: record_keys(*) = [ &
       column_t("scene", "-", always, "The scene's name"), &
       column_t("version", "-", always, "Version of this program"), &
       column_t("status", "-", always, "How the run ended"), &
       column_t("reason", "-", always, "Reason of the end"), &
-      column_t("steps", "-", always, &
-               "Accepted time steps; without a fluid load states"), &
+      column_t("steps", "-", always, "Accepted time steps; without a fluid load states"), &
       column_t("cells", "-", always, "Triangles of the mesh at the end"), &
       column_t("fracture_cells", "-", always, "Fracture cells at the end"), &
       column_t("dofs", "-", always, "Unknowns by kind"), &
@@ -283,16 +265,15 @@ module report_columns
       column_t("dofs.matrix_pressure", "-", with_fluid, "Pore pressure"), &
       column_t("dofs.fracture_jump", "-", with_fluid, "Jump of the displacement"), &
       column_t("dofs.fracture_face_pressure", "-", with_fluid, &
-               "Pore pressure on the faces of the fractures"), &
+         "Pore pressure on the faces of the fractures"), &
       column_t("dofs.fracture_pressure", "-", with_fluid, "Pressure in the fractures"), &
       column_t("dofs.fracture_flow", "-", with_fluid, &
-               "Flow between fracture cells and into intersections"), &
+         "Flow between fracture cells and into intersections"), &
       column_t("dofs.intersection_pressure", "-", with_joints, &
-               "Pressure at intersections and at fracture ends on sides with prescribed "// &
-               "pressure"), &
+         "Pressure at intersections and at fracture ends on sides with prescribed pressure"), &
       column_t("dofs.windows", "-", with_fluid, "Displacement in the windows around the tips"), &
       column_t("dofs.windows_reference", "-", with_fluid, &
-               "Displacement in the body as one window, for comparison"), &
+         "Displacement in the body as one window, for comparison"), &
       column_t("used", "-", always, "Features used by the run"), &
       column_t("left_out", "-", always, "Features not used"), &
       column_t("timers_s", "s", always, "Processor time by phase"), &
@@ -310,27 +291,26 @@ module report_columns
       column_t("wall_s", "s", always, "Wall time"), &
       column_t("peak_memory_mb", "MB", always, "Peak memory, in units of 2^20 bytes"), &
       column_t("mass_error_relative", "-", always, &
-               "Largest mass_error_relative of history.csv; 0 without a fluid"), &
+         "Largest mass_error_relative of history.csv; 0 without a fluid"), &
       column_t("contact_residual", "-", always, &
-               "Largest relative residual of the contact problem at an accepted state"), &
+         "Largest relative residual of the contact problem at an accepted state"), &
       column_t("keq_over_kic", "-", with_toughness, &
-               "Largest keq_pa_sqrtm of tips.csv over the toughness"), &
+         "Largest keq_pa_sqrtm of tips.csv over the toughness"), &
       column_t("lowest_pressure_pa", "Pa", with_fluid, &
-               "Lowest fluid pressure of all cells and accepted states"), &
+         "Lowest fluid pressure of all cells and accepted states"), &
       column_t("condition_estimate", "-", with_fractures, &
-               "Largest estimated condition number of the Newton matrices"), &
+         "Largest estimated condition number of the Newton matrices"), &
       column_t("forward_error_bound", "-", with_fractures, &
-               "Largest bound of the relative error of their jumps and pressures"), &
+         "Largest bound of the relative error of their jumps and pressures"), &
       column_t("smallest_angle_deg", "degree", without_fluid, &
-               "Smallest angle of the triangles of all meshes"), &
+         "Smallest angle of the triangles of all meshes"), &
       column_t("energy_error_relative", "-", with_error, &
-               "Estimated error of the last solution in the energy norm"), &
+         "Estimated error of the last solution in the energy norm"), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem"), &
       column_t("newton_iterations.total", "-", always, "All iterations, including cut steps"), &
       column_t("newton_iterations.max", "-", always, "Largest number in one accepted step"), &
       column_t("step_cuts", "-", always, "Number of step cuts"), &
-      column_t("increments", "-", with_growth, &
-               "Increments of growth, each of one or more tips"), &
+      column_t("increments", "-", with_growth, "Increments of growth, each of one or more tips"), &
       column_t("meshes", "-", with_growth, "Number of meshes"), &
       column_t("meshes.whole", "-", with_growth, "Meshes of the whole body"), &
       column_t("meshes.patched", "-", with_growth, "Meshes of patches around growing tips"), &
@@ -342,23 +322,23 @@ module report_columns
       column_t("fractures[].name", "-", always, "Its name in the scene"), &
       column_t("fractures[].length_m", "m", always, "Its length"), &
       column_t("fractures[].s_start_m", "m", always, &
-               "Arc length of its first vertex: 0, or negative after growth there"), &
+         "Arc length of its first vertex: 0, or negative after growth there"), &
       column_t("fractures[].x_m", "m", always, "x of its vertices, a list"), &
       column_t("fractures[].y_m", "m", always, "y of its vertices, a list"), &
       column_t("tips", "-", always, "The free tips at the end"), &
       column_t("tips[].tip", "-", always, &
-               "Number of the tip, as in tips.csv; those of joined tips are not reused"), &
+         "Number of the tip, as in tips.csv; those of joined tips are not reused"), &
       column_t("tips[].fracture", "-", always, "Number of its fracture"), &
       column_t("tips[].end", "-", always, "End of the fracture: `start` or `end`"), &
       column_t("tips[].x_m", "m", always, "Position of the tip"), &
       column_t("tips[].y_m", "m", always, "Position of the tip"), &
       column_t("tips[].direction", "-", always, "Unit vector straight ahead, x and y"), &
       column_t("joints", "-", always, &
-               "Points where fractures meet each other or the boundary; may be empty"), &
+         "Points where fractures meet each other or the boundary; may be empty"), &
       column_t("joints[].kind", "-", always, "Type of joint"), &
       column_t("joints[].time_s", "s", with_fluid, "Time at which the joint formed"), &
       column_t("joints[].load_factor", "-", without_fluid, &
-               "Load factor at which the joint formed"), &
+         "Load factor at which the joint formed"), &
       column_t("joints[].x_m", "m", always, "Position of the joint"), &
       column_t("joints[].y_m", "m", always, "Position of the joint"), &
       column_t("joints[].fractures", "-", always, "Numbers of the fractures, each once"), &
@@ -387,8 +367,7 @@ module report_columns
 
    type(column_t), parameter :: intersection_fields(*) = [ &
       column_t("pressure", "Pa", with_fluid, &
-               "Fluid pressure at intersections and at fracture ends on sides with prescribed "// &
-               "pressure")]
+         "Fluid pressure at intersections and at fracture ends on sides with prescribed pressure")]
 
    type(word_t), parameter :: contact_words(*) = [ &
       word_t("stick", "closed, no slip increment"), &
@@ -403,25 +382,25 @@ module report_columns
       word_t("joint", "a tip has joined a fracture or the boundary"), &
       word_t("arrest", "a tip has stopped permanently, for the reason in `detail`"), &
       word_t("step_cut", &
-               "a time step did not converge, had too large a time error, or tips would begin "// &
-               "to grow or grow too far in it: it is repeated with a shorter step"), &
+         "a time step did not converge, had too large a time error, or tips would begin to "// &
+         "grow or grow too far in it: it is repeated with a shorter step"), &
       word_t("unstable_growth", &
-               "tips have grown at constant time until they arrested, or exceed K_IC in the "// &
-               "initial state and grow at once; without a fluid a row at the start and one at "// &
-               "the end, with the energy released"), &
+         "tips have grown at constant time until they arrested, or exceed K_IC in the initial "// &
+         "state and grow at once; without a fluid a row at the start and one at the end, with "// &
+         "the energy released"), &
       word_t("bifurcation", &
-               "tips grow together, but any difference between them would grow: one of them "// &
-               "may advance ahead of the others; or one of equal tips is ahead, by chance"), &
+         "tips grow together, but any difference between them would grow: one of them may "// &
+         "advance ahead of the others; or one of equal tips is ahead, by chance"), &
       word_t("remesh", "the mesh was updated after growth"), &
     word_t("well", &
-             "a stage of a well begins, it is shut in, or it reaches or leaves its pressure "// &
-             "limit; see `detail`"), &
+         "a stage of a well begins, it is shut in, or it reaches or leaves its pressure limit; "// &
+         "see `detail`"), &
       word_t("growth_uncertain", &
-               "a tip grows or may grow, but the error of its K makes the pressure or the "// &
-               "position uncertain; see `detail`"), &
+         "a tip grows or may grow, but the error of its K makes the pressure or the position "// &
+         "uncertain; see `detail`"), &
       word_t("window", &
-               "stress intensity factors of a tip that would grow are too uncertain: its "// &
-               "window is enlarged or refined; see `detail`")]
+         "stress intensity factors of a tip that would grow are too uncertain: its window is "// &
+         "enlarged or refined; see `detail`")]
 
    type(word_t), parameter :: end_words(*) = [ &
       word_t("stick", "no cell of it slips any more"), &
@@ -446,7 +425,7 @@ module report_columns
 
 contains
 
-   !> Whether a column is written in the run of a scene, as far as the scene decides.
+   !> A column is written in the run of a scene, as far as that follows from the scene.
    elemental logical function applies(column, scene)
       type(column_t), intent(in) :: column
       type(scene_t), intent(in) :: scene
@@ -471,7 +450,7 @@ contains
       end select
    end function applies
 
-   !> How many wells a scene with a fluid has.
+   !> Number of wells of a scene with a fluid.
    pure integer function well_count(scene) result(n)
       type(scene_t), intent(in) :: scene
 

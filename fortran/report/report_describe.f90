@@ -1,6 +1,6 @@
-!> The table of names as JSON, for `wingcrack-solver --describe json`: what a scene can say, what
-!! the files of a run hold, limits and plausibility checks. The pages of docs/ and the Python
-!! packages take it from post/wingcrack/names.json, which is this text.
+!> The table of names as JSON, for `wingcrack-solver --describe json`: the names of scene files, the
+!! contents of a run's files, limits and plausibility checks. The pages of docs/ and the Python
+!! packages read this text from post/wingcrack/names.json.
 module report_describe
    use base_kinds, only: rk
    use report_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
@@ -10,20 +10,84 @@ module report_describe
                              status_words, tip_columns, well_columns, well_words, word_t
    use report_limits, only: limits
    use report_text, only: json_t
-   use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, &
-                               in_mechanics, kind_choice, kind_integer, kind_logical, kind_name, &
-                               kind_real, kind_reals, kind_wholes, need_always, need_choice, &
-                               need_fluid, need_fracture, need_growth, need_tips, parameter_t, &
-                               parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, in_mechanics, &
+                               parameter_t
    use scene_plausible, only: doubts
    implicit none(type, external)
    private
 
    public :: description
 
+   ! Contents of the files in whole sentences. The texts keep their own layout.
+   !&<
+   character(len=*), parameter :: about_history = &
+      "A row per accepted time step, after that of the initial state if it was in equilibrium; "// &
+      "without a fluid a row at the end of each step of the load programme and at each onset "// &
+      "of growth. Growth follows its step: it appears in the next row, also if it ends the "// &
+      "run. With a fluid, a step may contain several increments of growth, which the windows "// &
+      "around the tips follow: tips.csv has a row for each, and the next row of history.csv "// &
+      "follows when the mesh of the body has been updated. Fluid is conserved: up to the mass "// &
+      "error, the injected and prefilled volume is the sum of fracture_fluid_m2, "// &
+      "rock_fluid_m2, outflow_m2 and rock_outflow_m2, and leak-off is the sum of rock_fluid_m2 "// &
+      "and rock_outflow_m2."
+   character(len=*), parameter :: about_tips = &
+      "With growth or stress intensity factors: a row per free tip and state, or per tip and "// &
+      "increment of growth. If any tip grows, the rows of all tips contain the values before "// &
+      "the increment. A tip that has joined a target, or was joined, has no further rows."
+   character(len=*), parameter :: about_fractures = &
+      "With fractures: a row per fracture cell and written state. These are the times given by "// &
+      "`interval` of `&output`, without a fluid the ends of the steps of the load programme; "// &
+      "the first state on each mesh that was updated after growth, without a fluid each onset "// &
+      "of growth; and the end of the run."
+   character(len=*), parameter :: about_probes = &
+      "With probes: a row per row of history.csv. `NAME` stands for the name of a probe; all "// &
+      "columns except the time repeat for each probe."
+   character(len=*), parameter :: about_slip_events = &
+      "With a fluid and fractures: a row per slip event, after its end. In a step, a patch is "// &
+      "a sequence of adjacent cells of one fracture that slip, in contact or open. Patches of "// &
+      "successive steps belong to one event if they have faces in common; events that meet "// &
+      "merge. An event ends when no cell of it slips any more, or when its largest slip rate "// &
+      "passes `seismic_slip_rate` of `&output`: faster slip is a separate event, from "// &
+      "nucleation to arrest. Events with a mean slip below `stimulated_jump` of `&output` are "// &
+      "omitted, and slip of the initial equilibrium is no event. Without `radiation_damping` "// &
+      "the simulation is quasi-static: slip lasts as long as the injection drives it, the rate "// &
+      "of a jump is that of the step that contains it, and moment and magnitude include all "// &
+      "slip, seismic or not. `sudden_share` is the part due to unstable growth, which is "// &
+      "instantaneous. The sum of the moments is the increase of seismic_moment_nm of "// &
+      "history.csv since the first state, times `out_of_plane_length`, except for the omitted "// &
+      "events."
+   character(len=*), parameter :: about_matrix = &
+      "Fields of the rock in the states of fractures.csv, unless the scene disables VTU files. "// &
+      "The number of states of growth is limited by `growth_states` of `&output`; run.json has "// &
+      "a warning if it is exceeded. There are values of the triangles, and the displacement of "// &
+      "their nodes. Without a fluid the triangles have six nodes. Every array has its unit as "// &
+      "VTK's key `UNITS_LABEL`. The field data `TimeValue` of each file is its time_s or "// &
+      "load_factor, and `history_row` the number of the row of history.csv. In the .pvd files "// &
+      "times increase from file to file, as ParaView requires: states with the same load "// &
+      "factor differ in the last digit, and those of a decreasing load are in the order of "// &
+      "their load factor; with `factors` of `&load` the time is history_row."
+   character(len=*), parameter :: about_fracture_fields = &
+      "Fields of the fracture cells. The names of fractures 1, 2 and so on are in "// &
+      "network.json: VTU files contain only numbers, for compatibility with simple readers "// &
+      "(meshio)."
+   !&>
+
+   !> Names of the kinds of parameters, kind_real to kind_wholes.
+   character(len=*), parameter :: kind_words(8) = [character(len=21) :: "number", &
+                                                     "list of numbers", "whole number", "logical", &
+                                                                         "text", "name", "choice", &
+                                                                            "list of whole numbers"]
+
+   !> Scenes in which a name without a default is required, need_never to need_choice.
+   character(len=*), parameter :: need_words(0:6) = [character(len=26) :: "", "always", &
+                                                                  "with &fluid", "with &fracture", &
+                                                                     "with growth or intensities", &
+                                                                   "with growth", "with its choice"]
+
 contains
 
-   !> The whole table.
+   !> The table of names as JSON.
    function description(version) result(text)
       character(len=*), intent(in) :: version  !< of the program
       character(len=:), allocatable :: text
@@ -71,6 +135,7 @@ contains
       text = json%text()
    end function description
 
+   !> A group with its names.
    subroutine put_group(json, group)
       type(json_t), intent(inout) :: json
       type(group_t), intent(in) :: group
@@ -89,14 +154,14 @@ contains
       call json%end_object()
    end subroutine put_group
 
-   !> A name of a group; without the members that say nothing of it.
+   !> A name of a group, without the members that do not apply.
    subroutine put_parameter(json, parameter)
       type(json_t), intent(inout) :: json
       type(parameter_t), intent(in) :: parameter
       character(len=:), allocatable :: rest
 
       call begin_row(json, parameter%name, parameter%unit)
-      call json%add("kind", kind_words(parameter%kind))
+      call json%add("kind", trim(kind_words(parameter%kind)))
       call put_text(json, "default", parameter%default)
       call put_text(json, "required", need_words(parameter%need))
       call put_text(json, "absent", parameter%absent)
@@ -127,135 +192,28 @@ contains
       call end_row(json, parameter%meaning)
    end subroutine put_parameter
 
-   pure function kind_words(kind) result(words)
-      integer, intent(in) :: kind
-      character(len=:), allocatable :: words
-
-      select case (kind)
-      case (kind_real)
-         words = "number"
-      case (kind_reals)
-         words = "list of numbers"
-      case (kind_integer)
-         words = "whole number"
-      case (kind_wholes)
-         words = "list of whole numbers"
-      case (kind_logical)
-         words = "logical"
-      case (kind_name)
-         words = "name"
-      case (kind_choice)
-         words = "choice"
-      case default
-         words = "text"
-      end select
-   end function kind_words
-
-   !> Where a name without a default is required; empty: nowhere.
-   pure function need_words(need) result(words)
-      integer, intent(in) :: need
-      character(len=:), allocatable :: words
-
-      select case (need)
-      case (need_always)
-         words = "always"
-      case (need_fluid)
-         words = "with &fluid"
-      case (need_fracture)
-         words = "with &fracture"
-      case (need_tips)
-         words = "with growth or intensities"
-      case (need_growth)
-         words = "with growth"
-      case (need_choice)
-         words = "with its choice"
-      case default
-         words = ""
-      end select
-   end function need_words
-
    !> The files of a run.
    subroutine put_files(json)
       type(json_t), intent(inout) :: json
 
-      call put_file(json, "history.csv", &
-                    "A row per accepted time step, after that of the initial state if "// &
-                    "it was in equilibrium; without a fluid a row at the end of each "// &
-                    "step of the load programme and at each onset of growth. Growth "// &
-                    "follows its step: it appears in the next row, also if it ends "// &
-                    "the run. With a fluid, a step may contain several increments of "// &
-                    "growth, which the windows around the tips follow: tips.csv has a "// &
-                    "row for each, and the next row of history.csv follows when the "// &
-                    "mesh of the body has been updated. Fluid is conserved: up to the "// &
-                    "mass error, the injected and prefilled volume is the sum of "// &
-                    "fracture_fluid_m2, rock_fluid_m2, outflow_m2 and "// &
-                    "rock_outflow_m2, and leak-off is the sum of rock_fluid_m2 and "// &
-                    "rock_outflow_m2.", history_columns)
-      call put_file(json, "tips.csv", &
-                    "With growth or stress intensity factors: a row per free tip and "// &
-                    "state, or per tip and increment of growth. If any tip grows, the "// &
-                    "rows of all tips contain the values before the increment. A tip "// &
-                    "that has joined a target, or was joined, has no further rows.", tip_columns)
-      call put_file(json, "fractures.csv", &
-                    "With fractures: a row per fracture cell and written state. These "// &
-                    "are the times given by `interval` of `&output`, without a fluid "// &
-                    "the ends of the steps of the load programme; the first state on "// &
-                    "each mesh that was updated after growth, without a fluid each "// &
-                    "onset of growth; and the end of the run.", fracture_columns)
-      call put_file(json, "probes.csv", &
-                    "With probes: a row per row of history.csv. `NAME` stands for the "// &
-                    "name of a probe; all columns except the time repeat for each "// &
-                    "probe.", probe_columns)
+      call put_file(json, "history.csv", about_history, history_columns)
+      call put_file(json, "tips.csv", about_tips, tip_columns)
+      call put_file(json, "fractures.csv", about_fractures, fracture_columns)
+      call put_file(json, "probes.csv", about_probes, probe_columns)
       call put_file(json, "events.csv", "A row per event.", event_columns)
-      call put_file(json, "slip_events.csv", &
-                    "With a fluid and fractures: a row per slip event, after its end. "// &
-                    "In a step, a patch is a sequence of adjacent cells of one "// &
-                    "fracture that slip, in contact or open. Patches of successive "// &
-                    "steps belong to one event if they have faces in common; events "// &
-                    "that meet merge. An event ends when no cell of it slips any "// &
-                    "more, or when its largest slip rate passes `seismic_slip_rate` "// &
-                    "of `&output`: faster slip is a separate event, from nucleation "// &
-                    "to arrest. Events with a mean slip below `stimulated_jump` of "// &
-                    "`&output` are omitted, and slip of the initial equilibrium is no "// &
-                    "event. Without `radiation_damping` the simulation is "// &
-                    "quasi-static: slip lasts as long as the injection drives it, the "// &
-                    "rate of a jump is that of the step that contains it, and moment "// &
-                    "and magnitude include all slip, seismic or not. `sudden_share` "// &
-                    "is the part due to unstable growth, which is instantaneous. The "// &
-                    "sum of the moments is the increase of seismic_moment_nm of "// &
-                    "history.csv since the first state, times `out_of_plane_length`, "// &
-                    "except for the omitted events.", &
-                    slip_event_columns)
-      call put_file(json, "wells.csv", "With wells: a row per well and row of history.csv.", &
-                    well_columns)
+      call put_file(json, "slip_events.csv", about_slip_events, slip_event_columns)
+      call put_file(json, "wells.csv", &
+                    "With wells: a row per well and row of history.csv.", well_columns)
       call put_file(json, "run.json", &
-                    "Summary of the run. A dot in a name denotes an object.", &
-                    record_keys)
+                    "Summary of the run. A dot in a name denotes an object.", record_keys)
       call put_file(json, "network.json", &
-                    "The fractures, their tips and joints. `[]` stands for each item "// &
-                    "of a list.", network_keys)
-      call put_file(json, "matrix.vtu", &
-                    "Fields of the rock in the states of fractures.csv, unless the "// &
-                    "scene disables VTU files. The number of states of growth is "// &
-                    "limited by `growth_states` of `&output`; run.json has a warning "// &
-                    "if it is exceeded. There are values of the triangles, and the "// &
-                    "displacement of their nodes. Without a fluid the triangles have "// &
-                    "six nodes. Every array has its unit as VTK's key `UNITS_LABEL`. "// &
-                    "The field data `TimeValue` of each file is its time_s or "// &
-                    "load_factor, and `history_row` the number of the row of "// &
-                    "history.csv. In the .pvd files times increase from file to file, "// &
-                    "as ParaView requires: states with the same load factor differ in "// &
-                    "the last digit, and those of a decreasing load are in the order "// &
-                    "of their load factor; with `factors` of `&load` the time is "// &
-                    "history_row.", &
-                    matrix_fields)
-      call put_file(json, "fractures.vtu", &
-                    "Fields of the fracture cells. The names of fractures 1, 2 and so "// &
-                    "on are in network.json: VTU files contain only numbers, for "// &
-                    "compatibility with simple readers (meshio).", fracture_fields)
+                    "The fractures, their tips and joints. `[]` stands for each item of a "// &
+                    "list.", network_keys)
+      call put_file(json, "matrix.vtu", about_matrix, matrix_fields)
+      call put_file(json, "fractures.vtu", about_fracture_fields, fracture_fields)
       call put_file(json, "intersections.vtu", &
-                    "Fields of the intersections of fractures; written only with a "// &
-                    "fluid and if there are any.", intersection_fields)
+                    "Fields of the intersections of fractures; written only with a fluid and "// &
+                    "if there are any.", intersection_fields)
    end subroutine put_files
 
    !> A file, its rows and its columns, keys or fields.
@@ -279,7 +237,7 @@ contains
       call json%end_object()
    end subroutine put_file
 
-   !> The words that a column or key of a file may hold.
+   !> The possible words of a column or key of a file.
    subroutine put_words(json, file, name, words)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: file
@@ -298,7 +256,7 @@ contains
       call json%end_object()
    end subroutine put_words
 
-   !> A row of a table is a line of the text.
+   !> Begin a row of a table, which is one line of the text.
    subroutine begin_row(json, name, unit)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: name, unit
@@ -309,6 +267,7 @@ contains
       call json%add("unit", trim(unit))
    end subroutine begin_row
 
+   !> End a row of a table.
    subroutine end_row(json, meaning)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: meaning
@@ -318,7 +277,7 @@ contains
       json%one_line = .false.
    end subroutine end_row
 
-   !> A text, if there is one.
+   !> A text, unless it is empty.
    subroutine put_text(json, key, text)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: key, text
@@ -326,7 +285,7 @@ contains
       if (text /= "") call json%add(key, trim(text))
    end subroutine put_text
 
-   !> What is false is left out.
+   !> A logical, unless it is false.
    subroutine put_logical(json, key, value)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: key
@@ -335,7 +294,7 @@ contains
       if (value) call json%add_raw(key, "true")
    end subroutine put_logical
 
-   !> Which scenes may have a group or a name, if not all.
+   !> The scenes that may have a group or a name, if not all.
    subroutine put_scenes(json, scenes)
       type(json_t), intent(inout) :: json
       integer, intent(in) :: scenes

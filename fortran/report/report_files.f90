@@ -1,7 +1,6 @@
-!> Directories, and files that are always complete: written as NAME.part, then renamed.
-!!
-!! The folder of a run. It is not changed before it is certain that this run may use it, and files
-!! of an earlier run remain until this run replaces them.
+!> Files that are always complete: written as NAME.part, then renamed; and the folder of a run. The
+!! folder is not changed before the run has claimed it, and files of an earlier run remain until
+!! they are replaced.
 module report_files
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_null_char, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only: int32, int64, int8, real64
@@ -15,7 +14,7 @@ module report_files
    public :: make_directory, place_t, remove_file, rename_file, reserve_file, whole_file_t
    public :: write_text_file
 
-   !> A file that gets its name when it is complete. The first failure is kept; `commit` reports it.
+   !> A file that gets its name when it is complete. `commit` reports the first failure.
    type :: whole_file_t
       character(len=:), allocatable :: path
       character(len=:), allocatable :: fault
@@ -33,7 +32,7 @@ module report_files
    end type whole_file_t
 
    interface
-      !> As report_files.c has it: each gives 0, or why not.
+      !> Functions of report_files.c; the status is 0 or the number of an error.
       function c_open(path, file) result(status) bind(C, name="output_open")
          import :: c_char, c_int, c_ptr
          implicit none(type, external)
@@ -78,7 +77,7 @@ module report_files
          integer(c_int) :: status
       end function c_mkdir
 
-      !> Rename, replacing what has the new name, in one step that no reader sees half done.
+      !> Rename, replacing a file with the new name, in one step for all readers.
       function c_rename(old_path, new_path) result(status) bind(C, name="rename")
          import :: c_char, c_int
          implicit none(type, external)
@@ -106,7 +105,8 @@ module report_files
    integer(c_int), parameter :: is_held = -1  !< by another run; as in report_files.c
    integer(c_int), parameter :: no_hold = -2
 
-   !> The folder, held against other runs from `claim` to `release` or the end of the process.
+   !> The folder of a run, locked against other runs from `claim` to `release` or the end of the
+   !! process.
    type :: place_t
       character(len=:), allocatable :: directory
       integer(c_int), private :: hold = no_hold
@@ -208,8 +208,7 @@ contains
       call file%commit(error)
    end subroutine write_text_file
 
-   !> Take room for a file that will be written later: it waits aside until then, and a disk that
-   !! has become full takes as many bytes of the file itself.
+   !> Reserve disk space for a file that will be written later, by a file NAME.part.
    subroutine reserve_file(path, n_bytes, error)
       character(len=*), intent(in) :: path
       integer, intent(in) :: n_bytes
@@ -221,7 +220,7 @@ contains
       call end_writing(file, error)
    end subroutine reserve_file
 
-   !> Begin to write; the file has its name only after `commit`.
+   !> Begin a file, which gets its name by `commit`.
    subroutine open_aside(self, path)
       class(whole_file_t), intent(out) :: self
       character(len=*), intent(in) :: path
@@ -233,8 +232,7 @@ contains
       call keep_fault(self, status)
    end subroutine open_aside
 
-   !> Complete the file and give it its name; after a failure nothing is left but what was there
-   !! before.
+   !> Complete the file and give it its name; after a failure an earlier file of this name remains.
    subroutine commit(self, error)
       class(whole_file_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -243,7 +241,7 @@ contains
       if (.not. allocated(error)) call rename_file(self%path//".part", self%path, error)
    end subroutine commit
 
-   !> Complete the file aside; after a failure it is gone.
+   !> Complete NAME.part; after a failure it is removed.
    subroutine end_writing(self, error)
       class(whole_file_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -311,7 +309,7 @@ contains
       end do
    end subroutine keep_fault
 
-   !> Make the folder and hold it. `refused`: the folder is a wrong choice, and nothing was written.
+   !> Make the folder and lock it. `refused`: the folder cannot be used, and nothing was written.
    subroutine claim(self, directory, source, refused, error)
       class(place_t), intent(out) :: self
       character(len=*), intent(in) :: directory
@@ -345,7 +343,7 @@ contains
                                     ": wait for its end, or name another folder with --out")
    end subroutine claim
 
-   !> A path, or the beginning of it, is that of a file and no folder.
+   !> A path, or a beginning of it, is that of a file.
    function leads_through_file(path) result(answer)
       character(len=*), intent(in) :: path
       logical :: answer, exists, is_folder
@@ -362,7 +360,7 @@ contains
       end do
    end function leads_through_file
 
-   !> Which process, where that is known.
+   !> The number of a process in words, if it is known.
    pure function process_text(process) result(text)
       integer(c_int), intent(in) :: process
       character(len=:), allocatable :: text
@@ -371,7 +369,7 @@ contains
       if (process > 0) text = " (process "//integer_text(int(process, ik))//")"
    end function process_text
 
-   !> A run has left files here.
+   !> The folder contains files of a run.
    function has_results(self)
       class(place_t), intent(in) :: self
       logical :: has_results
@@ -383,7 +381,7 @@ contains
       end do
    end function has_results
 
-   !> Remove what an earlier run has left, but scene.nml, which this one has written.
+   !> Remove the files of an earlier run except scene.nml, which this run has written.
    subroutine clear(self)
       class(place_t), intent(in) :: self
       logical :: was_there
@@ -395,7 +393,7 @@ contains
       end do
    end subroutine clear
 
-   !> Somebody has removed or replaced the folder, or files of the run that were written before.
+   !> Raise an error if the folder or written files have been removed or replaced.
    subroutine check(self, files, error)
       class(place_t), intent(in) :: self
       type(text_t), intent(in) :: files(:)  !< paths in the folder
@@ -416,7 +414,7 @@ contains
       end do
    end subroutine check
 
-   !> Let other runs have the folder.
+   !> Unlock the folder.
    subroutine release(self)
       class(place_t), intent(inout) :: self
 
@@ -424,6 +422,7 @@ contains
       self%hold = no_hold
    end subroutine release
 
+   !> Path of a file in the folder.
    pure function path_in(place, name) result(path)
       class(place_t), intent(in) :: place
       character(len=*), intent(in) :: name

@@ -5,8 +5,7 @@ module report_network
    use base_kinds, only: ik, rk
    use base_texts, only: text_t
    use base_tolerances, only: same_place
-   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner, point_joint_t, &
-                         point_joint_x
+   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner
    use report_files, only: write_text_file
    use report_text, only: json_t, newline, text_buffer_t
    implicit none(type, external)
@@ -14,22 +13,28 @@ module report_network
 
    public :: network_record_t
 
-   !> A joint: where a fracture ends on, crosses or meets another, or ends on the outer boundary.
+   !> Names of the kinds of joints, point_boundary to point_corner.
+   character(len=*), parameter :: joint_names(point_boundary:point_corner) = &
+                                  [character(len=8) :: "boundary", "T", "X", "V"]
+
+   !> A joint: a point where a fracture ends on, crosses or meets another, or ends on the outer
+   !! boundary.
    type :: joint_t
       integer(ik) :: kind = 0  !< point_boundary .. point_corner
       real(rk) :: xy(2) = 0.0_rk  !< [m]
-      real(rk) :: time = 0.0_rk  !< first seen [s]
-      integer(ik), allocatable :: fractures(:)  !< that meet here
+      real(rk) :: time = 0.0_rk  !< time of its first state [s]
+      integer(ik), allocatable :: fractures(:)  !< fractures at the joint
    end type joint_t
 
-   !> The network's history.
+   !> The network in all its states.
    type :: network_record_t
       character(len=:), allocatable, private :: path
       type(text_t), allocatable, private :: names(:)  !< of the fractures
       character(len=:), allocatable, private :: clock  !< key of the times
-      type(network_t), private :: network  !< as last seen
-      type(fracture_mesh_t), private :: mesh  !< as last seen
-      integer(ik), allocatable, private :: tip_ends(:, :)  !< (2, tips) fracture and end at first
+      type(network_t), private :: network  !< last state
+      type(fracture_mesh_t), private :: mesh  !< last state
+      !> (2, tips) fracture, end of initial tips
+      integer(ik), allocatable, private :: tip_ends(:, :)
       type(joint_t), allocatable, private :: joints(:)
       type(text_buffer_t), private :: steps  !< JSON of the steps so far
       logical, private :: is_written = .true.
@@ -46,7 +51,7 @@ contains
       class(network_record_t), intent(out) :: self
       character(len=*), intent(in) :: path
       type(text_t), intent(in) :: names(:)  !< of the fractures
-      logical, intent(in) :: has_fluid  !< else times are load factors
+      logical, intent(in) :: has_fluid  !< .false.: times are load factors
 
       self%clock = "load_factor"
       if (has_fluid) self%clock = "time_s"
@@ -55,12 +60,12 @@ contains
       allocate (self%joints(0))
    end subroutine open_record
 
-   !> Note the network at a time; nothing happens if it has not changed.
+   !> Add the network at a time, if it has changed.
    subroutine step(self, time, network, mesh)
       class(network_record_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
       type(network_t), intent(in) :: network
-      type(fracture_mesh_t), intent(in) :: mesh  !< with its points' kinds and its tips
+      type(fracture_mesh_t), intent(in) :: mesh  !< with kinds of points and tips
       type(json_t) :: json
 
       if (same_network(network, self%network) .and. self%steps%length > 0) return
@@ -71,7 +76,7 @@ contains
                                  order=[2, 1])
       end if
       call note_joints(self, time)
-      call json%keep_on_one_line()
+      json%one_line = .true.
       call json%begin_object("")
       call json%add(self%clock, time)
       call add_fractures(json, self)
@@ -96,7 +101,7 @@ contains
       call json%begin_array("joints")
       do i = 1, size(self%joints)
          call json%begin_object("")
-         call json%add("kind", joint_name(self%joints(i)%kind))
+         call json%add("kind", trim(joint_names(self%joints(i)%kind)))
          call json%add(self%clock, self%joints(i)%time)
          call json%add("x_m", self%joints(i)%xy(1))
          call json%add("y_m", self%joints(i)%xy(2))
@@ -134,7 +139,7 @@ contains
       call json%end_array()
    end subroutine add_fractures
 
-   !> The free tips, with the numbers that they have from the start of the run.
+   !> The free tips, with their numbers from the start of the run.
    subroutine add_tips(json, record)
       type(json_t), intent(inout) :: json
       type(network_record_t), intent(in) :: record
@@ -158,7 +163,7 @@ contains
       call json%end_array()
    end subroutine add_tips
 
-   !> Keep the joints known before with their times, and add the new ones.
+   !> Update the joints; earlier ones keep their times.
    subroutine note_joints(self, time)
       class(network_record_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
@@ -166,7 +171,7 @@ contains
       type(joint_t), allocatable :: now(:)
       integer(ik) :: point
       integer :: i, n
-      real(rk) :: same  ! points closer than this are one [m]
+      real(rk) :: same  ! distance of equal points [m]
 
       same = same_place*max(maxval(abs(self%network%xy)), tiny(1.0_rk))
       allocate (now(count(self%mesh%point_kind >= point_boundary)))
@@ -199,25 +204,6 @@ contains
          if (.not. any(fractures == f)) fractures = [fractures, f]
       end do
    end function fractures_at
-
-   !> The letter that a kind of joint is known by.
-   pure function joint_name(kind) result(name)
-      integer(ik), intent(in) :: kind
-      character(len=:), allocatable :: name
-
-      select case (kind)
-      case (point_boundary)
-         name = "boundary"
-      case (point_joint_t)
-         name = "T"
-      case (point_joint_x)
-         name = "X"
-      case (point_corner)
-         name = "V"
-      case default
-         name = "unknown"
-      end select
-   end function joint_name
 
    !> Both networks have the same polylines.
    pure function same_network(a, b) result(same)

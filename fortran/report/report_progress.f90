@@ -12,12 +12,12 @@ module report_progress
 
    integer, parameter :: line_width = 79  !< fits a terminal of 80 columns
    integer(c_int), parameter :: standard_error = 2_c_int  !< POSIX file descriptor of error_unit
-   real(rk), parameter :: smallest_pause = 0.1_rk  !< between two renewals [s]
-   real(rk), parameter :: log_pause = 10.0_rk  !< between two lines of the log [s]
+   real(rk), parameter :: smallest_pause = 0.1_rk  !< shortest time between two updates [s]
+   real(rk), parameter :: log_pause = 10.0_rk  !< time between two lines of the log [s]
 
-   !> What the line shows.
+   !> Values of the line.
    type :: progress_values_t
-      real(rk) :: share = 0.0_rk  !< of the run that is done, by what will end it first [-]
+      real(rk) :: share = 0.0_rk  !< completed fraction of the run [-]
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       integer(ik) :: step = 0
       integer(ik) :: n_stick = 0
@@ -25,20 +25,20 @@ module report_progress
       integer(ik) :: n_open = 0
       real(rk) :: fracture_length = 0.0_rk  !< [m]
       real(rk), allocatable :: well_pressure(:)  !< (wells) [Pa]
-      real(rk) :: keq_over_kic = 0.0_rk  !< largest of the tips now; 0: left out [-]
-      logical :: is_load = .false.  !< mechanics only
-      integer(ik) :: solutions = 0  !< tried for the next state so far
+      real(rk) :: keq_over_kic = 0.0_rk  !< largest of the present tips; 0: omitted [-]
+      logical :: is_load = .false.  !< `time` is a load factor
+      integer(ik) :: solutions = 0  !< number of tries for the next state so far
    end type progress_values_t
 
-   !> The line and when it was last renewed.
+   !> The progress line and its last update.
    type :: progress_t
       private
       logical :: is_quiet = .true.
       logical :: is_terminal = .false.
-      logical :: has_line = .false.  !< the cursor stands behind a line of ours
-      integer(lk) :: first = 0_lk  !< clock ticks at the beginning
-      integer(lk) :: last = 0_lk  !< and when the line was renewed
-      integer(lk) :: last_logged = 0_lk  !< and when the log got a line
+      logical :: has_line = .false.  !< the line is on the terminal
+      integer(lk) :: first = 0_lk  !< clock at the beginning [ticks]
+      integer(lk) :: last = 0_lk  !< clock at the last update [ticks]
+      integer(lk) :: last_logged = 0_lk  !< clock at the last line of the log [ticks]
       real(rk) :: ticks_per_second = 1.0_rk
    contains
       procedure :: begin
@@ -58,7 +58,7 @@ module report_progress
 
 contains
 
-   !> Begin; nothing is written to the terminal or to stderr if it shall be quiet.
+   !> Begin; with quiet nothing is written to the terminal or to stderr.
    subroutine begin(self, quiet)
       class(progress_t), intent(out) :: self
       logical, intent(in) :: quiet
@@ -71,11 +71,11 @@ contains
       self%is_terminal = c_isatty(standard_error) == 1_c_int
    end subroutine begin
 
-   !> Renew the line, unless that was done just now.
+   !> Update the line, unless the last update was just before.
    subroutine show(self, values, log_line)
       class(progress_t), intent(inout) :: self
       type(progress_values_t), intent(in) :: values
-      character(len=:), allocatable, intent(out) :: log_line  !< where one is due
+      character(len=:), allocatable, intent(out) :: log_line  !< line for the log, if one is due
       integer(lk) :: now
       real(rk) :: elapsed  ! since the beginning [s]
 
@@ -98,7 +98,7 @@ contains
       flush (error_unit)
    end subroutine show
 
-   !> Take the line away, so that other text can follow.
+   !> Remove the line, so that other text can follow.
    subroutine clear(self)
       class(progress_t), intent(inout) :: self
 
@@ -108,15 +108,15 @@ contains
       self%has_line = .false.
    end subroutine clear
 
-   !> The line: what fits into the width, the most important first.
+   !> The line: as many values as fit into the width, the most important first.
    pure function progress_line(values, elapsed, width) result(line)
       type(progress_values_t), intent(in) :: values
       real(rk), intent(in) :: elapsed  !< wall time so far [s]
-      integer, intent(in) :: width  !< characters at most
+      integer, intent(in) :: width  !< largest number of characters
       character(len=:), allocatable :: line
       real(rk) :: share
-      integer(ik), parameter :: many = 50  ! solutions, which a step rarely takes
-      real(rk), parameter :: first_guess = 0.01_rk  ! of the run, before which nobody knows
+      integer(ik), parameter :: many = 50  ! solutions, which a step rarely needs
+      real(rk), parameter :: first_guess = 0.01_rk  ! smallest share with a time left
 
       share = min(max(values%share, 0.0_rk), 1.0_rk)
       line = integer_text(int(100.0_rk*share, ik))//"%"
@@ -130,7 +130,9 @@ contains
       if (share >= first_guess .and. share < 1.0_rk) then
          call add(duration_text(elapsed*(1.0_rk - share)/share)//" left")
       end if
-      if (allocated(values%well_pressure)) call add_wells(values%well_pressure)
+      if (allocated(values%well_pressure)) then
+         if (size(values%well_pressure) > 0) call add(well_text(values%well_pressure))
+      end if
       if (values%keq_over_kic > 0.0_rk) call add("K/K_IC "//brief_text(values%keq_over_kic, 3))
       call add("L "//brief_text(values%fracture_length, 4)//" m")
       call add("stick "//integer_text(values%n_stick)//" slip "//integer_text(values%n_slip)// &
@@ -138,42 +140,41 @@ contains
 
    contains
 
-      !> The pressures of all wells, or the lowest and the highest.
-      pure subroutine add_wells(pressure)
-         real(rk), intent(in) :: pressure(:)  !< [Pa]
-         integer, parameter :: most = 3
-         character(len=:), allocatable :: piece
-         integer :: w
+      !> Add a part of the line, if it fits.
+      pure subroutine add(part)
+         character(len=*), intent(in) :: part
 
-         if (size(pressure) == 0) return
-         if (size(pressure) > most) then
-            piece = "wells "//megapascals(minval(pressure))//" to "//megapascals(maxval(pressure))
-         else
-            piece = "well "//megapascals(pressure(1))
-            do w = 2, size(pressure)
-               piece = piece//", "//megapascals(pressure(w))
-            end do
-         end if
-         call add(piece//" MPa")
-      end subroutine add_wells
-
-      pure function megapascals(pressure) result(text)
-         real(rk), intent(in) :: pressure  !< [Pa]
-         character(len=:), allocatable :: text
-
-         text = brief_text(1.0e-6_rk*pressure, 4)
-      end function megapascals
-
-      !> One more piece, if it fits.
-      pure subroutine add(piece)
-         character(len=*), intent(in) :: piece
-
-         if (len(line) + 2 + len(piece) <= width) line = line//"  "//piece
+         if (len(line) + 2 + len(part) <= width) line = line//"  "//part
       end subroutine add
 
    end function progress_line
 
-   !> A time as people say it: `8 s`, `12 min`, `3.5 h`.
+   !> The pressures of all wells, or of more than three the lowest and the highest.
+   pure function well_text(pressure) result(text)
+      real(rk), intent(in) :: pressure(:)  !< at least one [Pa]
+      character(len=:), allocatable :: text
+      integer :: w
+
+      if (size(pressure) > 3) then
+         text = "wells "//megapascals(minval(pressure))//" to "//megapascals(maxval(pressure))
+      else
+         text = "well "//megapascals(pressure(1))
+         do w = 2, size(pressure)
+            text = text//", "//megapascals(pressure(w))
+         end do
+      end if
+      text = text//" MPa"
+   end function well_text
+
+   !> A pressure in MPa.
+   pure function megapascals(pressure) result(text)
+      real(rk), intent(in) :: pressure  !< [Pa]
+      character(len=:), allocatable :: text
+
+      text = brief_text(1.0e-6_rk*pressure, 4)
+   end function megapascals
+
+   !> A duration in words: `8 s`, `12 min`, `3.5 h`.
    pure function duration_text(seconds) result(text)
       real(rk), intent(in) :: seconds  !< [s]
       character(len=:), allocatable :: text
@@ -187,7 +188,7 @@ contains
       end if
    end function duration_text
 
-   !> A text with blanks behind it, so that it covers the line before.
+   !> A text with blanks after it, so that it covers the previous line.
    pure function padded(text) result(line)
       character(len=*), intent(in) :: text
       character(len=line_width) :: line

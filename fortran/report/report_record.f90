@@ -1,6 +1,5 @@
-!> run.json: the scene, the end and the cost of a run. report_columns defines its keys.
-!!
-!! The summary of a run at its end: the last lines on the terminal.
+!> run.json: the scene, the end and the cost of a run, with the keys of report_columns; and the last
+!! lines on the terminal.
 module report_record
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
@@ -17,16 +16,16 @@ module report_record
    public :: closing_lines, peak_memory_mb, run_record_t, status_failed, status_finished
    public :: status_stopped
 
-   character(len=*), parameter :: status_finished = "finished"  !< the end that the scene asks for
+   character(len=*), parameter :: status_finished = "finished"  !< the end of the scene was reached
    character(len=*), parameter :: status_stopped = "stopped"  !< interrupted from outside
-   character(len=*), parameter :: status_failed = "failed"  !< could not go on
+   character(len=*), parameter :: status_failed = "failed"  !< the run could not continue
 
-   !> All that run.json holds but the timers. Components without default must be set.
+   !> The contents of run.json without the timers. Components without default must be set.
    type, extends(summary_t) :: run_record_t
-      character(len=:), allocatable :: scene  !< its name
-      character(len=:), allocatable :: version  !< of this program
+      character(len=:), allocatable :: scene  !< name of the scene
+      character(len=:), allocatable :: version  !< version of the program
       character(len=:), allocatable :: status  !< status_finished, status_stopped or status_failed
-      character(len=:), allocatable :: reason  !< why it ended
+      character(len=:), allocatable :: reason  !< reason of the end
    contains
       procedure :: write => write_record
    end type run_record_t
@@ -118,8 +117,7 @@ contains
       call json%end_object()
    end subroutine add_timers
 
-   !> Largest memory that the process has held so far [MB of 2**20 bytes]; NaN where the system does
-   !! not say.
+   !> Peak memory of the process so far [MB of 2**20 bytes]; NaN if it is not known.
    function peak_memory_mb() result(megabytes)
       use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
       real(rk) :: megabytes
@@ -142,6 +140,7 @@ contains
       close (unit)
    end function peak_memory_mb
 
+   !> A list of texts, which is empty if it was never set.
    subroutine add_list(json, key, list)
       type(json_t), intent(inout) :: json
       character(len=*), intent(in) :: key
@@ -167,14 +166,14 @@ contains
       end if
    end subroutine add_optional_text
 
-   !> The lines, one thought each. Warnings stand elsewhere (app_warnings).
+   !> The last lines on the terminal without warnings (app_warnings).
    function closing_lines(record, last_state, length, gain, seconds, directory) result(lines)
       type(run_record_t), intent(in) :: record
       character(len=*), intent(in) :: last_state  !< a time or load factor in words
       real(rk), intent(in) :: length  !< of all fractures at the end [m]
-      real(rk), intent(in) :: gain  !< of it grown in the run [m]
+      real(rk), intent(in) :: gain  !< growth in the run [m]
       real(rk), intent(in) :: seconds  !< wall time of the run [s]
-      character(len=*), intent(in) :: directory  !< where the results are
+      character(len=*), intent(in) :: directory  !< directory of the results
       type(text_t), allocatable :: lines(:)
       character(len=:), allocatable :: line
 
@@ -195,10 +194,10 @@ contains
       call add_text(lines, "results in "//directory)
    end function closing_lines
 
-   !> A number of things.
+   !> A number with its noun in singular or plural.
    pure function counted(n, thing) result(words)
       integer(ik), intent(in) :: n
-      character(len=*), intent(in) :: thing  !< one of them
+      character(len=*), intent(in) :: thing  !< noun in singular
       character(len=:), allocatable :: words
 
       words = integer_text(n)//" "//thing

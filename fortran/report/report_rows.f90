@@ -1,12 +1,6 @@
-!> A state as numbers: the rows of the tables of a run.
-!!
-!! A state as fields on the three dimensions: the data of a level for the files.
-!!
-!! Arrays that are not allocated are omitted from the files; a run without fluid has no pressure.
-!!
-!! A run in numbers and words: the contents of run.json except its end and its cost.
-!!
-!! Events of a run since its files were last written.
+!> The data of a run's files: rows of its tables, fields of a state, events, and the summary for
+!! run.json. Arrays that are not allocated are omitted from the files; a run without a fluid has no
+!! pressure.
 module report_rows
    use base_kinds, only: ik, lk, rk
    use base_texts, only: add_once, add_text, text_t
@@ -20,22 +14,29 @@ module report_rows
    public :: history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, slip_event_t
    public :: summary_t, tip_row_t, well_row_t
 
+   !> Fluid volumes per metre of thickness, from the start of the run on.
+   type :: fluid_totals_t
+      real(rk) :: injected = 0.0_rk  !< injected less produced [m2]
+      real(rk) :: produced = 0.0_rk  !< produced by wells [m2]
+      real(rk) :: leakoff = 0.0_rk  !< from the fractures into the rock [m2]
+      real(rk) :: outflow = 0.0_rk  !< out of fractures that end on the boundary [m2]
+      real(rk) :: prefilled = 0.0_rk  !< initial content of new fracture cells [m2]
+      real(rk) :: fracture_fluid = 0.0_rk  !< gain of the fractures [m2]
+      real(rk) :: rock_fluid = 0.0_rk  !< gain of the rock [m2]
+      real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary [m2]
+      real(rk) :: mass_error_relative = 0.0_rk  !< error of their balance [-]
+   end type fluid_totals_t
+
    !> An accepted time step, a row of history.csv.
-   type :: history_row_t
+   type, extends(fluid_totals_t) :: history_row_t
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       real(rk) :: dt = 0.0_rk  !< [s]
       integer(ik) :: newton_iterations = 0
-      real(rk), allocatable :: well_pressure(:)  !< (wells) where they meet fracture or rock [Pa]
-      real(rk) :: injected = 0.0_rk  !< fluid injected so far, less what wells produced [m2]
-      real(rk) :: produced = 0.0_rk  !< fluid that wells have drawn so far [m2]
-      real(rk) :: leakoff = 0.0_rk  !< fluid from the fractures into the matrix so far [m2]
-      real(rk) :: outflow = 0.0_rk  !< fluid out of fractures that end on the boundary so far [m2]
-      real(rk) :: prefilled = 0.0_rk  !< fluid that new cells brought along so far [m2]
+      real(rk), allocatable :: well_pressure(:)  !< (wells) pressure in the fracture or rock [Pa]
       real(rk) :: fracture_volume = 0.0_rk  !< [m2]
-      real(rk) :: mass_error_relative = 0.0_rk  !< [-]
       real(rk) :: max_slip = 0.0_rk  !< [m]
       real(rk) :: max_opening = 0.0_rk  !< [m]
-      real(rk) :: max_slip_rate = 0.0_rk  !< with a fluid; mean of the step [m/s]
+      real(rk) :: max_slip_rate = 0.0_rk  !< mean over the step; with a fluid [m/s]
       integer(ik) :: n_stick = 0
       integer(ik) :: n_slip = 0
       integer(ik) :: n_open = 0
@@ -43,41 +44,38 @@ module report_rows
       integer(ik) :: n_tips = 0
       integer(ik) :: n_intersections = 0
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
-      real(rk) :: length_error = 0.0_rk  !< estimated, of fracture_length; negative: is not [m]
-      real(rk) :: well_pressure_error = 0.0_rk  !< estimated; negative: is not [Pa]
+      real(rk) :: length_error = 0.0_rk  !< estimated error of fracture_length; -1: none [m]
+      real(rk) :: well_pressure_error = 0.0_rk  !< estimated error of well_pressure; -1: none [Pa]
       real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
       ! Of a stimulation, with a fluid:
-      real(rk) :: injection_rate = 0.0_rk  !< of all wells in the step, net [m2/s]
-      real(rk) :: injectivity = 0.0_rk  !< of the one well; 0: none [m2/s/Pa]
-      real(rk) :: fracture_fluid = 0.0_rk  !< that the fractures have gained so far [m2]
-      real(rk) :: rock_fluid = 0.0_rk  !< that the rock has gained so far [m2]
-      real(rk) :: rock_outflow = 0.0_rk  !< out of the rock through the boundary so far [m2]
+      real(rk) :: injection_rate = 0.0_rk  !< net rate of all wells in the step [m2/s]
+      real(rk) :: injectivity = 0.0_rk  !< injectivity of the only well; 0: none [m2/s/Pa]
       real(rk) :: stimulated_length = 0.0_rk  !< [m]
-      real(rk) :: connected_length = 0.0_rk  !< with the wells [m]
-      real(rk) :: connected_stimulated = 0.0_rk  !< of both lengths [m]
-      integer(ik) :: n_clusters = 0  !< groups of fractures that hang together
+      real(rk) :: connected_length = 0.0_rk  !< length connected to the wells [m]
+      real(rk) :: connected_stimulated = 0.0_rk  !< length that is both [m]
+      integer(ik) :: n_clusters = 0  !< clusters of connected fractures
       real(rk) :: connections_per_branch = 0.0_rk  !< [-]
    end type history_row_t
 
-   !> A patch of a fracture that slipped, a row of slip_events.csv.
+   !> A slip event of a fracture, a row of slip_events.csv.
    type :: slip_event_t
       integer(ik) :: number = 0  !< from 1
-      real(rk) :: time = 0.0_rk, end = 0.0_rk  !< of its beginning and its end [s]
+      real(rk) :: time = 0.0_rk, end = 0.0_rk  !< times of beginning and end [s]
       integer(ik) :: fracture = 0
-      real(rk) :: xy(2) = 0.0_rk  !< centre, weighed with the moment [m]
-      real(rk) :: s(2) = 0.0_rk  !< arc lengths of its ends [m]
+      real(rk) :: xy(2) = 0.0_rk  !< centre, weighted by the moment [m]
+      real(rk) :: s(2) = 0.0_rk  !< arc lengths of the ends of its patch [m]
       real(rk) :: area = 0.0_rk  !< [m2]
       real(rk) :: mean_slip = 0.0_rk  !< [m]
       real(rk) :: moment = 0.0_rk  !< [N m]
-      real(rk) :: largest_rate = 0.0_rk  !< of the moment, mean over a step [N m/s]
-      logical :: is_seismic = .false.  !< the slip of some cell is faster than a threshold
-      real(rk) :: onset_xy(2) = 0.0_rk  !< where it was fastest in its first step [m]
-      real(rk) :: largest_slip_rate = 0.0_rk  !< of a cell, mean over a step [m/s]
-      real(rk) :: mean_slip_rate = 0.0_rk  !< over its area and duration [m/s]
-      real(rk) :: stress_drop = 0.0_rk  !< mean over its area [Pa]
+      real(rk) :: largest_rate = 0.0_rk  !< largest moment rate, mean over a step [N m/s]
+      logical :: is_seismic = .false.  !< the slip rate of a cell exceeds the threshold
+      real(rk) :: onset_xy(2) = 0.0_rk  !< point of the largest slip rate in the first step [m]
+      real(rk) :: largest_slip_rate = 0.0_rk  !< largest slip rate of a cell, mean over a step [m/s]
+      real(rk) :: mean_slip_rate = 0.0_rk  !< mean over area and duration [m/s]
+      real(rk) :: stress_drop = 0.0_rk  !< mean over the area [Pa]
       real(rk) :: magnitude = 0.0_rk  !< [-]
-      real(rk) :: open_share = 0.0_rk  !< of the moment, where the faces do not touch [-]
-      real(rk) :: sudden_share = 0.0_rk  !< of the moment, in unstable growth [-]
+      real(rk) :: open_share = 0.0_rk  !< fraction of the moment on open faces [-]
+      real(rk) :: sudden_share = 0.0_rk  !< fraction of the moment in unstable growth [-]
       character(len=5) :: ended_by = ""  !< word of report_columns
    end type slip_event_t
 
@@ -85,15 +83,15 @@ module report_rows
    type :: well_row_t
       real(rk) :: time = 0.0_rk  !< [s]
       character(len=:), allocatable :: name
-      integer(ik) :: stage = 0  !< 0: it is shut
-      character(len=:), allocatable :: control  !< of the well_words of report_columns
-      real(rk) :: rate = 0.0_rk  !< into it at its head, mean of the step [m2/s]
-      real(rk) :: flow = 0.0_rk  !< out of it into fracture or rock [m2/s]
-      real(rk) :: pressure = 0.0_rk  !< where it meets these [Pa]
+      integer(ik) :: stage = 0  !< number of the stage; 0: shut
+      character(len=:), allocatable :: control  !< one of the well_words of report_columns
+      real(rk) :: rate = 0.0_rk  !< rate at the well head, mean over the step [m2/s]
+      real(rk) :: flow = 0.0_rk  !< flow into fracture or rock [m2/s]
+      real(rk) :: pressure = 0.0_rk  !< pressure in the fracture or rock [Pa]
       real(rk) :: head_pressure = 0.0_rk  !< [Pa]
-      real(rk) :: injected = 0.0_rk  !< at its head so far [m2]
-      real(rk) :: injectivity = 0.0_rk  !< flow over the pressure's rise since the start [m2/s/Pa]
-      real(rk) :: asked = 0.0_rk  !< rate that the stage asks for; 0 without one [m2/s]
+      real(rk) :: injected = 0.0_rk  !< injected at the well head so far [m2]
+      real(rk) :: injectivity = 0.0_rk  !< flow over the pressure rise since the start [m2/s/Pa]
+      real(rk) :: asked = 0.0_rk  !< prescribed rate of the stage; 0 without one [m2/s]
    end type well_row_t
 
    !> A state at the probes, a row of probes.csv.
@@ -109,19 +107,19 @@ module report_rows
       integer(ik) :: tip = 0
       integer(ik) :: fracture = 0
       real(rk) :: xy(2) = 0.0_rk  !< [m]
-      real(rk) :: k1 = 0.0_rk  !< opening intensity, interaction integral [Pa m^1/2]
-      real(rk) :: k2 = 0.0_rk  !< sliding intensity, interaction integral [Pa m^1/2]
-      real(rk) :: k1_dc = 0.0_rk  !< by displacement correlation [Pa m^1/2]
-      real(rk) :: k2_dc = 0.0_rk  !< by displacement correlation [Pa m^1/2]
-      real(rk) :: keq = 0.0_rk  !< equivalent intensity [Pa m^1/2]
+      real(rk) :: k1 = 0.0_rk  !< K_I by the interaction integral [Pa m^1/2]
+      real(rk) :: k2 = 0.0_rk  !< K_II by the interaction integral [Pa m^1/2]
+      real(rk) :: k1_dc = 0.0_rk  !< K_I by displacement correlation [Pa m^1/2]
+      real(rk) :: k2_dc = 0.0_rk  !< K_II by displacement correlation [Pa m^1/2]
+      real(rk) :: keq = 0.0_rk  !< equivalent intensity K_eq [Pa m^1/2]
       real(rk) :: g = 0.0_rk  !< energy release rate [J/m2]
       real(rk) :: angle = 0.0_rk  !< kink from the old direction, counter-clockwise [rad]
       real(rk) :: advance = 0.0_rk  !< length grown [m]
       real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
       real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
-      real(rk) :: g_error = 0.0_rk  !< its estimated error [J/m2]
-      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< those of k1_dc, k2_dc [Pa m^1/2]
-      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< with what they lack [Pa m^1/2]
+      real(rk) :: g_error = 0.0_rk  !< estimated error of g_domain [J/m2]
+      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< errors of k1_dc, k2_dc [Pa m^1/2]
+      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< k1, k2 less mesh error [Pa m^1/2]
    end type tip_row_t
 
    !> State of the matrix cells.
@@ -133,7 +131,7 @@ module report_rows
       !> (n_cells) Poisson's ratio and Biot's coefficient, or those of the scene [-]
       real(rk), allocatable :: poisson(:), biot(:)
       real(rk), allocatable :: node_displacement(:, :)  !< (2, n_nodes) [m]
-      ! Of finite elements: their own nodes.
+      ! Nodes of finite elements:
       real(rk), allocatable :: node_xy(:, :)  !< (2, n_nodes) [m]
       integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then nodes on edges
    end type matrix_fields_t
@@ -163,27 +161,27 @@ module report_rows
       integer(lk) :: n = 0_lk
    end type dof_block_t
 
-   !> Sums, largest values and words of a run so far.
+   !> Summary of a run so far: sums, largest values and words.
    type :: summary_t
       integer(ik) :: steps = 0  !< accepted time steps
       integer(ik) :: cells = 0  !< matrix cells at the end
       integer(ik) :: fracture_cells = 0  !< at the end
       real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
-      real(rk) :: keq_over_kic = 0.0_rk  !< largest of all tips and states; 0: left out [-]
-      real(rk) :: lowest_pressure = huge(1.0_rk)  !< of the fluid; huge: left out [Pa]
+      real(rk) :: keq_over_kic = 0.0_rk  !< largest of all tips and states; 0: omitted [-]
+      real(rk) :: lowest_pressure = huge(1.0_rk)  !< lowest fluid pressure; huge: omitted [Pa]
       real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
-      real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: left out [-]
-      !> of their solutions, relative; with the one above [-]
+      real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: omitted [-]
+      !> bound of the relative error of their solutions [-]
       real(rk) :: forward_error_bound = 0.0_rk
-      real(rk) :: smallest_angle = 0.0_rk  !< of all meshes; 0: left out [rad]
-      real(rk) :: energy_error = 0.0_rk  !< estimate on the last mesh, relative; 0: left out [-]
-      integer(ik) :: newton_total = 0  !< iterations
-      integer(ik) :: newton_max = 0  !< iterations in one step
+      real(rk) :: smallest_angle = 0.0_rk  !< smallest angle of all meshes; 0: omitted [rad]
+      real(rk) :: energy_error = 0.0_rk  !< relative estimate on the last mesh; 0: omitted [-]
+      integer(ik) :: newton_total = 0  !< iterations in all steps
+      integer(ik) :: newton_max = 0  !< largest number of iterations in one step
       integer(ik) :: step_cuts = 0
-      logical :: has_growth = .false.  !< the three below are known
-      integer(ik) :: increments = 0  !< of growth, of any number of tips at once
-      integer(ik) :: meshes_whole = 0  !< made of the whole body
-      integer(ik) :: meshes_patched = 0  !< made anew around growing tips only
+      logical :: has_growth = .false.  !< the three following numbers are set
+      integer(ik) :: increments = 0  !< increments of growth, of any number of tips at once
+      integer(ik) :: meshes_whole = 0  !< meshes of the whole body
+      integer(ik) :: meshes_patched = 0  !< meshes changed around growing tips only
       type(dof_block_t), allocatable :: dofs(:)
       type(text_t), allocatable :: used(:)
       type(text_t), allocatable :: left_out(:)
@@ -213,24 +211,24 @@ module report_rows
    character(len=*), parameter :: event_window = "window"
    character(len=*), parameter :: event_well = "well"
 
-   !> A row of events.csv. What does not apply to it is left empty.
+   !> A row of events.csv.
    type :: event_t
       real(rk) :: time = 0.0_rk  !< [s]
       character(len=:), allocatable :: kind  !< event_slip_onset .. event_step_cut
       character(len=:), allocatable :: detail  !< a few words with numbers and units
-      integer(ik) :: fracture = 0  !< 0: of none
+      integer(ik) :: fracture = 0  !< number of the fracture; 0: none
       logical :: has_place = .false.
       real(rk) :: xy(2) = 0.0_rk  !< [m]
    end type event_t
 
-   !> Events and rows of tips in their order, lines for the log.
+   !> Event log: events, rows of tables and lines of run.log since the files were last written.
    type :: chronicle_t
       type(event_t), allocatable :: events(:)
       type(tip_row_t), allocatable :: tips(:)
       type(well_row_t), allocatable :: wells(:)
-      type(slip_event_t), allocatable :: slip_events(:)  !< that are over
-      type(text_t), allocatable :: remarks(:)  !< lines for the log
-      logical :: has_new_network = .false.  !< the mesh has followed growth
+      type(slip_event_t), allocatable :: slip_events(:)  !< slip events that have ended
+      type(text_t), allocatable :: remarks(:)  !< lines of run.log
+      logical :: has_new_network = .false.  !< the mesh was updated after growth
    contains
       procedure :: clear
       procedure :: add_event
@@ -272,7 +270,7 @@ contains
       self%newton_max = max(self%newton_max, iterations)
    end subroutine add_newton
 
-   !> Note a feature that the run uses.
+   !> Add a feature that the run uses.
    subroutine use_feature(self, feature)
       class(summary_t), intent(inout) :: self
       character(len=*), intent(in) :: feature
@@ -280,7 +278,7 @@ contains
       call add_once(self%used, feature)
    end subroutine use_feature
 
-   !> Note a feature that the run leaves out.
+   !> Add a feature that the run does not use.
    subroutine leave_out_feature(self, feature)
       class(summary_t), intent(inout) :: self
       character(len=*), intent(in) :: feature
@@ -288,11 +286,11 @@ contains
       call add_once(self%left_out, feature)
    end subroutine leave_out_feature
 
-   !> Note a feature that the run uses from now on, and has left out so far.
+   !> Add a feature that the run uses from now on, and remove the words for its absence.
    subroutine use_after_all(self, feature, left_out)
       class(summary_t), intent(inout) :: self
       character(len=*), intent(in) :: feature
-      character(len=*), intent(in) :: left_out  !< in words, as it was noted to be left out
+      character(len=*), intent(in) :: left_out  !< words for its absence
       type(text_t), allocatable :: kept(:)
       integer :: i
 
@@ -305,12 +303,12 @@ contains
       call move_alloc(kept, self%left_out)
    end subroutine use_after_all
 
-   !> Note a feature that the run uses or else leaves out.
+   !> Add a feature that the run uses, or the words for its absence.
    subroutine note_feature(self, is_used, used, left_out)
       class(summary_t), intent(inout) :: self
       logical, intent(in) :: is_used
-      character(len=*), intent(in) :: used  !< in words, if it is used
-      character(len=*), intent(in) :: left_out  !< and if it is not
+      character(len=*), intent(in) :: used  !< words if it is used
+      character(len=*), intent(in) :: left_out  !< words if it is not used
 
       if (is_used) then
          call self%use_feature(used)
@@ -319,7 +317,7 @@ contains
       end if
    end subroutine note_feature
 
-   !> Note a warning; the same words are kept once.
+   !> Add a warning, unless it has been added before.
    subroutine warn(self, warning)
       class(summary_t), intent(inout) :: self
       character(len=*), intent(in) :: warning
@@ -327,7 +325,7 @@ contains
       call add_once(self%warnings, warning)
    end subroutine warn
 
-   !> Nothing has happened yet.
+   !> Empty the log.
    pure subroutine clear(self)
       class(chronicle_t), intent(inout) :: self
 

@@ -12,8 +12,7 @@ module report_run
    use report_files, only: place_t, reserve_file, write_text_file
    use report_network, only: network_record_t
    use report_record, only: run_record_t, status_failed
-   use report_rows, only: fracture_fields_t, history_row_t, intersection_fields_t, &
-                          matrix_fields_t, probe_row_t, slip_event_t, tip_row_t, well_row_t
+   use report_simulation, only: snapshot_t
    use report_snapshots, only: snapshots_t
    use report_tables, only: tables_t
    use report_text, only: newline, text_buffer_t
@@ -24,34 +23,29 @@ module report_run
 
    public :: run_output_t
 
-   integer, parameter :: room_for_record = 4096  !< kept on the disk for run.json, a block [byte]
-   real(rk), parameter :: pause = 3.0_rk  !< between two writings of the tables [s]
-   real(rk), parameter :: pause_per_cost = 200.0_rk  !< or times the last one's duration
+   integer, parameter :: record_size = 4096  !< disk space reserved for run.json, a block [byte]
+   real(rk), parameter :: pause = 3.0_rk  !< shortest time between two writings of the tables [s]
+   !> and its ratio to the duration of the last [-]
+   real(rk), parameter :: pause_per_cost = 200.0_rk
 
    !> The files of a run, from `open` to `close`.
    type :: run_output_t
       type(place_t), private :: place
-      logical :: keeps_earlier_run = .false.  !< it has left files, and `begin` has not come
-      type(tables_t), private :: tables
+      logical :: keeps_earlier_run = .false.  !< files of an earlier run exist, before `begin`
+      type(tables_t) :: tables
       type(snapshots_t), private :: snapshots
       type(network_record_t), private :: network
       type(text_buffer_t), private :: log_text
-      integer(lk), private :: log_written = 0_lk  !< characters of the log on disk
+      integer(lk), private :: log_written = 0_lk  !< length of the log on disk
       logical, private :: writes_vtu = .true.
-      real(rk), private :: interval = 0.0_rk  !< between written fields [s]
-      real(rk), private :: next_fields = 0.0_rk  !< when fields are due [s]
-      integer(lk), private :: clock_begin = 0_lk  !< ticks
-      real(rk), private :: last_flush = 0.0_rk  !< wall time since open [s]
-      real(rk), private :: flush_cost = 0.0_rk  !< wall time of the last writing [s]
+      real(rk), private :: interval = 0.0_rk  !< time between written fields [s]
+      real(rk), private :: next_fields = 0.0_rk  !< time of the next fields [s]
+      integer(lk), private :: clock_begin = 0_lk  !< clock at `open` [ticks]
+      real(rk), private :: last_flush = 0.0_rk  !< wall time of the last writing, since `open` [s]
+      real(rk), private :: flush_cost = 0.0_rk  !< duration of the last writing [s]
    contains
       procedure :: open => open_run
       procedure :: begin => begin_run
-      procedure :: history_row
-      procedure :: tip_row
-      procedure :: probe_row
-      procedure :: event_row
-      procedure :: slip_event_row
-      procedure :: well_row
       procedure :: network_step
       procedure :: fields_due
       procedure :: write_fields
@@ -63,8 +57,8 @@ module report_run
 
 contains
 
-   !> Take a folder for the run; in it everything stays as it is until `begin`. `refused`: the
-   !! folder is a wrong choice.
+   !> Claim a folder for the run; its contents do not change before `begin`. `refused`: the folder
+   !! cannot be used.
    subroutine open_run(self, directory, source, refused, error)
       class(run_output_t), intent(out) :: self
       character(len=*), intent(in) :: directory
@@ -77,8 +71,7 @@ contains
       if (.not. allocated(error)) self%keeps_earlier_run = self%place%has_results()
    end subroutine open_run
 
-   !> The run has a first state to write: write scene.nml, and once that is on disk, remove an
-   !! earlier run's files.
+   !> Write scene.nml, and then remove the files of an earlier run.
    subroutine begin_run(self, scene, error)
       class(run_output_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -89,7 +82,7 @@ contains
          if (allocated(error)) return
          self%keeps_earlier_run = .false.
          call self%place%clear()
-         call reserve_file(folder//"/run.json", room_for_record, error)
+         call reserve_file(folder//"/run.json", record_size, error)
          if (allocated(error)) return
          self%writes_vtu = scene%output%vtu
          self%interval = scene%output%interval
@@ -99,6 +92,7 @@ contains
       end associate
    end subroutine begin_run
 
+   !> Names of the fractures of a scene.
    pure function fracture_names(scene) result(names)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable :: names(:)
@@ -111,60 +105,7 @@ contains
       end do
    end function fracture_names
 
-   !> Add an accepted step to history.csv.
-   subroutine history_row(self, row)
-      class(run_output_t), intent(inout) :: self
-      type(history_row_t), intent(in) :: row
-
-      call self%tables%history_row(row)
-   end subroutine history_row
-
-   !> Add a tip to tips.csv.
-   subroutine tip_row(self, row)
-      class(run_output_t), intent(inout) :: self
-      type(tip_row_t), intent(in) :: row
-
-      call self%tables%tip_row(row)
-   end subroutine tip_row
-
-   !> Add the state at all probes to probes.csv.
-   subroutine probe_row(self, time, row)
-      class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s], or the load factor
-      type(probe_row_t), intent(in) :: row
-
-      call self%tables%probe_row(time, row)
-   end subroutine probe_row
-
-   !> Add an event to events.csv.
-   subroutine event_row(self, time, kind, detail, fracture, xy)
-      class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. event_remesh of report_rows
-      character(len=*), intent(in) :: detail  !< a few words with numbers and units
-      integer(ik), intent(in), optional :: fracture
-      real(rk), intent(in), optional :: xy(2)  !< [m]
-
-      call self%tables%event_row(time, kind, detail, fracture, xy)
-   end subroutine event_row
-
-   !> Add a well to wells.csv.
-   subroutine well_row(self, row)
-      class(run_output_t), intent(inout) :: self
-      type(well_row_t), intent(in) :: row
-
-      call self%tables%well_row(row)
-   end subroutine well_row
-
-   !> Add a slip event to slip_events.csv.
-   subroutine slip_event_row(self, event)
-      class(run_output_t), intent(inout) :: self
-      type(slip_event_t), intent(in) :: event
-
-      call self%tables%slip_event_row(event)
-   end subroutine slip_event_row
-
-   !> Note the network for network.json; nothing happens if it has not changed.
+   !> Add the network to network.json, if it has changed.
    subroutine network_step(self, time, network, mesh)
       class(run_output_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
@@ -174,7 +115,7 @@ contains
       call self%network%step(time, network, mesh%fracture)
    end subroutine network_step
 
-   !> It is time to write fields: the scene's interval, or its regular step, has passed.
+   !> Fields are due: the interval of the scene has passed.
    pure function fields_due(self, time)
       class(run_output_t), intent(in) :: self
       real(rk), intent(in) :: time  !< [s]
@@ -183,16 +124,11 @@ contains
       fields_due = time >= self%next_fields - 1.0e-6_rk*self%interval
    end function fields_due
 
-   !> Write the fields of the state that the last row of history.csv has: VTU files where the scene
-   !! wants them, and the rows of fractures.csv.
-   subroutine write_fields(self, time, mesh, matrix, fracture, intersections, error, with_rows, &
-                           with_vtu)
+   !> Write the fields of the state in the last row of history.csv: VTU files, if the scene has
+   !! them, and the rows of fractures.csv.
+   subroutine write_fields(self, fields, error, with_rows, with_vtu)
       class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      type(mesh_t), intent(in) :: mesh
-      type(matrix_fields_t), intent(in) :: matrix
-      type(fracture_fields_t), intent(in) :: fracture
-      type(intersection_fields_t), intent(in) :: intersections  !< may be empty
+      type(snapshot_t), intent(in) :: fields
       type(error_t), allocatable, intent(out) :: error
       logical, intent(in), optional :: with_rows, with_vtu  !< .false.: without these
       logical :: has_rows, has_vtu
@@ -201,17 +137,17 @@ contains
       if (present(with_rows)) has_rows = with_rows
       has_vtu = self%writes_vtu
       if (present(with_vtu)) has_vtu = has_vtu .and. with_vtu
-      if (has_rows) call self%tables%fracture_rows(time, mesh%fracture, fracture)
-      if (has_vtu) then
-         call self%snapshots%write(time, int(self%tables%history%n_rows, ik), mesh, matrix, &
-                                   fracture, intersections, error)
+      if (has_rows) then
+         call self%tables%fracture_rows(fields%time, fields%mesh%fracture, fields%fracture)
       end if
+      if (has_vtu) call self%snapshots%write(fields, int(self%tables%history%n_rows, ik), error)
       if (self%interval > 0.0_rk) then
-         self%next_fields = self%interval*(aint(time/self%interval + 1.0e-6_rk) + 1.0_rk)
+         self%next_fields = self%interval &
+                            *(aint(fields%time/self%interval + 1.0e-6_rk) + 1.0_rk)
       end if
    end subroutine write_fields
 
-   !> Add a line to run.log, with the wall time since `open` before it.
+   !> Add a line to run.log, which begins with the wall time since `open`.
    subroutine log(self, message)
       class(run_output_t), intent(inout) :: self
       character(len=*), intent(in) :: message
@@ -221,7 +157,7 @@ contains
       call self%log_text%append(stamp//message//newline)
    end subroutine log
 
-   !> To be called often: write what has gathered, if it is time.
+   !> Write all changed files if the time between two writings has passed.
    subroutine tick(self, error)
       class(run_output_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -231,10 +167,10 @@ contains
       end if
    end subroutine tick
 
-   !> Write now what has gathered: every file that can be written, though another one failed.
+   !> Write all changed files, also after a failure of one of them.
    subroutine flush_run(self, error)
       class(run_output_t), intent(inout) :: self
-      type(error_t), allocatable, intent(out) :: error  !< the first
+      type(error_t), allocatable, intent(out) :: error  !< the first failure
       type(error_t), allocatable :: trouble
       real(rk) :: begun
 
@@ -250,6 +186,7 @@ contains
       self%flush_cost = self%last_flush - begun
    end subroutine flush_run
 
+   !> Write run.log if it has changed.
    subroutine write_log(self, error)
       class(run_output_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -259,8 +196,8 @@ contains
       if (.not. allocated(error)) self%log_written = self%log_text%length
    end subroutine write_log
 
-   !> End the run, well or not: write everything, and run.json last, which tells if other files
-   !! could not be written. A run that never began leaves those of an earlier one.
+   !> End the run: write all files, and run.json last, with its status failed if other files could
+   !! not be written. A run that has not begun keeps the files of an earlier one.
    subroutine close_run(self, record, timers, error)
       class(run_output_t), intent(inout) :: self
       type(run_record_t), intent(inout) :: record

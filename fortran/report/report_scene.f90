@@ -1,12 +1,9 @@
-!> The rocks of a scene with regions on the finite elements of a window or of the whole body.
+!> The scene for meshes and levels: the rocks of finite elements, the contact law of a fracture, and
+!! the shape of the body.
 !!
-!! An element has the rock at its centre. Meshes follow the outlines of regions where there is room
-!! (mesh_spec_t%guides). An element that an outline cuts has the wrong rock in its part beyond the
-!! outline, an error of first order in its size.
-!!
-!! The properties of a fracture's faces in the scene, for the contact law.
-!!
-!! The shape of a scene's body, for the mesher.
+!! An element has the rock at its centre. Meshes follow the outlines of regions where they can
+!! (mesh_spec_t%guides). An element cut by an outline has the wrong rock beyond the outline, an
+!! error of first order in its size.
 module report_scene
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -23,16 +20,16 @@ module report_scene
    public :: follow_outlines, has_other_toughness, interface_distance, keep_off, law_of_fracture
    public :: place_rocks, regions_of_other_rock, relative_toughness, shape_body
 
-   !> Of a rosette beside an interface, over the usual one.
+   !> Smallest radius of a rosette near an interface over the usual one [-].
    real(rk), parameter :: least_rosette = 1.0_rk/32.0_rk
 
 contains
 
-   !> Which element is of which rock.
+   !> Rocks of the elements of a mesh.
    pure function place_rocks(scene, mesh, elasticity) result(rocks)
       type(scene_t), intent(in) :: scene
       type(mesh_t), intent(in) :: mesh
-      type(elasticity_t), intent(in) :: elasticity(:)  !< of the scene's rock, then of its regions
+      type(elasticity_t), intent(in) :: elasticity(:)  !< (1 + regions) scene's rock, regions
       type(rocks_t) :: rocks
       type(rock_places_t) :: places
       integer(ik) :: c
@@ -49,7 +46,8 @@ contains
       end do
    end function place_rocks
 
-   !> Regions whose elastic or poroelastic constants are not those of the scene's rock.
+   !> Regions whose outlines may be interfaces: all if the elastic or poroelastic constants of one
+   !! differ from those of the scene's rock, otherwise none.
    pure function regions_of_other_rock(scene) result(is_other)
       type(scene_t), intent(in) :: scene
       logical, allocatable :: is_other(:)
@@ -67,11 +65,11 @@ contains
                                                  abs(own%porosity - all%porosity) > 0.0_rk
          end associate
       end do
-      ! Beside another region that of the scene's rock is an interface too.
+      ! Next to another region a region of the scene's rock has an interface too.
       if (any(is_other)) is_other = .true.
    end function regions_of_other_rock
 
-   !> From a point to the nearest place where the elastic constants differ; huge if they nowhere do
+   !> Distance of a point from the nearest interface of elastic constants; huge if there is none
    !! [m].
    pure real(rk) function interface_distance(scene, xy) result(distance)
       type(scene_t), intent(in) :: scene
@@ -85,8 +83,8 @@ contains
       distance = places%distance(xy, regions_of_other_rock(scene))
    end function interface_distance
 
-   !> Make the outlines of all regions guides of the mesh, closed lines. The last region, which
-   !! counts most, comes first: where there is no room for all, the first have it.
+   !> Add the outlines of all regions to the guides of the mesh, as closed lines. The last region
+   !! comes first, since earlier guides have precedence.
    pure subroutine follow_outlines(regions, domain, spec)
       type(region_t), intent(in) :: regions(:)
       type(domain_t), intent(in) :: domain
@@ -103,29 +101,29 @@ contains
       end do
    end subroutine follow_outlines
 
-   !> Make the rosette of a tip so small that two of it fit between the tip and other rock, as the
-   !! integral's domain does; a tip that is nearer than the smallest one allows has no intensities:
-   !! on an interface the singularity is another one.
+   !> Reduce the rosette of a tip so that two radii fit between the tip and other rock, as the
+   !! domain of the interaction integral requires. An error: the tip is too near to an interface,
+   !! where the singularity is another one, so that it has no intensities.
    pure subroutine keep_off(xy, scene, radius, error)
       real(rk), intent(in) :: xy(2)  !< of the tip [m]
       type(scene_t), intent(in) :: scene
       real(rk), intent(inout) :: radius  !< [m]
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: room
+      real(rk) :: largest  ! radius [m]
       character(len=120) :: place
 
-      room = 0.5_rk*interface_distance(scene, xy)
-      if (room < least_rosette*radius) then
-         write (place, "(3(a,es12.5))") "(", xy(1), ",", xy(2), ") m is ", 2.0_rk*room
+      largest = 0.5_rk*interface_distance(scene, xy)
+      if (largest < least_rosette*radius) then
+         write (place, "(3(a,es12.5))") "(", xy(1), ",", xy(2), ") m is ", 2.0_rk*largest
          call raise_error(error, "report_scene", "the tip at "//trim(place)//" m from rock "// &
                           "of another stiffness, too near for stress intensity factors: a tip "// &
                           "on or next to an interface has another singularity")
          return
       end if
-      radius = min(radius, room)
+      radius = min(radius, largest)
    end subroutine keep_off
 
-   !> Whether tips of the scene may have another toughness than that of its rock.
+   !> Tips of the scene may have another toughness than its rock.
    pure logical function has_other_toughness(scene)
       type(scene_t), intent(in) :: scene
 
@@ -133,13 +131,13 @@ contains
                             .or. any(scene%fractures%toughness < huge(1.0_rk))
    end function has_other_toughness
 
-   !> K_IC of an end of a fracture, its own or that of the rock it grows in, over that of the
+   !> K_IC at an end of a fracture, that of the fracture or of the rock ahead, over that of the
    !! scene's rock [-].
    pure real(rk) function relative_toughness(scene, network, fracture, end) result(ratio)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture, end  !< of the network
-      real(rk), parameter :: share = 0.1_rk  ! of an increment, over which K_IC goes from one rock's
+      real(rk), parameter :: share = 0.1_rk  ! length of the change of K_IC over an increment
       type(rock_places_t) :: places
       real(rk) :: along(2)
       integer(ik) :: at, before
@@ -164,7 +162,7 @@ contains
                               share*scene%growth%increment)/scene%material%toughness
    end function relative_toughness
 
-   !> The law where the faces touch; what the scene holds closed is bilateral besides.
+   !> Contact law of a fracture; faces that are held closed are set bilateral by mechanics_faces.
    elemental type(contact_law_t) function law_of_fracture(fracture) result(law)
       type(fracture_t), intent(in) :: fracture
 
@@ -187,8 +185,8 @@ contains
       if (fracture%dilation_slip < huge(1.0_rk)) law%dilation_end = 1.0_rk/fracture%dilation_slip
    end function law_of_fracture
 
-   !> Give a mesh the corners and the sides of a body that is no rectangle, and the points that are
-   !! loaded or held.
+   !> Set corners and sides of a mesh of a body that is not a rectangle, and the points of
+   !! restraints and point loads.
    pure subroutine shape_body(scene, spec)
       type(scene_t), intent(in) :: scene
       type(mesh_spec_t), intent(inout) :: spec
@@ -200,7 +198,7 @@ contains
       if (scene%domain%shape == "rectangle") return
       spec%corners = outline%corners
       spec%edge_side = outline%edge_side
-      spec%is_window = .false.  ! whose edges are straight and cut fractures
+      spec%is_window = .false.  ! a window has straight edges that cut fractures
    end subroutine shape_body
 
 end module report_scene

@@ -10,17 +10,17 @@ module report_series
 
    public :: series_t
 
-   !> One table. A row is `put` value by value under the names of its columns, in their order, then
-   !! ended. A column may be left out of the file; its value is put all the same and goes nowhere.
+   !> One table. A row is `put` value by value with the names of its columns, in their order, then
+   !! ended. Values of columns that are not written are put too, and ignored.
    type :: series_t
       integer(lk) :: n_rows = 0_lk
       character(len=:), allocatable :: path
       type(text_buffer_t), private :: buffer
-      type(text_t), allocatable, private :: names(:)  !< of the columns
+      type(text_t), allocatable, private :: names(:)  !< names of the columns
       logical, allocatable, private :: is_written(:)  !< (columns)
-      integer, private :: column = 0  !< values in the row so far
-      character(len=:), allocatable, private :: fault  !< the first row with a wrong value
-      integer(lk), private :: written = -1_lk  !< characters in the file
+      integer, private :: column = 0  !< number of values in the row so far
+      character(len=:), allocatable, private :: fault  !< message about the first wrong row
+      integer(lk), private :: written = -1_lk  !< length of the file
    contains
       procedure :: open => open_series
       procedure, private :: put_real
@@ -40,7 +40,7 @@ contains
       class(series_t), intent(out) :: self
       character(len=*), intent(in) :: path
       character(len=*), intent(in) :: names(:)  !< of the columns with their units, in order
-      logical, intent(in) :: is_written(:)  !< .false.: the column is left out
+      logical, intent(in) :: is_written(:)  !< .false.: the column is omitted
       integer :: i
 
       self%path = path
@@ -54,7 +54,7 @@ contains
       self%n_rows = 0_lk
    end subroutine open_series
 
-   !> The table was opened; otherwise rows and flushes are for nobody.
+   !> The table has been opened.
    pure logical function is_open(self)
       class(series_t), intent(in) :: self
 
@@ -65,30 +65,30 @@ contains
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(rk), intent(in) :: value  !< [unit of the name]
-      character(len=number_width + 1) :: piece  ! with the comma behind it
+      character(len=number_width + 1) :: item  ! with a comma after it
       integer :: length
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
       if (.not. is_wanted) return
-      call format_real(value, piece(1:number_width), length)
-      piece(length + 1:length + 1) = ","
-      call self%buffer%append(piece(1:length + 1))
+      call format_real(value, item(1:number_width), length)
+      item(length + 1:length + 1) = ","
+      call self%buffer%append(item(1:length + 1))
    end subroutine put_real
 
    subroutine put_integer(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: value
-      character(len=number_width + 1) :: piece  ! with the comma behind it
+      character(len=number_width + 1) :: item  ! with a comma after it
       integer :: length
       logical :: is_wanted
 
       call next_column(self, name, is_wanted)
       if (.not. is_wanted) return
-      call format_integer(int(value, lk), piece(1:number_width), length)
-      piece(length + 1:length + 1) = ","
-      call self%buffer%append(piece(1:length + 1))
+      call format_integer(int(value, lk), item(1:number_width), length)
+      item(length + 1:length + 1) = ","
+      call self%buffer%append(item(1:length + 1))
    end subroutine put_integer
 
    subroutine put_text(self, name, value)
@@ -113,7 +113,7 @@ contains
       call self%buffer%append(",")
    end subroutine put_text
 
-   !> An empty value, where a quantity does not apply.
+   !> Put an empty value, where a quantity does not apply.
    subroutine put_nothing(self, name)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -123,6 +123,7 @@ contains
       if (is_wanted) call self%buffer%append(",")
    end subroutine put_nothing
 
+   !> End a row.
    subroutine end_row(self)
       class(series_t), intent(inout) :: self
 
@@ -147,7 +148,7 @@ contains
       end if
    end subroutine flush_series
 
-   !> Go to the column that a value is for, which must be the one after the last.
+   !> Go to the column of a value, which must be the next one.
    subroutine next_column(self, name, is_wanted)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -167,7 +168,7 @@ contains
    !> Keep the first fault.
    subroutine keep_fault(self, what)
       class(series_t), intent(inout) :: self
-      character(len=*), intent(in) :: what  !< what the row does instead of going on rightly
+      character(len=*), intent(in) :: what  !< verb and object of the message
       character(len=:), allocatable :: expected
 
       if (allocated(self%fault)) return

@@ -1,5 +1,5 @@
-!> A simulation of a scene in progress, independent of its kind: from one accepted state to the
-!! next, with growth of the tips in between; and the data for its files.
+!> A running simulation of a scene, with or without a fluid: from one accepted state to the next,
+!! with growth of the tips in between; and the data for its files.
 module report_simulation
    use base_errors, only: error_t
    use base_kinds, only: degrees, ik, rk
@@ -15,7 +15,7 @@ module report_simulation
    use report_rows, only: chronicle_t, event_arrest, event_growth, event_joint, event_opening, &
                           event_remesh, event_slip_onset, fracture_fields_t, history_row_t, &
                           intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, tip_row_t
-   use report_slip, only: slip_catalogue_t
+   use report_slip, only: slip_catalogue_t, slip_step_t
    use report_watch, only: watch_t
    use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
@@ -24,7 +24,7 @@ module report_simulation
 
    public :: simulation_t, snapshot_t
 
-   !> The fields of a state, with the mesh that they live on.
+   !> The fields of a state with their mesh.
    type :: snapshot_t
       real(rk) :: time = -huge(1.0_rk)  !< [s]; without a fluid the load factor [-]
       type(mesh_t) :: mesh
@@ -33,19 +33,20 @@ module report_simulation
       type(intersection_fields_t) :: intersection
    end type snapshot_t
 
-   !> One scene on its way.
+   !> A running simulation.
    type, abstract, extends(front_t) :: simulation_t
       type(scene_t) :: scene
-      type(chronicle_t) :: chronicle  !< since the files were last written
-      type(summary_t) :: summary  !< of the run so far
-      type(watch_t) :: watch  !< over the limits of the run
+      type(chronicle_t) :: chronicle  !< event log since the files were last written
+      type(summary_t) :: summary  !< summary of the run so far
+      type(watch_t) :: watch  !< limits of the run that were exceeded
       type(slip_catalogue_t) :: catalogue  !< slip events; with a fluid
-      character(len=:), allocatable :: ending  !< why the scene is over; allocated once it is
-      logical :: owes_state = .false.  !< the scene is over after one more state
-      logical :: shows_growth = .false.  !< the present state has to do with an increment of growth
-      real(rk) :: start_time = 0.0_rk  !< at which the scene begins, as time gives it
-      real(rk) :: end_time = 0.0_rk  !< at which it is over
-      logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) so far
+      !> reason for the end of the run; unallocated before it
+      character(len=:), allocatable :: ending
+      logical :: owes_state = .false.  !< the run ends after one more state
+      logical :: shows_growth = .false.  !< the present state belongs to an increment of growth
+      real(rk) :: start_time = 0.0_rk  !< start of the scene, in the unit of time()
+      real(rk) :: end_time = 0.0_rk  !< end of the scene, in the unit of time()
+      logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) logged slip or opening
    contains
       procedure(begin_scene), deferred :: begin
       procedure(go_on), deferred :: next_state
@@ -73,8 +74,7 @@ module report_simulation
    end type simulation_t
 
    abstract interface
-      !> Mesh and set up; nothing is loaded yet. The summary learns what the scene uses and does
-      !! without.
+      !> Mesh and set up without load, and add the features of the scene to the summary.
       subroutine begin_scene(self, scene, timers, error)
          import :: error_t, scene_t, simulation_t, timers_t
          implicit none(type, external)
@@ -84,8 +84,8 @@ module report_simulation
          type(error_t), allocatable, intent(out) :: error
       end subroutine begin_scene
 
-      !> next_state: go on to the next accepted state. grow: let the tips grow in it. Either sets
-      !! `ending` where nothing is left to do, and adds to chronicle and summary.
+      !> next_state: find the next accepted state. grow: let the tips grow in this state. Both set
+      !! `ending` at the end of the scene, and add to event log and summary.
       subroutine go_on(self, timers, error)
          import :: error_t, simulation_t, timers_t
          implicit none(type, external)
@@ -94,7 +94,7 @@ module report_simulation
          type(error_t), allocatable, intent(out) :: error
       end subroutine go_on
 
-      !> The network as the mesh has it, with that mesh.
+      !> The network and the mesh of the present state.
       subroutine network_and_mesh(self, network, mesh)
          import :: mesh_t, network_t, simulation_t
          implicit none(type, external)
@@ -103,7 +103,7 @@ module report_simulation
          type(mesh_t), intent(out) :: mesh
       end subroutine network_and_mesh
 
-      !> The accepted state in a row of history.csv.
+      !> The row of history.csv of the accepted state.
       function row_of_history(self) result(row)
          import :: history_row_t, simulation_t
          implicit none(type, external)
@@ -111,7 +111,7 @@ module report_simulation
          type(history_row_t) :: row
       end function row_of_history
 
-      !> The accepted state at the probes.
+      !> The row of probes.csv of the accepted state.
       subroutine row_of_probes(self, row, error)
          import :: error_t, probe_row_t, simulation_t
          implicit none(type, external)
@@ -120,7 +120,7 @@ module report_simulation
          type(error_t), allocatable, intent(out) :: error
       end subroutine row_of_probes
 
-      !> The fields of the last good state, however the run goes on; not allocated if there is none.
+      !> The fields of the last accepted state; not allocated if there is none.
       subroutine fields_of_state(self, fields)
          import :: simulation_t, snapshot_t
          implicit none(type, external)
@@ -147,7 +147,7 @@ module report_simulation
 
 contains
 
-   !> The scene, of which nothing has happened yet but that some values may be doubted.
+   !> Set the scene, and add the warnings of its plausibility checks.
    subroutine set_scene(self, scene)
       class(simulation_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -166,15 +166,15 @@ contains
       allocate (self%has_opened(size(scene%fractures)), source=.false.)
    end subroutine set_scene
 
-   !> Nothing is left to do.
+   !> The run is at its end.
    pure logical function is_over(self)
       class(simulation_t), intent(in) :: self
 
       is_over = allocated(self%ending) .and. .not. self%owes_state
    end function is_over
 
-   !> Note the first slip and the first opening of each fracture. Where `slips` or `opens` is false
-   !! for a fracture, it does so from the start, and there is no event.
+   !> Add events of the first slip and the first opening of each fracture. Fractures with `slips` or
+   !! `opens` false do so from the start, without an event.
    pure subroutine note_contact(self, fracture, state, slips, opens)
       class(simulation_t), intent(inout) :: self
       type(fracture_mesh_t), intent(in) :: fracture
@@ -196,23 +196,17 @@ contains
       end do
    end subroutine note_contact
 
-   !> Note what has slipped in the step of length dt that led to the present state.
-   pure subroutine note_slip(self, dt, fracture, potency, shear, state, is_sudden, traction)
+   !> Add the slip of the step that led to the present state to the slip events.
+   pure subroutine note_slip(self, fracture, step)
       class(simulation_t), intent(inout) :: self
-      real(rk), intent(in) :: dt  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
-      real(rk), intent(in) :: potency(:)  !< (fracture cells) slip of the step times length [m2]
-      real(rk), intent(in) :: shear(:)  !< (fracture cells) modulus G of the rock beside it [Pa]
-      integer(ik), intent(in) :: state(:)  !< (fracture cells) of contact_law
-      logical, intent(in) :: is_sudden  !< growth was unstable in the step
-      real(rk), intent(in) :: traction(:)  !< (fracture cells) f_tau after it [Pa]
+      type(slip_step_t), intent(in) :: step
 
-      call self%catalogue%follow(self%time(), dt, fracture, potency, shear, state, is_sudden, &
-                                 traction)
+      call self%catalogue%follow(self%time(), fracture, step)
       call list_events(self)
    end subroutine note_slip
 
-   !> The run is over, and with it the slip that still went on.
+   !> End the slip events that last to the end of the run.
    pure subroutine end_slip(self)
       class(simulation_t), intent(inout) :: self
 
@@ -221,7 +215,7 @@ contains
       call list_events(self)
    end subroutine end_slip
 
-   !> Slip events that are over go to the chronicle.
+   !> Move the slip events that have ended to the event log.
    pure subroutine list_events(self)
       class(simulation_t), intent(inout) :: self
 
@@ -232,9 +226,8 @@ contains
       end associate
    end subroutine list_events
 
-   !> Note all tips. Where any tip has just grown at this time, all are as before that, unless the
-   !! growth belongs to the step that led to the state. One that has joined something, or been
-   !! joined, is no tip from then on.
+   !> Add a row per free tip to the event log. If any tip has just grown at this time, the rows have
+   !! the values before that growth, unless the growth belongs to the step that led to the state.
    pure subroutine note_tips(self, grew_in_step)
       class(simulation_t), intent(inout) :: self
       logical, intent(in), optional :: grew_in_step  !< default: no
@@ -254,16 +247,16 @@ contains
       end do
    end subroutine note_tips
 
-   !> K_IC of the rock that a tip grows in over that of the scene's [-].
+   !> K_IC at a tip over that of the scene's rock [-].
    pure real(rk) function resistance_of(tip, is_before)
       type(tip_t), intent(in) :: tip
-      logical, intent(in) :: is_before  !< the last increment
+      logical, intent(in) :: is_before  !< before the last increment
 
       resistance_of = tip%drive%resistance
       if (is_before) resistance_of = tip%drive_before%resistance
    end function resistance_of
 
-   !> A tip as a row, before the last increment or after it.
+   !> The row of a tip, before the last increment or after it.
    pure function row_of_tip(time, i, tip, is_before) result(row)
       real(rk), intent(in) :: time  !< [s]
       integer(ik), intent(in) :: i  !< number of the tip
@@ -305,7 +298,8 @@ contains
       end associate
    end function row_of_tip
 
-   !> Note the tips that have grown in the last increment, joined something or stopped short of it.
+   !> Add events of the tips that have grown in the last increment, joined a target or stopped next
+   !! to one.
    subroutine note_growth(self)
       class(simulation_t), intent(inout) :: self
       character(len=64) :: detail
@@ -331,7 +325,7 @@ contains
       end do
    end subroutine note_growth
 
-   !> What a tip has come to, in words.
+   !> Target of a tip in words.
    pure function target_name(scene, tip) result(name)
       type(scene_t), intent(in) :: scene
       type(tip_t), intent(in) :: tip
@@ -346,7 +340,7 @@ contains
       end if
    end function target_name
 
-   !> Note that the mesh has followed the growth.
+   !> Add the event of a mesh updated after growth.
    subroutine note_mesh(self, mesh)
       class(simulation_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
@@ -358,7 +352,7 @@ contains
       self%chronicle%has_new_network = .true.
    end subroutine note_mesh
 
-   !> The largest equivalent intensity of the tips now over the toughness [-].
+   !> Largest present K_eq of the tips over K_IC of the scene's rock; 0 without a K_IC [-].
    pure function keq_over_kic(self) result(ratio)
       class(simulation_t), intent(in) :: self
       real(rk) :: ratio
@@ -371,7 +365,7 @@ contains
       end do
    end function keq_over_kic
 
-   !> An equivalent intensity over the toughness; 0 where that has no limit [-].
+   !> K_eq over K_IC of the scene's rock; 0 without a K_IC [-].
    pure function over_toughness(scene, keq) result(ratio)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: keq  !< [Pa m^1/2]
@@ -381,7 +375,7 @@ contains
       if (scene%material%toughness < huge(1.0_rk)) ratio = keq/scene%material%toughness
    end function over_toughness
 
-   !> How much of the scene is done, by what will end it: its end, or stop_gain [-].
+   !> Completed fraction of the run, by its end or by stop_gain [-].
    pure function share_done(self) result(share)
       class(simulation_t), intent(in) :: self
       real(rk) :: share
@@ -397,14 +391,14 @@ contains
       end do
    end function share_done
 
-   !> How much is done of the way to the scene's end [-].
+   !> Completed fraction of the run, by its end [-].
    pure real(rk) function share_of_way(self) result(share)
       class(simulation_t), intent(in) :: self
 
       share = (self%time() - self%start_time)/(self%end_time - self%start_time)
    end function share_of_way
 
-   !> Set `ending` if a fracture's end has grown as far as the scene wants.
+   !> Set `ending` if an end of a fracture has grown by stop_gain.
    pure subroutine end_at_gain(self)
       class(simulation_t), intent(inout) :: self
       integer(ik) :: i
@@ -415,7 +409,7 @@ contains
                     " has gained stop_gain"
    end subroutine end_at_gain
 
-   !> Limits that were passed for the first time go to the log; one may ask to stop the run.
+   !> Log the limits that were exceeded for the first time. An error if a limit stops the run.
    pure subroutine heed_limits(self, error)
       class(simulation_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -430,7 +424,7 @@ contains
       call self%watch%stop_run(error)
    end subroutine heed_limits
 
-   !> At the end of a run the summary learns which limits were passed.
+   !> Add all limits that were exceeded to the summary, at the end of a run.
    subroutine tell_limits(self)
       class(simulation_t), intent(inout) :: self
       type(text_t), allocatable :: sentences(:)

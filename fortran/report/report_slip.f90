@@ -1,4 +1,4 @@
-!> Slip events: where and when the faces of fractures slip, composed of the patches of each step.
+!> Slip events of fractures, composed of the slipping patches of each step.
 !!
 !! In a step, a patch is a row of cells of one fracture whose faces slip. Patches of two consecutive
 !! steps belong to the same event if they have faces in common; an event that divides continues as
@@ -16,8 +16,8 @@
 !! cell and an assumed length out of the plane; moment magnitude M_w = (log10(M0/(N m)) - 9.1)/1.5
 !! (Hanks and Kanamori 1979, in SI units as in the IASPEI standard of 2005).
 !!
-!! Shear tractions of fracture cells at one time, stored by arc length, so that they can be compared
-!! with later ones on another mesh: their fall where faces have slipped.
+!! Shear tractions are stored by arc length, so that they can be compared with those of a later
+!! mesh.
 module report_slip
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_stick
@@ -27,20 +27,31 @@ module report_slip
    implicit none(type, external)
    private
 
-   public :: magnitude, slip_catalogue_t
+   public :: magnitude, slip_catalogue_t, slip_step_t
+
+   !> Slip of all fracture cells in a time step.
+   type :: slip_step_t
+      real(rk) :: dt = 0.0_rk  !< length of the step, positive [s]
+      real(rk), allocatable :: potency(:)  !< (cells) slip of the step times length [m2]
+      real(rk), allocatable :: shear(:)  !< (cells) modulus G of the adjacent rock [Pa]
+      integer(ik), allocatable :: state(:)  !< (cells) of contact_law
+      real(rk), allocatable :: traction(:)  !< (cells) f_tau after the step [Pa]
+      logical :: is_sudden = .false.  !< growth was unstable in the step
+   end type slip_step_t
 
    !> Slip of one step, or of several.
    type :: amount_t
       real(rk) :: potency = 0.0_rk  !< slip times length [m2]
       real(rk) :: moment = 0.0_rk  !< seismic moment per metre out of the plane [N]
-      real(rk) :: open = 0.0_rk  !< of it, where the faces do not touch [N]
-      real(rk) :: sudden = 0.0_rk  !< of it, in unstable growth [N]
-      real(rk) :: place(2) = 0.0_rk  !< its first moment [N m]
+      real(rk) :: open = 0.0_rk  !< part of the moment on open faces [N]
+      real(rk) :: sudden = 0.0_rk  !< part of the moment in unstable growth [N]
+      real(rk) :: place(2) = 0.0_rk  !< sum of moment times position [N m]
       real(rk) :: s(2) = [huge(1.0_rk), -huge(1.0_rk)]  !< arc lengths, from and to [m]
-      real(rk) :: rate = 0.0_rk  !< largest of a cell [m/s]
-      real(rk) :: fastest(2) = 0.0_rk  !< where that was first so [m]
+      real(rk) :: rate = 0.0_rk  !< largest slip rate of a cell [m/s]
+      real(rk) :: fastest(2) = 0.0_rk  !< centre of that cell [m]
    end type amount_t
 
+   !> Shear tractions of fracture cells.
    type :: shear_t
       integer(ik), allocatable :: fracture(:)  !< (cells)
       real(rk), allocatable :: s(:, :)  !< (2, cells) arc lengths of their ends [m]
@@ -51,31 +62,32 @@ module report_slip
       procedure :: fall
    end type shear_t
 
-   !> An event that is not over.
+   !> An event that has not ended.
    type :: live_t
-      logical :: has_begun = .false.  !< before the present step
+      logical :: has_begun = .false.  !< the event began before the present step
       type(slip_event_t) :: event
-      type(amount_t) :: before  !< the present step
-      type(amount_t) :: now  !< in it
-      type(shear_t) :: start  !< tractions of its fracture before it
+      type(amount_t) :: before  !< slip before the present step
+      type(amount_t) :: now  !< slip in the present step
+      type(shear_t) :: start  !< tractions of its fracture before the event
    end type live_t
 
-   !> A row of sliding cells in the last step.
+   !> Adjacent sliding cells in the last step.
    type :: patch_t
       integer(ik) :: fracture = 0
       real(rk) :: s(2) = 0.0_rk  !< arc lengths, from and to [m]
-      integer(ik) :: live = 0  !< to which event it belongs
+      integer(ik) :: live = 0  !< index of its event
    end type patch_t
 
-   !> The events so far.
+   !> The slip events of a run.
    type :: slip_catalogue_t
-      real(rk) :: breadth = 1.0_rk  !< out of the plane [m]
-      real(rk) :: least_slip = 0.0_rk  !< mean slip that makes an event [m]
-      real(rk) :: seismic_rate = huge(1.0_rk)  !< slip rate from which an event is seismic [m/s]
-      integer(ik) :: n = 0  !< events that are over
-      type(slip_event_t), allocatable :: news(:)  !< that are over since these were taken
-      type(live_t), allocatable, private :: live(:)  !< in the order of their beginning
-      type(patch_t), allocatable, private :: patch(:)
+      real(rk) :: breadth = 1.0_rk  !< out-of-plane length [m]
+      real(rk) :: least_slip = 0.0_rk  !< smallest mean slip of an event [m]
+      real(rk) :: seismic_rate = huge(1.0_rk)  !< smallest slip rate of seismic events [m/s]
+      integer(ik) :: n = 0  !< number of events that have ended
+      type(slip_event_t), allocatable :: news(:)  !< ended events that have not been logged
+      !> present events, in the order of their beginning
+      type(live_t), allocatable, private :: live(:)
+      type(patch_t), allocatable, private :: patch(:)  !< patches of the last step
       type(shear_t), private :: last  !< tractions after the last step
    contains
       procedure :: begin
@@ -86,12 +98,12 @@ module report_slip
 
 contains
 
-   !> Nothing slides.
+   !> Begin without any event.
    subroutine begin(self, breadth, least_slip, seismic_rate)
       class(slip_catalogue_t), intent(out) :: self
-      real(rk), intent(in) :: breadth  !< out of the plane [m]
-      real(rk), intent(in) :: least_slip  !< mean slip that makes an event [m]
-      real(rk), intent(in) :: seismic_rate  !< slip rate from which it is seismic [m/s]
+      real(rk), intent(in) :: breadth  !< out-of-plane length [m]
+      real(rk), intent(in) :: least_slip  !< smallest mean slip of an event [m]
+      real(rk), intent(in) :: seismic_rate  !< smallest slip rate of seismic events [m/s]
 
       self%breadth = breadth
       self%least_slip = least_slip
@@ -99,7 +111,7 @@ contains
       allocate (self%news(0), self%live(0), self%patch(0))
    end subroutine begin
 
-   !> The state before the first step.
+   !> Keep the tractions before the first step.
    pure subroutine remember(self, fracture, traction)
       class(slip_catalogue_t), intent(inout) :: self
       type(fracture_mesh_t), intent(in) :: fracture
@@ -108,23 +120,19 @@ contains
       call self%last%keep(fracture, traction)
    end subroutine remember
 
-   !> A step of length dt that led to a time.
-   pure subroutine follow(self, time, dt, fracture, potency, shear, state, is_sudden, traction)
+   !> Add the slip of a step that led to a time.
+   pure subroutine follow(self, time, fracture, step)
       class(slip_catalogue_t), intent(inout) :: self
-      real(rk), intent(in) :: time, dt  !< [s]; dt > 0
+      real(rk), intent(in) :: time  !< [s]
       type(fracture_mesh_t), intent(in) :: fracture
-      real(rk), intent(in) :: potency(:)  !< (cells) slip of the step times length [m2]
-      real(rk), intent(in) :: shear(:)  !< (cells) modulus G of the rock beside it [Pa]
-      integer(ik), intent(in) :: state(:)  !< (cells) of contact_law
-      logical, intent(in) :: is_sudden  !< growth was unstable in the step
-      real(rk), intent(in) :: traction(:)  !< (cells) f_tau after it [Pa]
+      type(slip_step_t), intent(in) :: step
       type(patch_t), allocatable :: patches(:)
-      logical :: slides(size(state))
+      logical :: slides(size(step%state))
       integer(ik) :: cell, first, p
 
-      slides = state /= state_stick .and. potency > 0.0_rk
+      slides = step%state /= state_stick .and. step%potency > 0.0_rk
       allocate (patches(0))
-      if (.not. allocated(self%last%s)) call self%last%keep(fracture, traction)
+      if (.not. allocated(self%last%s)) call self%last%keep(fracture, step%traction)
       do p = 1, size(self%live)
          self%live(p)%now = amount_t()
       end do
@@ -140,16 +148,15 @@ contains
          end associate
          call assign_patch(self, patches)
          p = size(patches)
-         call add(self%live(patches(p)%live)%now, &
-                  amount_of(fracture, first, cell, dt, potency, shear*potency, state, is_sudden))
+         call add(self%live(patches(p)%live)%now, amount_of(fracture, first, cell, step))
          first = cell + 1
       end do
       call move_alloc(patches, self%patch)
       do p = 1, size(self%live)
-         if (any(self%patch%live == p)) call book_step(self, p, time, dt)
+         if (any(self%patch%live == p)) call add_step(self, p, time, step%dt)
       end do
       call end_quiet(self)
-      call self%last%keep(fracture, traction)
+      call self%last%keep(fracture, step%traction)
    end subroutine follow
 
    !> The last cell of a patch. Cells are stored along each fracture.
@@ -166,8 +173,8 @@ contains
       end do
    end function last_of_patch
 
-   !> To which event the last one of the patches belongs: the first of those that it has faces in
-   !! common with, which takes in the others, or a new one.
+   !> Assign the last of the patches to an event: the first of those with common faces, with which
+   !! the others are merged, or a new one.
    pure subroutine assign_patch(self, patches)
       class(slip_catalogue_t), intent(inout) :: self
       type(patch_t), intent(inout) :: patches(:)  !< of this step
@@ -188,14 +195,14 @@ contains
          patch%live = keeps
          do i = 1, size(meets)
             if (.not. meets(i) .or. before(i)%live == keeps) cycle
-            call take_in(self, before(i)%live, keeps, patches)
+            call merge_events(self, before(i)%live, keeps, patches)
          end do
       end associate
    end subroutine assign_patch
 
-   !> An event becomes part of another one. What was aseismic in one of them and is seismic in the
-   !! other stays an event of its own, which is over.
-   pure subroutine take_in(self, gone, keeps, patches)
+   !> Merge an event with another one. If one of them is seismic and the other aseismic, the
+   !! aseismic one ends as a separate event.
+   pure subroutine merge_events(self, gone, keeps, patches)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik), value :: gone  !< live events
       integer(ik), intent(in) :: keeps
@@ -225,38 +232,35 @@ contains
       end associate
       where (self%patch%live == gone) self%patch%live = keeps
       where (patches%live == gone) patches%live = keeps
-   end subroutine take_in
+   end subroutine merge_events
 
-   !> Slip of some cells that follow each other.
-   pure function amount_of(fracture, first, last, dt, potency, moment, state, is_sudden) &
-      result(amount)
+   !> Slip of successive cells in a step.
+   pure function amount_of(fracture, first, last, step) result(amount)
       type(fracture_mesh_t), intent(in) :: fracture
-      integer(ik), intent(in) :: first, last
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: potency(:)  !< (cells) [m2]
-      real(rk), intent(in) :: moment(:)  !< (cells) [N]
-      integer(ik), intent(in) :: state(:)  !< (cells)
-      logical, intent(in) :: is_sudden
+      integer(ik), intent(in) :: first, last  !< cells
+      type(slip_step_t), intent(in) :: step
       type(amount_t) :: amount
-      real(rk) :: centre(2), rate
+      real(rk) :: centre(2), moment(size(step%potency)), rate
       integer(ik) :: cell
 
-      amount%potency = sum(potency(first:last))
+      moment = step%shear*step%potency
+      amount%potency = sum(step%potency(first:last))
       amount%moment = sum(moment(first:last))
-      amount%open = sum(moment(first:last), mask=state(first:last) == state_open)
-      if (is_sudden) amount%sudden = amount%moment
+      amount%open = sum(moment(first:last), mask=step%state(first:last) == state_open)
+      if (step%is_sudden) amount%sudden = amount%moment
       amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
       do cell = first, last
          centre = fracture_cell_centre(fracture, cell)
          amount%place = amount%place + moment(cell)*centre
-         rate = potency(cell)/((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*dt)
+         rate = step%potency(cell) &
+                /((fracture%cell_s(2, cell) - fracture%cell_s(1, cell))*step%dt)
          if (.not. rate > amount%rate) cycle
          amount%rate = rate
          amount%fastest = centre
       end do
    end function amount_of
 
-   !> Slip adds up.
+   !> Add an amount of slip to another.
    pure subroutine add(amount, more)
       type(amount_t), intent(inout) :: amount
       type(amount_t), intent(in) :: more
@@ -272,8 +276,8 @@ contains
       amount%fastest = more%fastest
    end subroutine add
 
-   !> The step of an event: it goes on, or where its rate passes the threshold another one begins.
-   pure subroutine book_step(self, p, time, dt)
+   !> Add a step to an event, or begin another event where the slip rate passes the threshold.
+   pure subroutine add_step(self, p, time, dt)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik), intent(in) :: p  !< live event
       real(rk), intent(in) :: time, dt  !< [s]
@@ -297,9 +301,9 @@ contains
                                        live%now%moment*self%breadth/dt)
          call add(live%before, live%now)
       end associate
-   end subroutine book_step
+   end subroutine add_step
 
-   !> Events of which nothing slides any more are over.
+   !> End the events of which no cell slides any more.
    pure subroutine end_quiet(self)
       class(slip_catalogue_t), intent(inout) :: self
       logical :: goes_on(size(self%live))
@@ -315,7 +319,7 @@ contains
       self%live = pack(self%live, goes_on)
    end subroutine end_quiet
 
-   !> The run is over: what still slides is listed as it is.
+   !> End all events with the run.
    pure subroutine end_all(self)
       class(slip_catalogue_t), intent(inout) :: self
       integer(ik) :: i
@@ -328,7 +332,7 @@ contains
       self%patch = self%patch(:0)
    end subroutine end_all
 
-   !> List an event, unless it is too small or part of another one by now.
+   !> Add an event that has ended to the list, unless it is too small or merged with another one.
    pure subroutine list(self, live, ended_by)
       class(slip_catalogue_t), intent(inout) :: self
       type(live_t), intent(in) :: live
@@ -364,7 +368,7 @@ contains
       magnitude = (log10(moment) - 9.1_rk)/1.5_rk
    end function magnitude
 
-   !> The tractions of a state.
+   !> Keep the tractions of a state.
    pure subroutine keep(self, mesh, traction)
       class(shear_t), intent(inout) :: self
       type(fracture_mesh_t), intent(in) :: mesh
@@ -375,7 +379,7 @@ contains
       self%traction = traction
    end subroutine keep
 
-   !> Those of one fracture.
+   !> Tractions of one fracture.
    pure function of_fracture(self, fracture) result(part)
       class(shear_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
@@ -389,8 +393,8 @@ contains
       part%traction = self%traction(cells)
    end function of_fracture
 
-   !> How much less the faces bear at a later time, in the direction in which they did before, as
-   !! the mean over a part of the fracture; cells that were not there before do not count [Pa].
+   !> Decrease of the shear traction up to a later time, in its earlier direction, as the mean over
+   !! a part of the fracture without new cells [Pa].
    pure real(rk) function fall(self, later, s)
       class(shear_t), intent(in) :: self  !< of one fracture
       type(shear_t), intent(in) :: later

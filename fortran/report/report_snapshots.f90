@@ -1,9 +1,5 @@
-!> Fields at written times: a VTU file for each dimension, collected in PVD files. report_columns
-!! defines the fields.
-!!
-!! Vectors and tensors of a plane state with the components that ParaView expects.
-!!
-!! ParaView collections (.pvd): the file of each time.
+!> Fields at written times: a VTU file for each dimension, with the components that ParaView
+!! expects, and collections of them (.pvd). report_columns defines the fields.
 !!
 !! ParaView expects times in increasing order, and shows files of equal time on top of one another.
 !! So states of equal time have consecutive numbers, and those of a falling load have the last state
@@ -17,6 +13,7 @@ module report_snapshots
    use report_columns, only: fracture_fields, intersection_fields, matrix_fields
    use report_files, only: make_directory, remove_file, write_text_file
    use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
+   use report_simulation, only: snapshot_t
    use report_text, only: newline, text_buffer_t
    use report_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
    use scene_types, only: material_t, scene_t
@@ -25,18 +22,18 @@ module report_snapshots
 
    public :: collection_t, snapshots_t
 
-   character(len=*), parameter :: folder = "vtu"  !< of the VTU files, in the run's directory
+   character(len=*), parameter :: folder = "vtu"  !< folder of the VTU files in the run's directory
    character(len=*), parameter :: dimension_names(3) = [character(len=13) :: "matrix", &
       & "fractures", "intersections"]
 
-   !> One collection. Only files that are complete may be added.
+   !> One collection, of complete files only.
    type :: collection_t
       integer :: n_files = 0
       character(len=:), allocatable, private :: path
-      logical, private :: is_falling = .false.  !< each time is less than the one before
-      real(rk), private :: last = 0.0_rk  !< time in the collection
-      type(text_buffer_t), private :: entries  !< lines, in the order in which they were added
-      integer, private :: written = 0  !< files in the collection on disk
+      logical, private :: is_falling = .false.  !< times decrease
+      real(rk), private :: last = 0.0_rk  !< last time in the collection
+      type(text_buffer_t), private :: entries  !< lines, in the order of the run
+      integer, private :: written = 0  !< number of files in the collection on disk
    contains
       procedure :: open => open_collection
       procedure :: add
@@ -45,11 +42,11 @@ module report_snapshots
 
    !> The snapshots of a run.
    type :: snapshots_t
-      integer :: n_written = 0  !< times
+      integer :: n_written = 0  !< number of written times
       character(len=:), allocatable, private :: directory
       type(material_t), private :: material
       type(collection_t), private :: collections(3)
-      logical, private :: counts = .false.  !< in these stand rows of the history, and not times
+      logical, private :: counts = .false.  !< times of collections are rows of history.csv
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
@@ -82,28 +79,24 @@ contains
       if (scene%output%vtu) call make_directory(directory//"/"//folder, error)
    end subroutine open_snapshots
 
-   !> Write the fields of a state.
-   subroutine write_snapshot(self, time, history_row, mesh, matrix, fracture, intersections, error)
+   !> Write the fields of a state: a file for each dimension that it has.
+   subroutine write_snapshot(self, fields, history_row, error)
       class(snapshots_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      integer(ik), intent(in) :: history_row  !< with the same state, from 1
-      type(mesh_t), intent(in) :: mesh
-      type(matrix_fields_t), intent(in) :: matrix
-      type(fracture_fields_t), intent(in) :: fracture
-      type(intersection_fields_t), intent(in) :: intersections  !< may be empty
+      type(snapshot_t), intent(in) :: fields
+      integer(ik), intent(in) :: history_row  !< of the same state, from 1
       type(error_t), allocatable, intent(out) :: error
       type(vtu_grid_t) :: grid
 
-      call fill_matrix(grid, time, mesh, matrix, self%material)
-      call write_one(self, 1, time, history_row, grid, error)
-      if (.not. allocated(error) .and. mesh%fracture%n_cells > 0) then
-         call fill_fractures(grid, time, mesh%fracture, fracture)
-         call write_one(self, 2, time, history_row, grid, error)
+      call fill_matrix(grid, fields%time, fields%mesh, fields%matrix, self%material)
+      call write_one(self, 1, fields%time, history_row, grid, error)
+      if (.not. allocated(error) .and. fields%mesh%fracture%n_cells > 0) then
+         call fill_fractures(grid, fields%time, fields%mesh%fracture, fields%fracture)
+         call write_one(self, 2, fields%time, history_row, grid, error)
       end if
-      if (.not. allocated(error) .and. allocated(intersections%point)) then
-         if (size(intersections%point) > 0) then
-            call fill_intersections(grid, time, mesh%fracture, intersections)
-            call write_one(self, 3, time, history_row, grid, error)
+      if (.not. allocated(error) .and. allocated(fields%intersection%point)) then
+         if (size(fields%intersection%point) > 0) then
+            call fill_intersections(grid, fields%time, fields%mesh%fracture, fields%intersection)
+            call write_one(self, 3, fields%time, history_row, grid, error)
          end if
       end if
       if (.not. allocated(error)) self%n_written = self%n_written + 1
@@ -152,6 +145,7 @@ contains
       if (.not. allocated(error)) call self%collections(i)%add(listed, file)
    end subroutine write_one
 
+   !> The grid of the rock.
    subroutine fill_matrix(grid, time, mesh, fields, material)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
@@ -182,6 +176,7 @@ contains
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
+   !> The grid of the fractures.
    subroutine fill_fractures(grid, time, mesh, fields)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
@@ -202,6 +197,7 @@ contains
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
    end subroutine fill_fractures
 
+   !> The grid of the intersections.
    subroutine fill_intersections(grid, time, mesh, fields)
       type(vtu_grid_t), intent(out) :: grid
       real(rk), intent(in) :: time  !< [s]
@@ -227,8 +223,8 @@ contains
       call grid%add(name, both, [character(len=10) :: "normal", "tangential"])
    end subroutine add_pair
 
-   !> Remove the snapshots of an earlier run, the last one first so that an interrupted removal can
-   !! go on.
+   !> Remove the snapshots of an earlier run, the last one first, so that an interrupted removal can
+   !! be continued.
    subroutine remove_earlier(directory)
       character(len=*), intent(in) :: directory
       logical :: was_there
@@ -262,7 +258,7 @@ contains
       file = folder//"/"//trim(dimension_names(i))//"_"//trim(digits)//".vtu"
    end function file_name
 
-   !> Displacement with the z component that VTK wants.
+   !> Displacement with a z component, as VTK requires.
    pure function displacement_3d(displacement) result(u)
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_cells or n_nodes) [m]
       real(rk) :: u(3, size(displacement, 2))
@@ -280,37 +276,24 @@ contains
       type(matrix_fields_t), intent(in) :: fields
       type(material_t), intent(in) :: material
       real(rk) :: stress(6, size(fields%stress, 2))  !< xx, yy, zz, xy, yz, xz [Pa]
+      real(rk), dimension(size(fields%stress, 2)) :: biot, poisson
 
       stress(1:2, :) = fields%stress(1:2, :)
       stress(3, :) = 0.0_rk
-      if (.not. material%plane_stress) then
-         if (allocated(fields%poisson)) then
-            stress(3, :) = fields%poisson*(fields%stress(1, :) + fields%stress(2, :))
-            if (allocated(fields%pressure)) then
-               stress(3, :) = stress(3, :) &
-                              - (1.0_rk - 2.0_rk*fields%poisson)*fields%biot*fields%pressure
-            end if
-         else
-            stress(3, :) = of_one_rock()
-         end if
-      end if
       stress(4, :) = fields%stress(3, :)
       stress(5:6, :) = 0.0_rk
-
-   contains
-
-      pure function of_one_rock() result(zz)
-         real(rk) :: zz(size(fields%stress, 2))
-
-         zz = material%poisson*(fields%stress(1, :) + fields%stress(2, :))
-         if (allocated(fields%pressure)) then
-            zz = zz - (1.0_rk - 2.0_rk*material%poisson)*material%biot*fields%pressure
-         end if
-      end function of_one_rock
-
+      if (material%plane_stress) return
+      poisson = material%poisson
+      biot = material%biot
+      if (allocated(fields%poisson)) poisson = fields%poisson
+      if (allocated(fields%biot)) biot = fields%biot
+      stress(3, :) = poisson*(fields%stress(1, :) + fields%stress(2, :))
+      if (allocated(fields%pressure)) then
+         stress(3, :) = stress(3, :) - (1.0_rk - 2.0_rk*poisson)*biot*fields%pressure
+      end if
    end function stress_tensor
 
-   !> Permeability as a symmetric tensor; out of the plane nothing flows and zz is 0.
+   !> Permeability as a symmetric tensor; zz is 0, without flow out of the plane.
    pure function permeability_tensor(fields, material, mesh) result(permeability)
       type(matrix_fields_t), intent(in) :: fields
       type(material_t), intent(in) :: material
@@ -332,7 +315,7 @@ contains
    subroutine open_collection(self, path, is_falling)
       class(collection_t), intent(out) :: self
       character(len=*), intent(in) :: path
-      logical, intent(in), optional :: is_falling  !< the times will fall
+      logical, intent(in), optional :: is_falling  !< times decrease; default: they increase
 
       self%path = path
       if (present(is_falling)) self%is_falling = is_falling

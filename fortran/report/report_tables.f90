@@ -1,4 +1,4 @@
-!> The CSV tables of a run: the source of the value of each column of report_columns.
+!> The CSV tables of a run, with the source of the value of each column of report_columns.
 module report_tables
    use base_errors, only: error_t, keep_first
    use base_kinds, only: degrees, ik, rk
@@ -20,7 +20,7 @@ module report_tables
 
    integer, parameter :: column_length = name_length + 17
 
-   !> The tables; those that the scene has nothing for stay closed.
+   !> The tables; those that do not apply to the scene remain closed.
    type :: tables_t
       type(series_t) :: history
       type(series_t) :: tips
@@ -216,7 +216,7 @@ contains
       end associate
    end subroutine probe_row
 
-   !> Add an event. What does not apply to it is left empty.
+   !> Add an event. Values that do not apply are empty.
    subroutine event_row(self, time, kind, detail, fracture, xy)
       class(tables_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s], or the load factor
@@ -246,7 +246,7 @@ contains
       end associate
    end subroutine event_row
 
-   !> Add a slip event that is over.
+   !> Add a slip event that has ended.
    subroutine slip_event_row(self, event)
       class(tables_t), intent(inout) :: self
       type(slip_event_t), intent(in) :: event
@@ -302,7 +302,7 @@ contains
       end associate
    end subroutine well_row
 
-   !> Write all tables that have changed, each of them though another one fails; the first error.
+   !> Write all tables that have changed, also after a failure of one; the error is the first.
    subroutine flush_tables(self, error)
       class(tables_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -327,7 +327,7 @@ contains
 
    end subroutine flush_tables
 
-   !> Open a table with the columns that the table of columns has for it.
+   !> Open a table with those of its columns that apply to the scene.
    subroutine open_table(table, path, columns, scene)
       type(series_t), intent(out) :: table
       character(len=*), intent(in) :: path
@@ -337,7 +337,7 @@ contains
       call table%open(path, columns%name, applies(columns, scene))
    end subroutine open_table
 
-   !> Open the history: the column of a well's pressure stands there for each of several wells.
+   !> Open history.csv, with a column of the pressure for each of several wells.
    subroutine open_history(self, path, scene)
       class(tables_t), intent(inout) :: self
       character(len=*), intent(in) :: path
@@ -361,7 +361,7 @@ contains
                                     history_columns(at + 1:)%name], is_written)
    end subroutine open_history
 
-   !> Open the table of the probes: the time or load factor, then the same columns for each of them.
+   !> Open probes.csv: the time or load factor, then the same columns for each probe.
    subroutine open_probes(self, path, scene)
       class(tables_t), intent(inout) :: self
       character(len=*), intent(in) :: path
@@ -383,7 +383,7 @@ contains
          & (applies(probe_columns(n_common + 1:), scene), i=1, size(scene%probes))])
    end subroutine open_probes
 
-   !> The value of a cell or a probe, or nothing where the field is left out.
+   !> Put the value of a cell or a probe, or an empty value without the field.
    subroutine put_if_there(table, name, values, i)
       type(series_t), intent(inout) :: table
       character(len=*), intent(in) :: name  !< of the column

@@ -1,7 +1,5 @@
-!> Text that grows: a buffer with spare capacity.
-!!
-!! JSON (RFC 8259), built member by member. A number that JSON cannot represent (NaN, infinity)
-!! becomes null.
+!> A text buffer with spare capacity, and JSON (RFC 8259) built in it member by member. A number
+!! that JSON cannot represent (NaN, infinity) becomes null.
 module report_text
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
@@ -15,9 +13,9 @@ module report_text
 
    character(len=*), parameter :: newline = achar(10)
 
-   !> A long text, built piece by piece.
+   !> A long text, built by appending.
    type :: text_buffer_t
-      integer(lk) :: length = 0_lk  !< characters used
+      integer(lk) :: length = 0_lk  !< characters in use
       character(len=:), allocatable, private :: storage
    contains
       procedure :: append
@@ -27,20 +25,19 @@ module report_text
       procedure :: write_file
    end type text_buffer_t
 
-   integer, parameter :: deepest = 16  !< nesting of objects and arrays
+   integer, parameter :: deepest = 16  !< largest nesting of objects and arrays
 
-   !> A JSON text in the making. An element of an array has the key "".
+   !> A JSON text under construction. An element of an array has the key "".
    type :: json_t
       type(text_buffer_t) :: buffer
       integer :: depth = 0
       logical :: has_members(0:deepest) = .false.
-      logical :: one_line = .false.
+      logical :: one_line = .false.  !< text from here on without line breaks
    contains
       procedure :: begin_object
       procedure :: end_object
       procedure :: begin_array
       procedure :: end_array
-      procedure :: keep_on_one_line
       procedure :: add_raw
       procedure, private :: add_real
       procedure, private :: add_integer
@@ -56,33 +53,33 @@ module report_text
 
 contains
 
-   !> Add a piece at the end.
-   pure subroutine append(self, piece)
+   !> Append a text.
+   pure subroutine append(self, item)
       class(text_buffer_t), intent(inout) :: self
-      character(len=*), intent(in) :: piece
+      character(len=*), intent(in) :: item
       character(len=:), allocatable :: larger
       integer(lk) :: length  ! afterwards
 
-      length = self%length + len(piece, kind=lk)
+      length = self%length + len(item, kind=lk)
       if (.not. allocated(self%storage)) allocate (character(len=1024) :: self%storage)
       if (length > len(self%storage, kind=lk)) then
          allocate (character(len=2_lk*length) :: larger)
          larger(1:self%length) = self%storage(1:self%length)
          call move_alloc(larger, self%storage)
       end if
-      self%storage(self%length + 1:length) = piece
+      self%storage(self%length + 1:length) = item
       self%length = length
    end subroutine append
 
-   !> Add a number at the end, with the digits that it needs.
+   !> Append a number with as many digits as needed to read it back exactly.
    pure subroutine append_real(self, x)
       class(text_buffer_t), intent(inout) :: self
       real(rk), intent(in) :: x  !< [any unit]
-      character(len=number_width) :: piece
+      character(len=number_width) :: item
       integer :: length
 
-      call format_real(x, piece, length)
-      call self%append(piece(1:length))
+      call format_real(x, item, length)
+      call self%append(item(1:length))
    end subroutine append_real
 
    !> Replace the last character.
@@ -93,7 +90,7 @@ contains
       if (self%length > 0) self%storage(self%length:self%length) = letter
    end subroutine replace_last
 
-   !> All that was added.
+   !> The whole text.
    pure function buffer_text(self) result(text)
       class(text_buffer_t), intent(in) :: self
       character(len=:), allocatable :: text
@@ -105,7 +102,7 @@ contains
       end if
    end function buffer_text
 
-   !> Write all that was added as a whole file.
+   !> Write the text as a file.
    subroutine write_file(self, path, error)
       class(text_buffer_t), intent(in) :: self
       character(len=*), intent(in) :: path
@@ -117,13 +114,6 @@ contains
          call write_text_file(path, "", error)
       end if
    end subroutine write_file
-
-   !> Write what follows without line breaks.
-   subroutine keep_on_one_line(self)
-      class(json_t), intent(inout) :: self
-
-      self%one_line = .true.
-   end subroutine keep_on_one_line
 
    subroutine begin_object(self, key)
       class(json_t), intent(inout) :: self
@@ -153,7 +143,7 @@ contains
       call close_bracket(self, "]")
    end subroutine end_array
 
-   !> Add a value that is JSON already.
+   !> Add a value that is in the form of JSON.
    subroutine add_raw(self, key, value)
       class(json_t), intent(inout) :: self
       character(len=*), intent(in) :: key
@@ -247,7 +237,7 @@ contains
       text = self%buffer%text()
    end function json_text
 
-   !> A string as JSON has it between its quotes. Bytes that are not UTF-8 are read as Latin-1.
+   !> A text in the form of JSON, without its quotes. Bytes that are not UTF-8 are read as Latin-1.
    pure function escaped(text) result(json)
       character(len=*), intent(in) :: text
       character(len=:), allocatable :: json
@@ -290,7 +280,7 @@ contains
       end do
    end function escaped
 
-   !> Comma, line break and key before a value.
+   !> Append comma, line break and key before a value.
    subroutine begin_member(self, key)
       class(json_t), intent(inout) :: self
       character(len=*), intent(in) :: key
@@ -322,7 +312,7 @@ contains
       if (self%depth == 0 .and. .not. self%one_line) call self%buffer%append(newline)
    end subroutine close_bracket
 
-   !> Go to the next line, indented; on one line, a blank where a comma stands before.
+   !> Append an indented new line; on one line, a blank after a comma.
    subroutine break_line(self, after_comma)
       class(json_t), intent(inout) :: self
       logical, intent(in) :: after_comma
@@ -340,7 +330,7 @@ contains
 
       if (abs(value) <= huge(value)) then
          call self%buffer%append_real(value)
-      else  ! a NaN ends here too
+      else  ! also NaN
          call self%buffer%append("null")
       end if
    end subroutine append_number

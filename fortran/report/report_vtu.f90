@@ -26,14 +26,14 @@ module report_vtu
    !> A field with a value, or several components, in each cell or at each point.
    type :: vtu_field_t
       character(len=:), allocatable :: name
-      character(len=:), allocatable :: components  !< XML attributes; may be empty
-      character(len=:), allocatable :: unit  !< unallocated: without
-      logical :: at_points = .false.
-      real(rk), allocatable :: reals(:)  !< component by component, cell by cell
-      integer(ik), allocatable :: integers(:)  !< or these
+      character(len=:), allocatable :: components  !< XML attributes of the components; may be empty
+      character(len=:), allocatable :: unit  !< unallocated: none
+      logical :: at_points = .false.  !< values at points, and not in cells
+      real(rk), allocatable :: reals(:)  !< all components of the first cell, of the second, ...
+      integer(ik), allocatable :: integers(:)  !< values of an integer field instead of reals
    end type vtu_field_t
 
-   !> One file in the making.
+   !> A grid with its fields.
    type :: vtu_grid_t
       private
       real(rk), allocatable :: points(:)  !< x, y, 0 of each point [m]
@@ -42,7 +42,7 @@ module report_vtu
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
       real(rk) :: time = 0.0_rk  !< [s]
-      integer(ik) :: history_row = 0  !< of history.csv with the same state, from 1; 0: none
+      integer(ik) :: history_row = 0  !< row of history.csv of the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
    contains
@@ -56,6 +56,16 @@ module report_vtu
       procedure :: set_units
       procedure :: write => write_grid
    end type vtu_grid_t
+
+   !> The XML before the raw arrays, as far as it has been written.
+   type :: header_t
+      type(text_buffer_t) :: buffer
+      integer(int64) :: offset = 0_int64  !< of the next array, from the byte after the underscore
+   contains
+      procedure :: line
+      procedure :: fields
+      procedure :: array
+   end type header_t
 
 contains
 
@@ -130,7 +140,7 @@ contains
       self%fields(self%n_fields)%integers = values
    end subroutine add_integer
 
-   !> Say which row of history.csv has the same state.
+   !> Set the row of history.csv of the same state.
    pure subroutine set_history_row(self, row)
       class(vtu_grid_t), intent(inout) :: self
       integer(ik), intent(in) :: row  !< from 1
@@ -138,11 +148,11 @@ contains
       self%history_row = row
    end subroutine set_history_row
 
-   !> Give the fields so far their units, as VTK's key UNITS_LABEL.
+   !> Set the units of the fields added so far, VTK's key UNITS_LABEL.
    pure subroutine set_units(self, names, units)
       class(vtu_grid_t), intent(inout) :: self
-      character(len=*), intent(in) :: names(:)  !< of fields, which need not all be there
-      character(len=*), intent(in) :: units(:)  !< of each, `-` without
+      character(len=*), intent(in) :: names(:)  !< names of fields, some of which may be absent
+      character(len=*), intent(in) :: units(:)  !< unit of each; `-`: none
       integer :: i, k
 
       do i = 1, self%n_fields
@@ -153,7 +163,7 @@ contains
       end do
    end subroutine set_units
 
-   !> Write the file whole.
+   !> Write the file.
    subroutine write_grid(self, path, error)
       class(vtu_grid_t), intent(in) :: self
       character(len=*), intent(in) :: path
@@ -163,7 +173,7 @@ contains
       integer(ik) :: i
 
       call file%open(path)
-      call file%put(header(self))
+      call file%put(header_text(self))
       call put_reals(file, self%points)
       call put_integers(file, self%connectivity)
       call put_integers(file, [(i*self%nodes_per_cell, i=1, self%n_cells)])
@@ -192,84 +202,85 @@ contains
       end do
    end subroutine put_fields
 
-   !> The XML before the raw arrays, which says where each of them begins.
-   function header(self) result(xml)
+   !> The XML before the raw arrays, with the offset of each of them.
+   function header_text(self) result(xml)
       type(vtu_grid_t), intent(in) :: self
       character(len=:), allocatable :: xml
+      type(header_t) :: header
 
-      type(text_buffer_t) :: buffer
-      integer(int64) :: offset
+      call header%line('<?xml version="1.0"?>')
+      call header%line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'// &
+         & byte_order()//'" header_type="UInt64">')
+      call header%line("  <UnstructuredGrid>")
+      call header%line('    <FieldData><DataArray type="Float64" Name="TimeValue" '// &
+         & 'NumberOfTuples="1" format="ascii">'//exact_text(self%time)//"</DataArray>"// &
+         & state_number(self)//"</FieldData>")
+      call header%line('    <Piece NumberOfPoints="'// &
+         & integer_text(size(self%points, kind=ik)/3_ik)//'" NumberOfCells="'// &
+         & integer_text(self%n_cells)//'">')
+      call header%line("      <Points>")
+      call header%array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points), "m")
+      call header%line("      </Points>")
+      call header%line("      <Cells>")
+      call header%array("Int32", "connectivity", "", 4*size(self%connectivity))
+      call header%array("Int32", "offsets", "", 4*int(self%n_cells))
+      call header%array("UInt8", "types", "", int(self%n_cells))
+      call header%line("      </Cells>")
+      call header%line("      <PointData>")
+      call header%fields(self, .true.)
+      call header%line("      </PointData>")
+      call header%line("      <CellData>")
+      call header%fields(self, .false.)
+      call header%line("      </CellData>")
+      call header%line("    </Piece>")
+      call header%line("  </UnstructuredGrid>")
+      call header%line('  <AppendedData encoding="raw">')
+      xml = header%buffer%text()//"   _"
+   end function header_text
 
-      offset = 0_int64
-      call line('<?xml version="1.0"?>')
-      call line('<VTKFile type="UnstructuredGrid" version="1.0" byte_order="'//byte_order()// &
-         & '" header_type="UInt64">')
-      call line("  <UnstructuredGrid>")
-      call line('    <FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '// &
-         & 'format="ascii">'//exact_text(self%time)//"</DataArray>"//state_number(self)// &
-         & "</FieldData>")
-      call line('    <Piece NumberOfPoints="'//integer_text(size(self%points, kind=ik)/3_ik)// &
-         & '" NumberOfCells="'//integer_text(self%n_cells)//'">')
-      call line("      <Points>")
-      call array("Float64", "Points", ' NumberOfComponents="3"', 8*size(self%points), "m")
-      call line("      </Points>")
-      call line("      <Cells>")
-      call array("Int32", "connectivity", "", 4*size(self%connectivity))
-      call array("Int32", "offsets", "", 4*int(self%n_cells))
-      call array("UInt8", "types", "", int(self%n_cells))
-      call line("      </Cells>")
-      call line("      <PointData>")
-      call fields(.true.)
-      call line("      </PointData>")
-      call line("      <CellData>")
-      call fields(.false.)
-      call line("      </CellData>")
-      call line("    </Piece>")
-      call line("  </UnstructuredGrid>")
-      call line('  <AppendedData encoding="raw">')
-      xml = buffer%text()//"   _"
+   !> Add a line.
+   subroutine line(self, text)
+      class(header_t), intent(inout) :: self
+      character(len=*), intent(in) :: text
 
-   contains
+      call self%buffer%append(text//newline)
+   end subroutine line
 
-      subroutine line(text)
-         character(len=*), intent(in) :: text
+   !> Add the fields at points, or those in cells, in the order of put_fields.
+   subroutine fields(self, grid, at_points)
+      class(header_t), intent(inout) :: self
+      type(vtu_grid_t), intent(in) :: grid
+      logical, intent(in) :: at_points
+      integer :: i
 
-         call buffer%append(text//newline)
-      end subroutine line
+      do i = 1, grid%n_fields
+         associate (field => grid%fields(i))
+            if (field%at_points .neqv. at_points) cycle
+            if (allocated(field%reals)) then
+               call self%array("Float64", field%name, field%components, 8*size(field%reals), &
+                               field%unit)
+            else
+               call self%array("Int32", field%name, "", 4*size(field%integers))
+            end if
+         end associate
+      end do
+   end subroutine fields
 
-      !> The fields at points, or those in cells, in the order of put_fields.
-      subroutine fields(at_points)
-         logical, intent(in) :: at_points
-         integer :: i
+   !> Add the element of an array, which begins at the present offset.
+   subroutine array(self, type_name, name, attributes, n_bytes, unit)
+      class(header_t), intent(inout) :: self
+      character(len=*), intent(in) :: type_name, name, attributes
+      integer, intent(in) :: n_bytes  !< of the values; 8 more hold their number
+      character(len=*), intent(in), optional :: unit
+      character(len=:), allocatable :: ending
 
-         do i = 1, self%n_fields
-            associate (field => self%fields(i))
-               if (field%at_points .neqv. at_points) cycle
-               if (allocated(field%reals)) then
-                  call array("Float64", field%name, field%components, 8*size(field%reals), &
-                             field%unit)
-               else
-                  call array("Int32", field%name, "", 4*size(field%integers))
-               end if
-            end associate
-         end do
-      end subroutine fields
-
-      subroutine array(type_name, name, attributes, n_bytes, unit)
-         character(len=*), intent(in) :: type_name, name, attributes
-         integer, intent(in) :: n_bytes  !< of the values; 8 more hold their size
-         character(len=*), intent(in), optional :: unit
-         character(len=:), allocatable :: ending
-
-         ending = "/>"
-         if (present(unit)) ending = '><InformationKey name="UNITS_LABEL" '// &
-            & 'location="vtkDataArray">'//unit//"</InformationKey></DataArray>"
-         call line('        <DataArray type="'//type_name//'" Name="'//name//'"'//attributes// &
-            & ' format="appended" offset="'//integer_text(offset)//'"'//ending)
-         offset = offset + 8_int64 + int(n_bytes, int64)
-      end subroutine array
-
-   end function header
+      ending = "/>"
+      if (present(unit)) ending = '><InformationKey name="UNITS_LABEL" '// &
+         & 'location="vtkDataArray">'//unit//"</InformationKey></DataArray>"
+      call self%line('        <DataArray type="'//type_name//'" Name="'//name//'"'//attributes// &
+         & ' format="appended" offset="'//integer_text(self%offset)//'"'//ending)
+      self%offset = self%offset + 8_int64 + int(n_bytes, int64)
+   end subroutine array
 
    !> The row of history.csv as field data.
    pure function state_number(self) result(xml)
@@ -282,6 +293,7 @@ contains
             integer_text(self%history_row)//"</DataArray>"
    end function state_number
 
+   !> Add a field without values.
    subroutine new_field(self, name)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
@@ -291,6 +303,7 @@ contains
       self%fields(self%n_fields) = vtu_field_t(name=name, components="")
    end subroutine new_field
 
+   !> Write an array of reals after its size.
    subroutine put_reals(file, values)
       type(whole_file_t), intent(inout) :: file
       real(rk), intent(in) :: values(:)  !< [SI]
@@ -299,6 +312,7 @@ contains
       call file%put(values)
    end subroutine put_reals
 
+   !> Write an array of integers after its size.
    subroutine put_integers(file, values)
       type(whole_file_t), intent(inout) :: file
       integer(ik), intent(in) :: values(:)
@@ -307,7 +321,7 @@ contains
       call file%put(values)
    end subroutine put_integers
 
-   !> How this machine orders the bytes of a number.
+   !> Byte order of this machine.
    pure function byte_order() result(name)
       character(len=:), allocatable :: name
       integer(int8) :: bytes(4)

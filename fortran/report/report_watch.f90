@@ -1,9 +1,8 @@
-!> Monitors the limits of a run: which were exceeded, when and where first, and by how much.
+!> Monitors the limits of a run: which were exceeded, when and where first, and by how much; also
+!! tips whose intensities are not accurate enough for growth.
 !!
-!! Tips whose intensities are not accurate enough for growth.
-!!
-!! Growth in equilibrium depends on whether K_eq reaches K_IC. A tip that may reach it, within the
-!! error of its intensities, must have an error below a share of K_IC (report_limits).
+!! Growth in equilibrium depends on whether K_eq reaches K_IC. If K_eq of a tip may reach K_IC,
+!! within the error of its intensities, that error must be below a fraction of K_IC (report_limits).
 module report_watch
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -17,20 +16,20 @@ module report_watch
 
    public :: doubtful, error_of_k, stop_on_doubt, uncertainty, watch_t, worst_place
 
-   integer, parameter :: digits = 4  !< of numbers in sentences
+   integer, parameter :: digits = 4  !< digits of numbers in sentences
 
-   !> What was seen of one limit.
+   !> Record of a limit that was exceeded.
    type :: record_t
-      integer(ik) :: states = 0  !< in which it was passed
-      real(rk) :: first = 0.0_rk, worst = 0.0_rk  !< values, in the limit's unit
-      character(len=:), allocatable :: first_at, worst_at  !< time and place, in words
+      integer(ik) :: states = 0  !< number of states in which it was exceeded
+      real(rk) :: first = 0.0_rk, worst = 0.0_rk  !< first and worst value, in the limit's unit
+      character(len=:), allocatable :: first_at, worst_at  !< time and place of these, in words
    end type record_t
 
    !> All limits of one run.
    type :: watch_t
       type(record_t), private :: records(size(limits))
-      integer, private :: stopped_by = 0  !< limit that ends the run
-      type(text_t), allocatable :: news(:)  !< sentences about limits passed for the first time
+      integer, private :: stopped_by = 0  !< index of the limit that stops the run; 0: none
+      type(text_t), allocatable :: news(:)  !< sentences about limits exceeded for the first time
    contains
       procedure :: see
       procedure :: see_tips
@@ -38,18 +37,18 @@ module report_watch
       procedure :: sentences
    end type watch_t
 
-   !> K_eq changes by at most so much with an intensity: with K_II, where there is no K_I.
+   !> Largest derivative of K_eq with respect to an intensity: with respect to K_II at K_I = 0 [-].
    real(rk), parameter :: steepest = 2.0_rk/sqrt(3.0_rk)
 
 contains
 
-   !> Take note of a value of the present state.
+   !> Check a value of the present state against its limit.
    pure subroutine see(self, limit, value, when, xy)
       class(watch_t), intent(inout) :: self
       integer, intent(in) :: limit  !< index into the table of limits
       real(rk), intent(in) :: value  !< in the limit's unit
       character(len=*), intent(in) :: when  !< "3600 s", "load factor 0.5"
-      real(rk), intent(in), optional :: xy(2)  !< where [m]
+      real(rk), intent(in), optional :: xy(2)  !< position [m]
       character(len=:), allocatable :: at
       integer :: verdict
       logical :: is_worst
@@ -77,7 +76,7 @@ contains
       if (verdict == verdict_stop .and. self%stopped_by == 0) self%stopped_by = limit
    end subroutine see
 
-   !> Take note of the stress intensity factors of all tips.
+   !> Check the stress intensity factors of all tips against their limits.
    pure subroutine see_tips(self, tips, toughness, may_grow, when)
       class(watch_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -89,7 +88,7 @@ contains
 
       if (all(tips%arrested)) return
       associate (k => tips%intensity)
-         ! Faces that do not move next to the tip give no K, but round-off by correlation.
+         ! If the faces do not move next to the tip, K is 0, and round-off by correlation.
          difference = merge(0.0_rk, hypot(k%k1 - k%k1_dc, k%k2 - k%k2_dc), &
                             tips%arrested .or. hypot(k%k1, k%k2) <= 0.0_rk)
          errors = merge(0.0_rk, tips%relative_error(toughness), tips%arrested)
@@ -105,7 +104,7 @@ contains
       call self%see(limit_k_error, errors(i), when, tips(i)%xy)
    end subroutine see_tips
 
-   !> An error if a limit asks to stop the run.
+   !> Raise an error if a limit stops the run.
    pure subroutine stop_run(self, error)
       class(watch_t), intent(in) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -118,7 +117,7 @@ contains
                        trim(limits(self%stopped_by)%remedy)//" (see docs/limits.md)")
    end subroutine stop_run
 
-   !> What was seen in the whole run: a sentence for each limit that was passed.
+   !> A sentence for each limit that was exceeded in the run.
    pure function sentences(self) result(list)
       class(watch_t), intent(in) :: self
       type(text_t), allocatable :: list(:)
@@ -130,7 +129,7 @@ contains
       end do
    end function sentences
 
-   !> The first value, the worst one if there are several, and what to do.
+   !> Sentence about a limit: the first value, the worst one of several, and the remedy.
    pure function sentence(limit, record) result(text)
       integer, intent(in) :: limit
       type(record_t), intent(in) :: record
@@ -144,7 +143,7 @@ contains
       text = text//"; "//trim(limits(limit)%remedy)//" (see docs/limits.md)"
    end function sentence
 
-   !> A value that has passed a limit.
+   !> Clause about a value beyond a limit.
    pure function passed(limit, value, bound) result(text)
       integer, intent(in) :: limit
       real(rk), intent(in) :: value, bound  !< in the limit's unit
@@ -155,6 +154,7 @@ contains
              brief_text(bound, digits)
    end function passed
 
+   !> A value with the limit's unit.
    pure function value_text(limit, value) result(text)
       integer, intent(in) :: limit
       real(rk), intent(in) :: value  !< in the limit's unit
@@ -164,7 +164,7 @@ contains
       if (limits(limit)%unit /= "-") text = text//" "//trim(limits(limit)%unit)
    end function value_text
 
-   !> Index of the largest value, or of the first one that is no number.
+   !> Index of the largest value, or of the first NaN.
    pure integer(ik) function worst_place(values) result(i)
       real(rk), intent(in) :: values(:)  !< at least one
 
@@ -172,8 +172,8 @@ contains
       if (i == 0) i = maxloc(values, dim=1, kind=ik)
    end function worst_place
 
-   !> What the intensities of a tip may be off, over the toughness, or over K_eq where that is far
-   !! above it and there is no doubt that the tip grows, only where to [%].
+   !> Estimated error of the intensities of a tip over K_IC, or over K_eq if that is larger: then
+   !! the tip grows, and only its direction is uncertain [%].
    elemental real(rk) function uncertainty(tip, toughness)
       type(tip_t), intent(in) :: tip
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
@@ -181,7 +181,8 @@ contains
       uncertainty = 100.0_rk*error_of_k(tip)/max(toughness, tip%drive%intensity)
    end function uncertainty
 
-   !> What a better window could mend, and what does not pass by itself.
+   !> Estimated error of the intensities without the part that decreases in the following steps [Pa
+   !! m^1/2].
    elemental real(rk) function error_of_k(tip)
       type(tip_t), intent(in) :: tip
 
@@ -190,7 +191,7 @@ contains
       end associate
    end function error_of_k
 
-   !> A tip would grow, or might, and its intensities are not known well enough for that.
+   !> K_eq of a tip may reach K_IC within its error, and that error is too large for growth.
    elemental logical function doubtful(tip, toughness)
       type(tip_t), intent(in) :: tip
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
@@ -200,7 +201,7 @@ contains
       if (doubtful) doubtful = .not. tip%drive%intensity + steepest*error_of_k(tip) < toughness
    end function doubtful
 
-   !> A tip is doubtful and cannot be known better: a limit of the run is passed.
+   !> Exceed the limit of the run for a tip whose intensities are too uncertain for growth.
    pure subroutine stop_on_doubt(watch, tip, toughness, fracture, when)
       class(watch_t), intent(inout) :: watch
       type(tip_t), intent(in) :: tip

@@ -1,9 +1,5 @@
-!> Checks values against each other: first those that depend on which names are given, then those
-!! that depend on the numbers.
-!!
-!! Checks the relations between names of one group that the table of parameters defines.
-!!
-!! Checks the weights of rock and fluid in a scene with a fluid against each other.
+!> Checks values against each other: first which names are given, also the relations between names
+!! that the table of parameters defines, then the numbers.
 module scene_check
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -16,7 +12,8 @@ module scene_check
    use scene_check_regions, only: check_given_regions, check_regions
    use scene_check_sides, only: check_faces, check_parts, check_sides
    use scene_fluid_law, only: least_compressibility, skempton, storage
-   use scene_parameters, only: choice_name, choice_value, groups, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: choice_name, choice_value, groups
    use scene_sheet, only: line_text, parameter_index, record_t, refuse, sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t
@@ -28,7 +25,7 @@ module scene_check
 
 contains
 
-   !> What is given must go together.
+   !> Check which names are given together.
    pure subroutine check_sheet(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -42,9 +39,9 @@ contains
       if (.not. allocated(error)) call check_given_fluid(sheet, error)
    end subroutine check_sheet
 
-   !> The numbers must go together.
+   !> Check the numbers of a scene against each other.
    pure subroutine check_scene(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet  !< where the scene comes from, for the messages
+      type(sheet_t), intent(in) :: sheet  !< the file of the scene, for messages about its lines
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
 
@@ -87,7 +84,7 @@ contains
             cycle
          end select
          associate (name => sheet%records(i)%values(item))
-            if (.not. name%is_set) cycle  ! a well, called after its number
+            if (.not. name%is_set) cycle  ! a well, named after its number
             do j = 1, i - 1
                if (sheet%records(j)%group /= sheet%records(i)%group) cycle
                if (.not. sheet%records(j)%values(item)%is_set) cycle
@@ -101,8 +98,8 @@ contains
       end do
    end subroutine check_names
 
-   !> The storage coefficient is positive, the pressure that a load makes at once no larger than the
-   !! load, and the permeability positive definite.
+   !> The storage coefficient is positive, the undrained pressure due to a load is not larger than
+   !! the load, and the permeability is positive definite.
    pure subroutine check_material(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -130,7 +127,7 @@ contains
       end associate
    end subroutine check_material
 
-   !> Fine level and growth go with the fractures and the coarse level.
+   !> Fine level and growth are consistent with the fractures and the coarse level.
    pure subroutine check_levels(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -177,8 +174,8 @@ contains
       end if
    end subroutine check_levels
 
-   !> Every name belongs to the choice that its group makes, stands together with those that go with
-   !! it, and is at most what bounds it.
+   !> Every name belongs to the choice of its group, is given with its partner, and is not above its
+   !! upper bound.
    pure subroutine check_table(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -197,11 +194,11 @@ contains
       end do
    end subroutine check_table
 
-   !> What is wrong with a name, given or not.
+   !> Find the fault of a name, given or not.
    pure subroutine find_fault(record, item, reason)
       type(record_t), intent(in) :: record
-      integer, intent(in) :: item
-      character(len=:), allocatable, intent(out) :: reason  !< unallocated: nothing is
+      integer, intent(in) :: item  !< index into parameters
+      character(len=:), allocatable, intent(out) :: reason  !< unallocated: no fault
       type(value_t) :: bound, choice
       integer :: other
 
@@ -228,12 +225,12 @@ contains
       end associate
    end subroutine find_fault
 
-   !> A fluid with a density has weight, along y, and the rock is no lighter than what fills it.
+   !> A fluid with a density has weight along y, and the rock is not lighter than the pore fluid.
    pure subroutine check_column(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: least  ! [kg/m3]
+      real(rk) :: least  ! smallest density of the rock [kg/m3]
 
       call check_layers(sheet, scene, error)
       if (allocated(error)) return
@@ -258,8 +255,8 @@ contains
       end associate
    end subroutine check_column
 
-   !> Rock of several densities has a weight that one gradient of stress does not carry, and that
-   !! windows do not know; it is no lighter than what fills it.
+   !> Regions of another density need gravity and are heavier than their pore fluid; one gradient of
+   !! stress in situ cannot balance several weights, and windows have a single density.
    pure subroutine check_layers(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -294,7 +291,7 @@ contains
       end do
    end subroutine check_layers
 
-   !> Without a stress in situ the fluid at rest presses on rock of one Biot coefficient.
+   !> Without a stress in situ a fluid with a density requires a uniform Biot coefficient.
    pure subroutine check_region_weights(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene

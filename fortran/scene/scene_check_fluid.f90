@@ -1,6 +1,4 @@
-!> Checks the laws of a fluid whose density or viscosity depends on its pressure.
-!!
-!! Checks the wells of a scene.
+!> Checks the laws of density and viscosity of the fluid, and the wells of a scene.
 module scene_check_fluid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -17,12 +15,13 @@ module scene_check_fluid
 
    public :: check_fluid, check_given_fluid, check_given_wells, check_wells
 
-   !> The rock has the values of the table at the reference pressure, but for rounding of both [-].
+   !> Largest relative difference of viscosity or compressibility from the table at the reference
+   !! pressure, for rounded values [-].
    real(rk), parameter :: rounding = 0.02_rk
 
 contains
 
-   !> A table has its pressures, and nothing is given that no law takes.
+   !> Pressures of a table are given exactly with a table, and a reference pressure only with a law.
    pure subroutine check_given_fluid(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -49,7 +48,8 @@ contains
       end if
    end subroutine check_given_fluid
 
-   !> Tables rise, hold the reference pressure, and say of it what the rock takes.
+   !> Pressures of a table increase and enclose the reference pressure, at which the values of the
+   !! rock are those of the table.
    pure subroutine check_fluid(sheet, fluid, error)
       type(sheet_t), intent(in) :: sheet
       type(fluid_t), intent(in) :: fluid
@@ -76,6 +76,7 @@ contains
       end if
    end subroutine check_fluid
 
+   !> The pressures of a table increase and enclose the reference pressure.
    pure subroutine check_pressures(sheet, i, fluid, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< record
@@ -98,13 +99,14 @@ contains
       end associate
    end subroutine check_pressures
 
-   !> The first value that the next one does not exceed.
+   !> Index of the first value that is not below the next one.
    pure integer function falls(list)
       real(rk), intent(in) :: list(:)  !< [any unit]
 
       falls = findloc(list(2:) > list(:size(list) - 1), .false., dim=1)
    end function falls
 
+   !> A list has a value per pressure of the table.
    pure subroutine check_length(sheet, i, name, list, fluid, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< record
@@ -119,7 +121,7 @@ contains
                   "table_pressure, "//integer_text(size(fluid%table_pressure, kind=ik)))
    end subroutine check_length
 
-   !> No liquid gets lighter under pressure.
+   !> Densities do not decrease with pressure.
    pure subroutine check_density(sheet, i, fluid, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< record
@@ -137,8 +139,8 @@ contains
       end associate
    end subroutine check_density
 
-   !> What the rock takes is what the tables say at the reference pressure: the viscosity there, and
-   !! a compressibility between those of the pieces that meet there.
+   !> At the reference pressure, the viscosity of the rock is that of the table, and its
+   !! compressibility is between those of the adjacent intervals of the table.
    pure subroutine check_rock(sheet, i, fluid, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< record
@@ -159,7 +161,7 @@ contains
       end if
       if (fluid%density_law /= "table") return
       bounds = law%compressibility(law%reference - 1:law%reference)
-      ! Beyond an end of the table there is none.
+      ! Beyond an end of the table there is no interval.
       if (law%reference == 1) bounds(1) = bounds(2)
       if (law%reference == size(law%pressure)) bounds(2) = bounds(1)
       if (fluid%compressibility < (1.0_rk - rounding)*minval(bounds) .or. &
@@ -171,7 +173,7 @@ contains
       end if
    end subroutine check_rock
 
-   !> What is given of each: a fracture of the scene or a point, a rate or a pressure.
+   !> Each well has a fracture of the scene or a point, and a rate or a pressure.
    pure subroutine check_given_wells(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -204,7 +206,7 @@ contains
       end do
    end subroutine check_given_wells
 
-   !> The fracture that a well names is one of the scene.
+   !> The fracture of a well is one of the scene.
    pure subroutine check_target(sheet, well, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: well  !< index into sheet%records
@@ -235,7 +237,7 @@ contains
       end if
    end subroutine check_target
 
-   !> Stages go on in time, and a well is where the scene says.
+   !> Stages, pressures, positions and names of the wells.
    pure subroutine check_wells(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -256,6 +258,8 @@ contains
       end do
    end subroutine check_wells
 
+   !> Stages have as many rates and pressures as times, which increase, and end after the last
+   !! start.
    pure subroutine check_stages(sheet, record, well, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -285,7 +289,7 @@ contains
                   last//real_text(well%stage_start(n)))
    end subroutine check_stages
 
-   !> A fracture bears no pressure below that of vapour, so no well there can have or reach one.
+   !> The pressure of a well in a fracture is at least the vapour pressure.
    pure subroutine check_pressure(sheet, record, scene, i, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -301,7 +305,7 @@ contains
       end associate
    end subroutine check_pressure
 
-   !> One value for all stages, or one each.
+   !> A list has one value for all stages, or one per stage.
    pure subroutine check_count(sheet, record, name, given, stages, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -317,7 +321,7 @@ contains
                   " values but must have "//right)
    end subroutine check_count
 
-   !> A point lies on its fracture, within a cell, or in the rock.
+   !> The point of a well lies within a cell size of its fracture, or in the body.
    pure subroutine check_place(sheet, record, scene, i, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -347,15 +351,15 @@ contains
       end associate
    end subroutine check_place
 
-   !> A well in the rock whose rate follows from pressures is thinner than what its cell stands for,
-   !! and its losses are linear (coarse_wells).
+   !> A well in the rock with pressure control is thin compared with its cell, and its pressure loss
+   !! is linear (coarse_wells).
    pure subroutine check_radius(sheet, record, scene, well, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
       type(scene_t), intent(in) :: scene
       type(injection_t), intent(in) :: well
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: share = 0.05_rk  ! of a cell; its radius is 0.1 of a usual one
+      real(rk), parameter :: share = 0.05_rk  ! largest radius over the cell size
       real(rk) :: size
 
       size = scene%discretization%size_boundary

@@ -1,14 +1,12 @@
 !> Checks numbers of the geometry against each other: extents, cell sizes, lists of coordinates, and
-!! positions of wells and probes. Whether body and fractures can be meshed is checked by the mesh
-!! library.
-!!
-!! Whether a polygon, given by its corners, contains a point.
+!! positions of wells and probes. The mesh library checks whether body and fractures can be meshed.
 module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use base_plane, only: point_distance, triangle_area
+   use base_plane, only: meeting, nearest_share, point_distance
    use base_tolerances, only: same_place
+   use scene_region_outline, only: is_inside
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: real_text, rounded_text
@@ -16,21 +14,30 @@ module scene_check_geometry
    private
 
    public :: check_domain, check_fractures, check_least_size, check_probes, contains_point
-   public :: distance_to, holds_point, point_text
+   public :: distance_to, holds_point, near_end_t, near_ends, point_text
 
-   !> Smaller elements, over the body's diagonal, drown in the rounding of coordinates.
+   !> Smallest size of elements over the body's diagonal, for the rounding of coordinates [-].
    real(rk), parameter :: least_size = 1.0e-8_rk
+
+   !> An end of a fracture near a target.
+   type :: near_end_t
+      integer :: fracture = 0  !< fracture of the end
+      integer :: other = 0  !< fracture near the end; 0: a side
+      integer :: side = 0  !< left, right, bottom, top
+      real(rk) :: distance = 0.0_rk  !< [m]
+      logical :: is_past = .false.  !< the fracture crosses the other one and ends behind it
+   end type near_end_t
 
 contains
 
-   !> The rectangle has an area, and the cells fit into it.
+   !> The body has an area, and the cells fit into it.
    pure subroutine check_domain(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: shorter_edge
 
-      call check_shape(sheet, scene, error)
+      if (scene%domain%shape == "polygon") call check_corners(sheet, scene%domain, error)
       if (allocated(error)) return
       associate (d => scene%domain, size_boundary => scene%discretization%size_boundary)
          if (.not. d%x_max > d%x_min) then
@@ -51,7 +58,7 @@ contains
       end associate
    end subroutine check_domain
 
-   !> No size that a scene gives is lost in its body.
+   !> The given sizes are large enough for the coordinates of the body.
    pure subroutine check_least_size(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -62,37 +69,29 @@ contains
          least = least_size*norm2([body%x_max - body%x_min, body%y_max - body%y_min])
          if (size(scene%fractures) > 0 .and. sizes%size_fracture < least) then
             call refuse(error, sheet, mesh_record(sheet), "size_fracture", &
-                        blurred(sizes%size_fracture, least))
+                        too_small(sizes%size_fracture, least))
          else if (.not. scene%has_fluid() .and. sizes%rosette_radius < least) then
             call refuse(error, sheet, mesh_record(sheet), "rosette_radius", &
-                        blurred(sizes%rosette_radius, least))
+                        too_small(sizes%rosette_radius, least))
          else if (scene%growth%intensities .and. scene%has_fluid()) then
             if (sizes%fine_ratio*sizes%size_fracture >= least) return
             call refuse(error, sheet, sheet%find("fine"), "size_ratio", &
-                        blurred(sizes%fine_ratio, least/sizes%size_fracture))
+                        too_small(sizes%fine_ratio, least/sizes%size_fracture))
          end if
       end associate
    end subroutine check_least_size
 
-   pure function blurred(given, least) result(reason)
-      real(rk), intent(in) :: given, least  !< [m], or shares of another size
+   !> Reason for refusing a size.
+   pure function too_small(given, least) result(reason)
+      real(rk), intent(in) :: given, least  !< [m], or fractions of another size [-]
       character(len=:), allocatable :: reason
 
       reason = "is "//real_text(given)//" but must be at least "//rounded_text(least)// &
                ": elements of less than "//real_text(least_size)//" of the body's diagonal "// &
                "cannot be meshed"
-   end function blurred
+   end function too_small
 
-   !> What a shape needs.
-   pure subroutine check_shape(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-
-      if (scene%domain%shape == "polygon") call check_corners(sheet, scene%domain, error)
-   end subroutine check_shape
-
-   !> A polygon has corners.
+   !> A polygon has 3 to 2000 corners, each with x and y.
    pure subroutine check_corners(sheet, domain, error)
       type(sheet_t), intent(in) :: sheet
       type(domain_t), intent(in) :: domain
@@ -116,14 +115,14 @@ contains
       end if
    end subroutine check_corners
 
-   !> The group that tells the cell sizes.
+   !> Index of the group with the cell sizes in sheet%records.
    pure integer function mesh_record(sheet)
       type(sheet_t), intent(in) :: sheet
 
       mesh_record = sheet%find("coarse") + sheet%find("fe")  ! a scene has one of them
    end function mesh_record
 
-   !> Fractures are polylines, longer than their cells.
+   !> Fractures are polylines, at least as long as their cells.
    pure subroutine check_fractures(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -144,6 +143,7 @@ contains
       end do
    end subroutine check_fractures
 
+   !> A fracture has at least two vertices, each with x and y.
    pure subroutine check_vertices(sheet, i, fracture, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< index of the fracture
@@ -165,6 +165,7 @@ contains
       end if
    end subroutine check_vertices
 
+   !> Probes lie in the body.
    pure subroutine check_probes(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -182,10 +183,10 @@ contains
       end do
    end subroutine check_probes
 
-   !> Inside or on the boundary.
+   !> A point lies inside the body or on its boundary.
    pure logical function contains_point(domain, x, y)
       type(domain_t), intent(in) :: domain
-      real(rk), intent(in) :: x, y
+      real(rk), intent(in) :: x, y  !< [m]
 
       if (domain%shape == "polygon") then
          contains_point = holds_point(domain%x, domain%y, [x, y])
@@ -202,48 +203,127 @@ contains
    !> Distance of a point from the nearest point of a polyline [m].
    pure real(rk) function distance_to(fracture, x, y) result(distance)
       type(fracture_t), intent(in) :: fracture
-      real(rk), intent(in) :: x, y
-      real(rk) :: along(2), to_point(2), share
+      real(rk), intent(in) :: x, y  !< [m]
+      real(rk) :: segment(2, 2)
       integer :: k
 
       distance = huge(1.0_rk)
       do k = 2, size(fracture%x)
-         along = [fracture%x(k) - fracture%x(k - 1), fracture%y(k) - fracture%y(k - 1)]
-         to_point = [x - fracture%x(k - 1), y - fracture%y(k - 1)]
-         share = min(1.0_rk, max(0.0_rk, dot_product(along, to_point)/dot_product(along, along)))
-         distance = min(distance, norm2(to_point - share*along))
+         segment = transpose(reshape([fracture%x(k - 1:k), fracture%y(k - 1:k)], [2, 2]))
+         distance = min(distance, point_distance([x, y], segment))
       end do
    end function distance_to
 
+   !> A point in words: "(x, y)".
    pure function point_text(x, y) result(text)
-      real(rk), intent(in) :: x, y
+      real(rk), intent(in) :: x, y  !< [m]
       character(len=:), allocatable :: text
 
       text = "("//real_text(x)//", "//real_text(y)//")"
    end function point_text
 
-   !> A point lies inside or, up to rounding, on the boundary.
+   !> A point lies inside a polygon or, up to rounding, on its boundary.
    pure logical function holds_point(x, y, point)
       real(rk), intent(in) :: x(:), y(:)  !< corners [m]
       real(rk), intent(in) :: point(2)  !< [m]
-      real(rk) :: extent, edge(2, 2)
-      integer(ik) :: n, k, next
-      logical :: is_inside
+      real(rk) :: extent, outline(2, size(x))
+      integer :: k, n
 
-      n = size(x, kind=ik)
+      n = size(x)
+      outline(1, :) = x
+      outline(2, :) = y
       extent = max(maxval(x) - minval(x), maxval(y) - minval(y))
-      holds_point = .true.
-      is_inside = .false.
+      holds_point = is_inside(outline, point)
       do k = 1, n
-         next = mod(k, n) + 1_ik
-         edge = reshape([x(k), y(k), x(next), y(next)], [2, 2])
-         if (point_distance(point, edge) <= same_place*extent) return
-         ! A ray to the right meets the outline an odd number of times (Shimrat 1962).
-         if ((edge(2, 1) > point(2)) .eqv. (edge(2, 2) > point(2))) cycle
-         if ((triangle_area(reshape([edge(:, 1), edge(:, 2), point], [2, 3])) > 0.0_rk) .eqv. &
-             edge(2, 2) > edge(2, 1)) is_inside = .not. is_inside
+         if (holds_point) return
+         holds_point = point_distance(point, outline(:, [k, mod(k, n) + 1])) <= same_place*extent
       end do
-      holds_point = is_inside
    end function holds_point
+
+   !> All ends that are near another fracture or a side but do not touch it. Two ends near each
+   !! other are listed once.
+   pure function near_ends(fractures, domain, near) result(list)
+      type(fracture_t), intent(in) :: fractures(:)
+      type(domain_t), intent(in) :: domain  !< only sides of a rectangle are checked
+      real(rk), intent(in) :: near  !< distance [m]
+      type(near_end_t), allocatable :: list(:)
+      real(rk) :: distance, last(2, 2), to_side(4)
+      integer :: end, i, j, side
+      logical :: is_at_end, is_past
+
+      allocate (list(0))
+      do i = 1, size(fractures)
+         do end = 1, 2
+            last = last_segment(fractures(i), end)
+            to_side = [last(1, 1) - domain%x_min, domain%x_max - last(1, 1), &
+                       last(2, 1) - domain%y_min, domain%y_max - last(2, 1)]
+            do side = 1, merge(4, 0, domain%shape == "rectangle")
+               if (is_near(to_side(side))) list = [list, near_end_t(i, 0, side, to_side(side))]
+            end do
+            do j = 1, size(fractures)
+               if (j == i) cycle
+               call measure(last, fractures(j), distance, is_at_end, is_past)
+               if (.not. is_near(distance)) cycle
+               if (is_at_end .and. j < i .and. .not. is_past) cycle
+               list = [list, near_end_t(i, j, 0, distance, is_past)]
+            end do
+         end do
+      end do
+
+   contains
+
+      pure logical function is_near(distance)
+         real(rk), intent(in) :: distance  !< [m]
+
+         is_near = distance > same_place*fractures(i)%length() .and. distance < near
+      end function is_near
+
+   end function near_ends
+
+   !> The last segment at an end of a fracture, from the end inwards [m].
+   pure function last_segment(fracture, end) result(ends)
+      type(fracture_t), intent(in) :: fracture
+      integer, intent(in) :: end  !< 1 or 2
+      real(rk) :: ends(2, 2)
+      integer :: first, next
+
+      first = merge(1, size(fracture%x), end == 1)
+      next = merge(2, size(fracture%x) - 1, end == 1)
+      ends(:, 1) = [fracture%x(first), fracture%y(first)]
+      ends(:, 2) = [fracture%x(next), fracture%y(next)]
+   end function last_segment
+
+   !> Find the distance of an end from a fracture, or the length beyond a fracture that it crosses.
+   pure subroutine measure(last, other, distance, is_at_end, is_past)
+      real(rk), intent(in) :: last(2, 2)  !< last segment, from the end inwards [m]
+      type(fracture_t), intent(in) :: other
+      real(rk), intent(out) :: distance  !< [m]
+      logical, intent(out) :: is_at_end  !< the nearest point is an end of the other fracture
+      logical, intent(out) :: is_past  !< the fracture crosses the other one
+      real(rk) :: ends(2, 2), here, length, place, share(2)
+      integer(ik) :: n, v
+
+      distance = huge(1.0_rk)
+      is_at_end = .false.
+      is_past = .false.
+      length = norm2(last(:, 2) - last(:, 1))
+      n = size(other%x, kind=ik)
+      do v = 1, n - 1
+         ends = reshape([other%x(v), other%y(v), other%x(v + 1), other%y(v + 1)], [2, 2])
+         here = point_distance(last(:, 1), ends)
+         share = meeting(last, ends)
+         if (all(share >= 0.0_rk .and. share <= 1.0_rk) .and. &
+             here > same_place*length .and. share(1)*length < distance) then
+            distance = share(1)*length
+            is_past = .true.
+            is_at_end = .false.
+         else if (here < distance) then
+            distance = here
+            is_past = .false.
+            place = nearest_share(last(:, 1), ends)
+            is_at_end = (v == 1 .and. place <= 0.0_rk) .or. (v == n - 1 .and. place >= 1.0_rk)
+         end if
+      end do
+   end subroutine measure
 
 end module scene_check_geometry

@@ -4,7 +4,7 @@ module scene_check_mechanics
    use base_kinds, only: rk
    use scene_sheet, only: refuse, sheet_t
    use scene_sides, only: boundary_side_t
-   use scene_types, only: boundary_part_t, load_t, scene_t
+   use scene_types, only: boundary_part_t, domain_t, load_t, scene_t
    use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
@@ -12,12 +12,11 @@ module scene_check_mechanics
    public :: check_laws, check_load, check_restraints, check_support, check_weight
    public :: surplus_restraints
 
-   real(rk), parameter :: smallest = 1.0e-12_rk  !< of the sums of held motions that hold [-]
+   real(rk), parameter :: smallest = 1.0e-12_rk  !< eigenvalue of held_motions that counts [-]
 
 contains
 
-   !> Sides and restraints hold the body against its three rigid motions,
-   !> u = (a - w y, b + w x): the held components exclude all of them.
+   !> Sides and restraints prevent the three rigid motions of the body, u = (a - w y, b + w x).
    pure subroutine check_support(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -49,7 +48,8 @@ contains
       end if
    end subroutine check_support
 
-   !> Components of restraints beyond those that take the rigid motions which the sides leave.
+   !> Number of components of restraints beyond those that prevent the rigid motions left by the
+   !! sides.
    pure integer function surplus_restraints(scene) result(surplus)
       type(scene_t), intent(in) :: scene
       real(rk) :: held(3, 3)
@@ -70,99 +70,97 @@ contains
       end do
    end function surplus_restraints
 
-   !> Sums of the products of what a, b and w do to the held components.
-   pure function held_motions(scene, of_restraints) result(held)
+   !> Sums, over the prescribed components, of products of their changes by a, b and w, with lengths
+   !! over the diagonal of the body.
+   pure function held_motions(scene, with_restraints) result(held)
       type(scene_t), intent(in) :: scene
-      logical, intent(in) :: of_restraints  !< beside those of the sides
+      logical, intent(in) :: with_restraints  !< in addition to the sides
       real(rk) :: held(3, 3)
-      real(rk) :: centre(2), reach, ends(2, 2, 4)
+      real(rk) :: ends(2, 2, 4)
       integer :: side, k
 
+      held = 0.0_rk
       associate (d => scene%domain)
-         centre = 0.5_rk*[d%x_min + d%x_max, d%y_min + d%y_max]
-         reach = hypot(d%x_max - d%x_min, d%y_max - d%y_min)
          ends = reshape([d%x_min, d%y_min, d%x_min, d%y_max, d%x_max, d%y_min, d%x_max, d%y_max, &
                          d%x_min, d%y_min, d%x_max, d%y_min, d%x_min, d%y_max, d%x_max, d%y_max], &
                         [2, 2, 4])
       end associate
-      held = 0.0_rk
       do side = 1, merge(4, 0, scene%domain%shape == "rectangle")
          do k = 1, 2
-            call hold(ends(:, k, side), bears(scene%sides(side)), held)
+            call hold_point(scene%domain, ends(:, k, side), bears(scene%sides(side)), held)
          end do
       end do
-      if (allocated(scene%parts)) then
-         do side = 1, size(scene%parts)
-            call hold_part(scene%parts(side), held)
-         end do
-      end if
-      if (.not. of_restraints) return
+      do side = 1, scene%n_parts()
+         call hold_part(scene%domain, scene%parts(side), held)
+      end do
+      if (.not. with_restraints) return
       do k = 1, size(scene%restraints)
          associate (point => scene%restraints(k))
-            call hold([point%x, point%y], point%displacement_given, held)
+            call hold_point(scene%domain, [point%x, point%y], point%displacement_given, held)
          end associate
       end do
-
-   contains
-
-      !> Which displacements of a side cannot be any.
-      pure function bears(side)
-         type(boundary_side_t), intent(in) :: side
-         logical :: bears(2)
-
-         bears = side%displacement_given .or. side%spring > 0.0_rk
-      end function bears
-
-      !> The ends of a polygon's edges, or three points of an arc.
-      pure subroutine hold_part(part, sums)
-         type(boundary_part_t), intent(in) :: part
-         real(rk), intent(inout) :: sums(3, 3)
-         real(rk) :: arc(2), angle
-         integer :: i, n
-
-         if (.not. any(bears(part%boundary_side_t))) return
-         associate (d => scene%domain)
-            if (allocated(part%edges)) then
-               n = size(d%x)
-               do i = 1, size(part%edges)
-                  associate (first => part%edges(i), next => mod(part%edges(i), n) + 1)
-                     call hold([d%x(first), d%y(first)], bears(part%boundary_side_t), sums)
-                     call hold([d%x(next), d%y(next)], bears(part%boundary_side_t), sums)
-                  end associate
-               end do
-               return
-            end if
-            arc = part%arc
-            if (part%whole_rim) arc = [0.0_rk, 4.0_rk]
-            do i = 0, 2
-               angle = arc(1) + 0.5_rk*real(i, rk)*(arc(2) - arc(1))
-               call hold([d%x_centre + d%radius*cos(angle), d%y_centre + d%radius*sin(angle)], &
-                         bears(part%boundary_side_t), sums)
-            end do
-         end associate
-      end subroutine hold_part
-
-      !> Add the products of what a, b and w do to the held components of a point.
-      pure subroutine hold(xy, given, sums)
-         real(rk), intent(in) :: xy(2)  !< [m]
-         logical, intent(in) :: given(2)
-         real(rk), intent(inout) :: sums(3, 3)
-         real(rk) :: arm(2), row(3)
-         integer :: component, j
-
-         arm = (xy - centre)/reach
-         do component = 1, 2
-            if (.not. given(component)) cycle
-            row = merge([1.0_rk, 0.0_rk, -arm(2)], [0.0_rk, 1.0_rk, arm(1)], component == 1)
-            do j = 1, 3
-               sums(:, j) = sums(:, j) + row(j)*row
-            end do
-         end do
-      end subroutine hold
-
    end function held_motions
 
-   !> The load changes.
+   !> Components in which a side is supported, by a displacement or by springs.
+   pure function bears(side)
+      class(boundary_side_t), intent(in) :: side
+      logical :: bears(2)
+
+      bears = side%displacement_given .or. side%spring > 0.0_rk
+   end function bears
+
+   !> Add a part of the boundary to the sums of held_motions: the ends of a polygon's edges, or
+   !! three points of an arc.
+   pure subroutine hold_part(domain, part, held)
+      type(domain_t), intent(in) :: domain
+      type(boundary_part_t), intent(in) :: part
+      real(rk), intent(inout) :: held(3, 3)
+      real(rk) :: angle, arc(2)
+      integer :: i, next
+
+      if (.not. any(bears(part))) return
+      if (allocated(part%edges)) then
+         do i = 1, size(part%edges)
+            associate (first => part%edges(i))
+               next = mod(first, size(domain%x)) + 1
+               call hold_point(domain, [domain%x(first), domain%y(first)], bears(part), held)
+               call hold_point(domain, [domain%x(next), domain%y(next)], bears(part), held)
+            end associate
+         end do
+         return
+      end if
+      arc = part%arc
+      if (part%whole_rim) arc = [0.0_rk, 4.0_rk]
+      do i = 0, 2
+         angle = arc(1) + 0.5_rk*real(i, rk)*(arc(2) - arc(1))
+         call hold_point(domain, [domain%x_centre + domain%radius*cos(angle), &
+                                  domain%y_centre + domain%radius*sin(angle)], bears(part), held)
+      end do
+   end subroutine hold_part
+
+   !> Add the supported components of a point to the sums of held_motions.
+   pure subroutine hold_point(domain, xy, given, held)
+      type(domain_t), intent(in) :: domain
+      real(rk), intent(in) :: xy(2)  !< [m]
+      logical, intent(in) :: given(2)  !< x, y
+      real(rk), intent(inout) :: held(3, 3)
+      real(rk) :: arm(2), row(3)
+      integer :: component, j
+
+      associate (d => domain)
+         arm = (xy - 0.5_rk*[d%x_min + d%x_max, d%y_min + d%y_max]) &
+               /hypot(d%x_max - d%x_min, d%y_max - d%y_min)
+      end associate
+      do component = 1, 2
+         if (.not. given(component)) cycle
+         row = merge([1.0_rk, 0.0_rk, -arm(2)], [0.0_rk, 1.0_rk, arm(1)], component == 1)
+         do j = 1, 3
+            held(:, j) = held(:, j) + row(j)*row
+         end do
+      end do
+   end subroutine hold_point
+
+   !> The load changes during the programme.
    pure subroutine check_load(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -180,7 +178,7 @@ contains
       end associate
    end subroutine check_load
 
-   !> The load goes from each factor of a cycle to another one, and growth leaves it there.
+   !> Successive factors of a load cycle differ, and growth does not change them (dead load).
    pure subroutine check_cycle(sheet, load, error)
       type(sheet_t), intent(in) :: sheet
       type(load_t), intent(in) :: load  !< with factors
@@ -207,7 +205,8 @@ contains
       end do
    end subroutine check_cycle
 
-   !> Gravity has a density, and an in-situ stress that changes with y carries the weight.
+   !> With gravity the rock has a density, and an in-situ stress that varies with y balances the
+   !! weight.
    pure subroutine check_weight(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -235,7 +234,7 @@ contains
       end associate
    end subroutine check_weight
 
-   !> Restraints hold something.
+   !> Each restraint prescribes at least one component.
    pure subroutine check_restraints(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -250,7 +249,7 @@ contains
       end do
    end subroutine check_restraints
 
-   !> Which face laws go with which scenes.
+   !> Laws of the faces that a scene with a fluid, or faces that are held closed, cannot have.
    pure subroutine check_laws(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene

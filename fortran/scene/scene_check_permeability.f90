@@ -12,15 +12,15 @@ module scene_check_permeability
 
    public :: anisotropy, check_given_permeability, check_tensor, most_anisotropic
 
-   !> Largest principal permeability over the smallest. The coarse level's fluxes are exact for
-   !! linear pressures, but on triangles they lose what makes pressures stay within their bounds: at
-   !! a ratio of 100 they left them by 20 %, from 1e4 on they grew without a source to 1e10 Pa
-   !! (verification/stability_joints) [-].
+   !> Largest ratio of the principal permeabilities [-]. The fluxes of the coarse level are exact
+   !! for linear pressures, but on triangles they have no maximum principle: at a ratio of 100
+   !! pressures left their bounds by 20 %, from 1e4 on they grew without a source to 1e10 Pa
+   !! (verification/stability_joints).
    real(rk), parameter :: most_anisotropic = 1.0e3_rk
 
 contains
 
-   !> It is given as a scalar or as a tensor.
+   !> Permeabilities are given as a scalar or as a tensor.
    pure subroutine check_given_permeability(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -39,11 +39,12 @@ contains
       end do
    end subroutine check_given_permeability
 
+   !> The permeability of one group is given as a scalar or as a tensor.
    pure subroutine check_record(sheet, i, is_needed, who, error)
       type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: i
+      integer, intent(in) :: i  !< index into sheet%records
       logical, intent(in) :: is_needed
-      character(len=*), intent(in) :: who  !< needs it
+      character(len=*), intent(in) :: who  !< subject of "needs" in the message
       type(error_t), allocatable, intent(out) :: error
       logical :: scalar, xx, yy, xy
 
@@ -62,7 +63,7 @@ contains
       end if
    end subroutine check_record
 
-   !> The tensor is positive definite, and not too anisotropic.
+   !> A permeability tensor is positive definite and not too anisotropic.
    pure subroutine check_tensor(sheet, i, material, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< record

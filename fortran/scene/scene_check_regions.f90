@@ -18,18 +18,19 @@ module scene_check_regions
 
    public :: check_given_regions, check_regions
 
-   !> What makes the rock of a region another one than that of the scene.
+   !> Names of which a region must give at least one.
    character(len=15), parameter :: of_rock(8) = [character(len=15) :: &
                                            "young", "poisson", "biot", "porosity", "permeability", &
                                                  "permeability_xx", "density", "toughness"]
-   !> Young's moduli of two rocks beside each other: beyond that rounding would decide [-].
+   !> Largest ratio of Young's moduli of adjacent rocks, limited by rounding [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
+   real(rk), parameter :: most_contrast = 1.0e12_rk  !< largest ratio of permeabilities [-]
 
-   integer, parameter :: most_points = 1000  !< of a curve: every pair of edges is compared
+   integer, parameter :: most_points = 1000  !< points of a curve: every pair of edges is compared
 
 contains
 
-   !> All shapes but the parabola have points.
+   !> Regions have rock properties, and all shapes except the parabola have points.
    pure subroutine check_given_regions(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -61,7 +62,7 @@ contains
       end do
    end subroutine check_given_regions
 
-   !> The numbers of each region go together, and with the body.
+   !> Check the numbers of each region against each other and the body.
    pure subroutine check_regions(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -73,20 +74,16 @@ contains
          call check_points(sheet, record, scene%regions(i), error)
          if (.not. allocated(error)) call check_outline(sheet, record, scene, i, error)
          if (.not. allocated(error)) call check_rock(sheet, record, scene, scene%regions(i), error)
-         if (scene%has_fluid()) then
-            if (.not. allocated(error)) call check_tensor(sheet, record, &
-                                                          scene%regions(i)%material, error)
+         if (scene%has_fluid() .and. .not. allocated(error)) then
+            call check_tensor(sheet, record, scene%regions(i)%material, error)
          end if
-         if (.not. allocated(error)) call check_stiffness(sheet, scene, i, error)
-         if (.not. allocated(error) .and. scene%has_fluid()) then
-            call check_contrast(sheet, scene, i, error)
-         end if
+         if (.not. allocated(error)) call check_contrasts(sheet, scene, i, error)
          if (allocated(error)) return
       end do
    end subroutine check_regions
 
-   !> Storage is positive, and what a load makes in pressure at once no larger than the load, in
-   !! the rock of the region; it cannot bear growth alone.
+   !> In the rock of a region storage is positive, and the undrained pressure due to a load is not
+   !! larger than the load. A toughness requires one of the scene's rock.
    pure subroutine check_rock(sheet, record, scene, region, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -126,6 +123,7 @@ contains
       end associate
    end subroutine check_rock
 
+   !> The first of two names, or the second.
    pure function either(is_first, first, second) result(name)
       logical, intent(in) :: is_first
       character(len=*), intent(in) :: first, second
@@ -135,58 +133,42 @@ contains
       if (is_first) name = first
    end function either
 
-   !> No two rocks that may lie beside each other differ too much in stiffness.
-   pure subroutine check_stiffness(sheet, scene, i, error)
+   !> Young's moduli, and with a fluid permeabilities, of a region and of the scene's rock or an
+   !! earlier region do not differ too much for rounding; permeabilities are averaged in cut cells.
+   pure subroutine check_contrasts(sheet, scene, i, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: i  !< region
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: other
-      integer :: k
-
-      do k = 0, i - 1
-         if (k == 0) then
-            other = scene%material%young
-         else
-            other = scene%regions(k)%material%young
-         end if
-         associate (young => scene%regions(i)%material%young)
-            if (max(young/other, other/young) <= stiffest*(1.0_rk + round_off)) cycle
-         end associate
-         call refuse(error, sheet, sheet%find("region", i), "young", "of region '"// &
-                     trim(scene%regions(i)%name)//"' and that of the rock around it or of "// &
-                     "another region differ by more than a factor of 1e9 but must not")
-         return
-      end do
-   end subroutine check_stiffness
-
-   !> The rocks of a cell that an outline cuts are mixed: beyond the limit rounding would decide.
-   pure subroutine check_contrast(sheet, scene, i, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: i  !< region
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: most = 1.0e12_rk
+      type(material_t) :: other
+      character(len=:), allocatable :: name, whose
       real(rk) :: extremes(2), others(2)
-      character(len=:), allocatable :: name
-      integer :: k
+      integer :: k, record
 
-      extremes = principal(scene%regions(i)%material)
+      record = sheet%find("region", i)
+      whose = "of region '"//trim(scene%regions(i)%name)//"' and "
       do k = 0, i - 1
-         if (k == 0) then
-            others = principal(scene%material)
-         else
-            others = principal(scene%regions(k)%material)
-         end if
-         if (max(extremes(2)/others(1), others(2)/extremes(1)) <= most*(1.0_rk + round_off)) cycle
+         other = scene%material
+         if (k > 0) other = scene%regions(k)%material
+         associate (young => scene%regions(i)%material%young)
+            if (max(young/other%young, other%young/young) > stiffest*(1.0_rk + round_off)) then
+              call refuse(error, sheet, record, "young", whose//"that of the rock around it or "// &
+                           "of another region differ by more than a factor of 1e9 but must not")
+               return
+            end if
+         end associate
+         if (.not. scene%has_fluid()) cycle
+         extremes = principal(scene%regions(i)%material)
+         others = principal(other)
+         if (max(extremes(2)/others(1), others(2)/extremes(1)) &
+             <= most_contrast*(1.0_rk + round_off)) cycle
          name = "permeability"
-         if (.not. sheet%records(sheet%find("region", i))%is_given(name)) name = "permeability_xx"
-         call refuse(error, sheet, sheet%find("region", i), name, "of region '"// &
-                    trim(scene%regions(i)%name)//"' and the permeability of the rock around it "// &
+         if (.not. sheet%records(record)%is_given(name)) name = "permeability_xx"
+        call refuse(error, sheet, record, name, whose//"the permeability of the rock around it "// &
                      "or of another region differ by more than a factor of 1e12 but must not")
          return
       end do
-   end subroutine check_contrast
+   end subroutine check_contrasts
 
    !> The least and the largest permeability over all directions.
    pure function principal(material) result(extremes)
@@ -201,7 +183,7 @@ contains
       end associate
    end function principal
 
-   !> As many points as the shape needs, each with all its coordinates.
+   !> Lists of coordinates have the lengths that the shape requires.
    pure subroutine check_points(sheet, record, region, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -231,6 +213,7 @@ contains
                                                    region%x, error)
    end subroutine check_points
 
+   !> The number of values of a list is within limits.
    pure subroutine check_list(sheet, record, region, name, values, least, most, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record, least, most
@@ -248,6 +231,7 @@ contains
                   "' must have "//wanted)
    end subroutine check_list
 
+   !> Two lists have equally many values.
    pure subroutine check_equal(sheet, record, region, name, values, like, others, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -262,6 +246,7 @@ contains
                   integer_text(size(others, kind=ik)))
    end subroutine check_equal
 
+   !> "1 value", "2 values".
    pure function count_text(n) result(text)
       integer, intent(in) :: n
       character(len=:), allocatable :: text
@@ -269,7 +254,7 @@ contains
       text = integer_text(int(n, ik))//trim(merge(" value ", " values", n == 1))
    end function count_text
 
-   !> The outline has an area, does not cross itself, and holds a part of the body.
+   !> The outline has an area, does not cross itself, and contains a part of the body.
    pure subroutine check_outline(sheet, record, scene, i, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -310,8 +295,8 @@ contains
       end associate
    end subroutine check_outline
 
-   !> The first pair of edges, edge k from corner k to the next, that meet where they must not; 0:
-   !! there is none.
+   !> The first pair of edges that cross, touch or overlap, where edge k connects corner k and the
+   !! next; 0 if there is none.
    pure function first_crossing(corners) result(edges)
       real(rk), intent(in) :: corners(:, :)  !< (2, n) [m]
       integer(ik) :: edges(2)
@@ -334,7 +319,7 @@ contains
       end do
    end function first_crossing
 
-   !> The edge after an edge goes back on it.
+   !> The edge after an edge overlaps with it.
    pure logical function folds_back(corners, edge)
       real(rk), intent(in) :: corners(:, :)  !< [m]
       integer(ik), intent(in) :: edge
@@ -349,6 +334,7 @@ contains
                    dot_product(along, after) < 0.0_rk
    end function folds_back
 
+   !> A point in words, rounded.
    pure function place_text(xy) result(text)
       real(rk), intent(in) :: xy(2)  !< [m]
       character(len=:), allocatable :: text

@@ -1,7 +1,5 @@
-!> Checks the sides of the body: their names, and the conditions prescribed on each.
-!!
-!! Properties of the faces of a fracture must be consistent: closure with the aperture, the parts of
-!! a bond with each other and with friction, its toughness with that of the rock.
+!> Checks the sides of the body, their names and conditions, and the faces of fractures: closure and
+!! aperture, the strengths of a bond and friction, toughness.
 module scene_check_sides
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
@@ -20,12 +18,13 @@ module scene_check_sides
 
    real(rk), parameter :: turn = 2.0_rk*pi  !< [rad]
 
-   !> Of the aperture: less is lost among the iterates whose faces overlap (coarse_fracture_flow).
+   !> Largest closure over the aperture: smaller apertures are lost among the iterates with
+   !! overlapping faces (coarse_fracture_flow) [-].
    real(rk), parameter :: largest_closure = 0.98_rk
 
 contains
 
-   !> What a side gives goes together, and with the shape of the body.
+   !> Names given for a side are consistent with each other and with the shape of the body.
    pure subroutine check_sides(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -42,7 +41,7 @@ contains
       end do
    end subroutine check_sides
 
-   !> Where a side is: sides of a rectangle have names, those of a polygon edges, of a disc arcs.
+   !> Location of a side: sides of a rectangle have names, those of a polygon edges, of a disc arcs.
    pure subroutine check_place(sheet, i, shape, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< index of the record
@@ -76,7 +75,7 @@ contains
       end associate
    end subroutine check_place
 
-   !> Per component displacement or traction, not both; or tractions along and across the side.
+   !> Per component displacement or traction is given, or normal and shear tractions.
    pure subroutine check_values(sheet, i, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< index of the record
@@ -118,7 +117,7 @@ contains
       end associate
    end subroutine check_values
 
-   !> Each value is one or has as many as there are times, and these go on.
+   !> Each quantity has one value or one per time, and the times increase.
    pure subroutine check_course(sheet, i, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: i  !< index of the record
@@ -225,7 +224,7 @@ contains
       end if
    end function overlap
 
-   !> All fractures of a scene.
+   !> Faces of all fractures of a scene.
    pure subroutine check_faces(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -247,7 +246,7 @@ contains
       end do
    end subroutine check_faces
 
-   !> What closes is there to close, and stays open enough to let fluid through.
+   !> Faces with closure touch, and their aperture remains positive.
    pure subroutine check_closure(sheet, record, fracture, has_fluid, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -271,7 +270,8 @@ contains
       end if
    end subroutine check_closure
 
-   !> A bond has a shear strength that slip takes away, and no more tension than that allows.
+   !> A bond has a shear strength and a slip that breaks it, and at most the tensile strength at
+   !! which the shear strength vanishes.
    pure subroutine check_bond(sheet, record, fracture, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record

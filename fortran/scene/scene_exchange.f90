@@ -6,9 +6,10 @@ module scene_exchange
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
                                     exchange_side, exchange_word, set_text, to_degrees
-   use scene_parameters, only: applies, groups, parameters, side_names
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: discretization_t, domain_t, fracture_t, growth_t, injection_t, probe_t, &
+   use scene_types, only: discretization_t, domain_t, fluid_t, fracture_t, growth_t, injection_t, &
                           scene_t
    use scene_values, only: value_t
    implicit none(type, external)
@@ -43,7 +44,7 @@ contains
          n(record%group) = n(record%group) + 1
          call exchange_group(record, scene, n(record%group))
       end do
-      do i = 1, size(scene%injections)  ! the fractures may come after the wells
+      do i = 1, size(scene%injections)  ! fractures may follow the wells in the file
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          if (.not. value%is_set) cycle
          do f = 1, size(scene%fractures)
@@ -53,7 +54,7 @@ contains
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
    end subroutine sheet_to_scene
 
-   !> A sheet that says all there is in a scene.
+   !> A sheet with all values of a scene.
    pure subroutine scene_to_sheet(scene, sheet)
       type(scene_t), intent(in) :: scene
       type(sheet_t), intent(out) :: sheet
@@ -61,7 +62,7 @@ contains
       type(record_t) :: record
       integer :: group, i
 
-      source = scene  ! exchange takes what it may write to
+      source = scene  ! the argument of exchange_group is intent(inout)
       sheet%path = ""
       do group = 1, size(groups)
          if (.not. applies(groups(group)%scenes, source%has_fluid())) cycle
@@ -76,7 +77,7 @@ contains
       end do
    end subroutine scene_to_sheet
 
-   !> How often a scene has a group.
+   !> Number of groups of a name in a scene.
    pure integer function count_in(scene, group) result(n)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: group
@@ -88,8 +89,7 @@ contains
       case ("region")
          if (allocated(scene%regions)) n = size(scene%regions)
       case ("side")
-         if (allocated(scene%parts)) n = size(scene%parts)
-         if (scene%domain%shape == "rectangle") n = size(scene%sides)
+         n = merge(size(scene%sides), scene%n_parts(), scene%domain%shape == "rectangle")
       case ("restraint")
          if (allocated(scene%restraints)) n = size(scene%restraints)
       case ("point_load")
@@ -105,7 +105,7 @@ contains
       end select
    end function count_in
 
-   !> The i-th group of a name.
+   !> Transfer the i-th group of a name.
    pure subroutine exchange_group(record, scene, i)
       type(record_t), intent(inout) :: record
       type(scene_t), intent(inout) :: scene
@@ -119,7 +119,7 @@ contains
       case ("region")
          call exchange_region(record, scene%regions(i))
       case ("side")
-         if (has_parts(scene)) then
+         if (scene%n_parts() > 0) then
             call exchange_part(record, scene%parts(i))
             return
          end if
@@ -141,22 +141,16 @@ contains
             call exchange_injection(record, well)
          end associate
       case ("probe")
-         call exchange_probe(record, scene%probes(i))
+         call exchange(record, "name", scene%probes(i)%name)
+         call exchange(record, "x", scene%probes(i)%x)
+         call exchange(record, "y", scene%probes(i)%y)
       case default
          call exchange_single(record, scene)
       end select
    end subroutine exchange_group
 
-   !> The body is no rectangle: what is said of its boundary is said of parts.
-   pure logical function has_parts(scene)
-      type(scene_t), intent(in) :: scene
-
-      has_parts = .false.
-      if (allocated(scene%parts)) has_parts = size(scene%parts) > 0
-   end function has_parts
-
-   !> Leave out what a scene of this kind or a group with this choice must not give, and halves of
-   !! pairs.
+   !> Unset the names that a scene with or without a fluid, or a group with its choices, must not
+   !! give, and names whose partner (`with`) is not set.
    pure subroutine drop_foreign(record, has_fluid)
       type(record_t), intent(inout) :: record
       logical, intent(in) :: has_fluid
@@ -171,7 +165,7 @@ contains
       end do
    end subroutine drop_foreign
 
-   !> The groups that a scene has once.
+   !> Transfer a group that a scene has once.
    pure subroutine exchange_single(record, scene)
       type(record_t), intent(inout) :: record
       type(scene_t), intent(inout) :: scene
@@ -185,18 +179,7 @@ contains
       case ("material")
          call exchange_material(record, scene%material)
       case ("fluid")
-         call exchange(record, "compressibility", scene%fluid%compressibility)
-         call exchange(record, "viscosity", scene%fluid%viscosity)
-         call exchange(record, "density", scene%fluid%density, nothing=0.0_rk)
-         call exchange(record, "vapour_pressure", scene%fluid%vapour_pressure, nothing=-unlimited)
-         call exchange(record, "viscosity_law", scene%fluid%viscosity_law)
-         call exchange(record, "viscosity_exponent", scene%fluid%viscosity_exponent)
-         call exchange(record, "density_law", scene%fluid%density_law)
-         call exchange(record, "reference_pressure", scene%fluid%reference_pressure, &
-                       nothing=-unlimited)
-         call exchange_list(record, "table_pressure", scene%fluid%table_pressure)
-         call exchange_list(record, "table_viscosity", scene%fluid%table_viscosity)
-         call exchange_list(record, "table_density", scene%fluid%table_density)
+         call exchange_fluid(record, scene%fluid)
       case ("initial")
          call exchange(record, "fracture_pressure", scene%initial%fracture_pressure)
          call exchange(record, "pressure", scene%initial%pressure)
@@ -225,9 +208,7 @@ contains
          if (record%reading .or. .not. allocated(scene%load%factors)) then
             call exchange(record, "to", scene%load%to)
          end if
-         if (record%reading .or. allocated(scene%load%factors)) then
-            call exchange(record, "factors", scene%load%factors)
-         end if
+         call exchange(record, "factors", scene%load%factors)
          call exchange(record, "steps", scene%load%steps)
          call exchange(record, "control", scene%load%control)
       case ("coarse", "fe", "fine")
@@ -241,11 +222,30 @@ contains
          call exchange(record, "stimulated_jump", scene%output%stimulated_jump)
          call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length)
          call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate)
-      case default  ! the repeated groups, each a procedure of its own
+      case default  ! a repeated group, see exchange_group
          return
       end select
    end subroutine exchange_single
 
+   !> Group &fluid.
+   pure subroutine exchange_fluid(record, fluid)
+      type(record_t), intent(inout) :: record
+      type(fluid_t), intent(inout) :: fluid
+
+      call exchange(record, "compressibility", fluid%compressibility)
+      call exchange(record, "viscosity", fluid%viscosity)
+      call exchange(record, "density", fluid%density, nothing=0.0_rk)
+      call exchange(record, "vapour_pressure", fluid%vapour_pressure, nothing=-unlimited)
+      call exchange(record, "viscosity_law", fluid%viscosity_law)
+      call exchange(record, "viscosity_exponent", fluid%viscosity_exponent)
+      call exchange(record, "density_law", fluid%density_law)
+      call exchange(record, "reference_pressure", fluid%reference_pressure, nothing=-unlimited)
+      call exchange(record, "table_pressure", fluid%table_pressure)
+      call exchange(record, "table_viscosity", fluid%table_viscosity)
+      call exchange(record, "table_density", fluid%table_density)
+   end subroutine exchange_fluid
+
+   !> Group &domain; the rectangle x_min to y_max bounds every shape.
    pure subroutine exchange_domain(record, domain)
       type(record_t), intent(inout) :: record
       type(domain_t), intent(inout) :: domain
@@ -275,6 +275,7 @@ contains
       end select
    end subroutine exchange_domain
 
+   !> Group &fracture.
    pure subroutine exchange_fracture(record, fracture)
       type(record_t), intent(inout) :: record
       type(fracture_t), intent(inout) :: fracture
@@ -305,15 +306,15 @@ contains
       call exchange(record, "aperture", fracture%aperture, nothing=0.0_rk)
    end subroutine exchange_fracture
 
-   !> Without the fracture, which the scene knows by index and the sheet by name.
+   !> Group &injection without the name of its fracture, for which the scene has an index.
    pure subroutine exchange_injection(record, injection)
       type(record_t), intent(inout) :: record
       type(injection_t), intent(inout) :: injection
 
       call exchange(record, "name", injection%name)
-      call exchange_list(record, "time", injection%time)
-      call exchange_list(record, "rate", injection%rate)
-      call exchange_list(record, "pressure", injection%pressure)
+      call exchange(record, "time", injection%time)
+      call exchange(record, "rate", injection%rate)
+      call exchange(record, "pressure", injection%pressure)
       if (record%reading .or. .not. allocated(injection%time)) then
          call exchange(record, "start", injection%start)
       end if
@@ -328,15 +329,7 @@ contains
       if (injection%fracture == 0) call exchange(record, "radius", injection%radius)
    end subroutine exchange_injection
 
-   !> A list that may be absent.
-   pure subroutine exchange_list(record, name, list)
-      type(record_t), intent(inout) :: record
-      character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout) :: list(:)  !< [unit of the name]
-
-      if (record%reading .or. allocated(list)) call exchange(record, name, list)
-   end subroutine exchange_list
-
+   !> Groups &coarse, &fe and &fine.
    pure subroutine exchange_discretization(record, discretization)
       type(record_t), intent(inout) :: record
       type(discretization_t), intent(inout) :: discretization
@@ -363,6 +356,7 @@ contains
       end select
    end subroutine exchange_discretization
 
+   !> Group &growth.
    pure subroutine exchange_growth(record, growth)
       type(record_t), intent(inout) :: record
       type(growth_t), intent(inout) :: growth
@@ -378,15 +372,7 @@ contains
       call exchange(record, "stop_gain", growth%stop_gain, nothing=unlimited)
    end subroutine exchange_growth
 
-   pure subroutine exchange_probe(record, probe)
-      type(record_t), intent(inout) :: record
-      type(probe_t), intent(inout) :: probe
-
-      call exchange(record, "name", probe%name)
-      call exchange(record, "x", probe%x)
-      call exchange(record, "y", probe%y)
-   end subroutine exchange_probe
-
+   !> Number of groups of a name in a sheet.
    pure integer function count_of(sheet, name) result(n)
       type(sheet_t), intent(in) :: sheet
       character(len=*), intent(in) :: name

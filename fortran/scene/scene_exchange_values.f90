@@ -1,11 +1,5 @@
-!> Transfers single values between a group of a sheet and the components of a scene, in both
-!! directions.
-!!
-!! Transfers the rock, of the whole body and of regions, between the groups of a sheet and a scene,
-!! in both directions.
-!!
-!! Transfers supports and loads of a body between the groups of a sheet and a scene, in both
-!! directions.
+!> Transfers single values, the rock, and the supports and loads of the body between the groups of a
+!! sheet and the components of a scene, in both directions.
 module scene_exchange_values
    use base_kinds, only: ik, lk, radians, rk
    use scene_sheet, only: parameter_index, record_t
@@ -21,8 +15,9 @@ module scene_exchange_values
    public :: exchange, exchange_material, exchange_part, exchange_point_load, exchange_region
    public :: exchange_restraint, exchange_side, exchange_word, not_given, set_text, to_degrees
 
-   !> Copy one value: into the scene if that reads and the sheet has it, else into the sheet.
-   !> A component that equals `nothing` stays out of the sheet.
+   !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's
+   !! component; else from the component into the sheet. A component that equals `nothing`, or a
+   !! list that is not allocated, is not set in the sheet.
    interface exchange
       module procedure exchange_real
       module procedure exchange_reals
@@ -32,7 +27,7 @@ module scene_exchange_values
       module procedure exchange_text
    end interface exchange
 
-   !> What stands for a number of a region's rock that the region does not give: no rock has it.
+   !> Marks a number of a region's rock that the region does not give; no rock has this value.
    real(rk), parameter :: not_given = huge(1.0_rk)
 
 contains
@@ -41,7 +36,7 @@ contains
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name
       real(rk), intent(inout) :: component  !< [unit of the name]
-      real(rk), intent(in), optional :: nothing  !< what an absent value is [unit of the name]
+      real(rk), intent(in), optional :: nothing  !< value of an absent name [unit of the name]
 
       associate (value => record%values(parameter_index(record%group, name)))
          if (record%reading) then
@@ -62,7 +57,7 @@ contains
       associate (value => record%values(parameter_index(record%group, name)))
          if (record%reading) then
             if (value%is_set) component = value%reals
-         else
+         else if (allocated(component)) then
             value%is_set = .true.
             value%reals = component
          end if
@@ -77,7 +72,7 @@ contains
       associate (value => record%values(parameter_index(record%group, name)))
          if (record%reading) then
             if (value%is_set) component = nint(value%reals, ik)
-         else
+         else if (allocated(component)) then
             value%is_set = .true.
             value%reals = real(component, rk)
          end if
@@ -129,21 +124,22 @@ contains
       end if
    end subroutine exchange_text
 
-   !> Whether a word stands in the place of a number.
-   pure subroutine exchange_word(record, name, word, is_said)
+   !> Copy whether a name has a word instead of a number.
+   pure subroutine exchange_word(record, name, word, is_word)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name, word
-      logical, intent(inout) :: is_said
+      logical, intent(inout) :: is_word
 
       associate (value => record%values(parameter_index(record%group, name)))
          if (.not. record%reading) then
-            if (is_said) call set_text(record, name, word)
+            if (is_word) call set_text(record, name, word)
          else if (value%is_set .and. allocated(value%text)) then
-            is_said = value%text == word
+            is_word = value%text == word
          end if
       end associate
    end subroutine exchange_word
 
+   !> Set a text in a sheet.
    pure subroutine set_text(record, name, text)
       type(record_t), intent(inout) :: record
       character(len=*), intent(in) :: name, text
@@ -177,12 +173,14 @@ contains
       end do
    end function to_degrees
 
+   !> Equality to the last bit.
    pure logical function same_bits(a, b)
       real(rk), intent(in) :: a, b  !< [any unit]
 
       same_bits = transfer(a, 0_lk) == transfer(b, 0_lk)
    end function same_bits
 
+   !> Group &material.
    pure subroutine exchange_material(record, material)
       type(record_t), intent(inout) :: record
       type(material_t), intent(inout) :: material
@@ -202,25 +200,21 @@ contains
       call exchange(record, "storage", material%storage)
    end subroutine exchange_material
 
-   !> What the region does not give itself is left to scene_namelist.
+   !> Group &region. Numbers of its rock that are not given become not_given; scene_namelist takes
+   !! those of &material instead.
    pure subroutine exchange_region(record, region)
       type(record_t), intent(inout) :: record
       type(region_t), intent(inout) :: region
 
       call exchange(record, "name", region%name)
       call exchange(record, "shape", region%shape)
-      if (region%shape == "parabola") then
-         call exchange(record, "x_vertex", region%x_vertex)
-         call exchange(record, "y_vertex", region%y_vertex)
-         call exchange(record, "curvature", region%curvature)
-      else
-         call exchange(record, "x", region%x)
-         call exchange(record, "y", region%y)
-      end if
-      if (region%shape == "band") then
-         call exchange(record, "x_other", region%x_other)
-         call exchange(record, "y_other", region%y_other)
-      end if
+      call exchange(record, "x", region%x)
+      call exchange(record, "y", region%y)
+      call exchange(record, "x_other", region%x_other)
+      call exchange(record, "y_other", region%y_other)
+      call exchange(record, "x_vertex", region%x_vertex)
+      call exchange(record, "y_vertex", region%y_vertex)
+      call exchange(record, "curvature", region%curvature)
       associate (own => region%material)
          if (record%reading) then
             own%young = not_given
@@ -240,7 +234,7 @@ contains
       end associate
    end subroutine exchange_region
 
-   !> Isotropic, or the components of a tensor.
+   !> An isotropic permeability or the components of a tensor.
    pure subroutine exchange_permeability(record, material)
       type(record_t), intent(inout) :: record
       type(material_t), intent(inout) :: material
@@ -254,7 +248,7 @@ contains
       call exchange(record, "permeability_xy", material%permeability_xy, nothing=0.0_rk)
    end subroutine exchange_permeability
 
-   !> A part of the boundary of a polygon or a disc.
+   !> Group &side of a polygon or a disc.
    pure subroutine exchange_part(record, part)
       type(record_t), intent(inout) :: record
       type(boundary_part_t), intent(inout) :: part
@@ -263,7 +257,7 @@ contains
       call exchange(record, "name", part%name)
       if (record%reading) part%whole_rim = .not. (record%is_set("edges") .or. &
                                                   record%is_set("arc_from_deg"))
-      if (record%reading .or. allocated(part%edges)) call exchange(record, "edges", part%edges)
+      call exchange(record, "edges", part%edges)
       if (.not. (part%whole_rim .or. allocated(part%edges))) then
          arc_deg = [to_degrees(part%arc(1)), to_degrees(part%arc(2))]
          call exchange(record, "arc_from_deg", arc_deg(1))
@@ -273,7 +267,7 @@ contains
       call exchange_side(record, part%boundary_side_t)
    end subroutine exchange_part
 
-   !> Without the side's name, which its place in scene_t%sides gives.
+   !> Group &side without its name.
    pure subroutine exchange_side(record, side)
       type(record_t), intent(inout) :: record
       type(boundary_side_t), intent(inout) :: side
@@ -283,7 +277,7 @@ contains
                                     record%is_set("y_displacement")]
          side%pressure_given = record%is_set("pressure")
       end if
-      if (record%reading .or. side%changes()) call exchange(record, "time", side%course%time)
+      call exchange(record, "time", side%course%time)
       if (side%pressure_given) call exchange_value(record, of_pressure, side%pressure, &
                                                    side%course)
       call exchange_value(record, of_inflow, side%inflow, side%course, nothing=0.0_rk)
@@ -306,13 +300,13 @@ contains
       end if
    end subroutine exchange_side
 
-   !> A quantity of a side: one value, or one per time.
+   !> A quantity of a side: one value, or one value per time.
    pure subroutine exchange_value(record, quantity, value, course, nothing)
       type(record_t), intent(inout) :: record
       integer, intent(in) :: quantity  !< index into side_quantities
       real(rk), intent(inout) :: value  !< [unit of the quantity]
       type(side_course_t), intent(inout) :: course
-      real(rk), intent(in), optional :: nothing  !< what an absent value is
+      real(rk), intent(in), optional :: nothing  !< value of an absent name [unit of the quantity]
       real(rk), allocatable :: list(:)
       character(len=:), allocatable :: name
 
@@ -328,6 +322,7 @@ contains
       if (size(list) > 1) call move_alloc(list, course%values(quantity)%of)
    end subroutine exchange_value
 
+   !> Group &restraint.
    pure subroutine exchange_restraint(record, restraint)
       type(record_t), intent(inout) :: record
       type(restraint_t), intent(inout) :: restraint
@@ -342,6 +337,7 @@ contains
       end do
    end subroutine exchange_restraint
 
+   !> Group &point_load.
    pure subroutine exchange_point_load(record, point_load)
       type(record_t), intent(inout) :: record
       type(point_load_t), intent(inout) :: point_load

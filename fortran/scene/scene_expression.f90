@@ -1,7 +1,6 @@
-!> Named values of a scene file, and simple arithmetic with them: numbers, names, + - * / ^ and
-!! brackets. A name must be defined before it is used, so no name can depend on itself.
-!!
-!! Divides the text of a scene file into tokens with their lines.
+!> Divides the text of a scene file into tokens with their lines, and evaluates expressions:
+!! numbers, named values, + - * / ^ and brackets. A name must be defined before it is used, so no
+!! name can depend on itself.
 !!
 !! The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
 !! end of the line, texts in single or double quotes in which a doubled quote stands for one.
@@ -27,12 +26,12 @@ module scene_expression
       integer(ik) :: line = 0
    end type constant_t
 
-   !> An expression while it is read.
+   !> An expression and the position reached in it.
    type :: reading_t
       character(len=:), allocatable :: text  !< in lower case, with a blank at its end
       integer :: position = 1
-      integer :: depth = 0  !< of brackets and signs
-      character(len=:), allocatable :: fault  !< what is wrong; unallocated: nothing so far
+      integer :: depth = 0  !< nesting of brackets, signs and exponents
+      character(len=:), allocatable :: fault  !< reason of a failure; unallocated: none so far
    end type reading_t
 
    integer, parameter :: token_group = 1  !< `&name`; the range holds the name alone
@@ -43,11 +42,11 @@ module scene_expression
    integer, parameter :: token_slash = 6
    integer, parameter :: token_end = 7  !< after the last character
 
-   !> A piece source(first:last).
+   !> The part source(first:last).
    type :: token_t
       integer :: kind = token_end
       integer :: first = 1, last = 0
-      integer(ik) :: line = 0  !< on which it begins, from 1
+      integer(ik) :: line = 0  !< line of its beginning, from 1
    end type token_t
 
    !> The tokens of one source; the last one is of the kind token_end.
@@ -64,8 +63,8 @@ contains
    pure subroutine evaluate(expression, constants, value, fault)
       character(len=*), intent(in) :: expression
       type(constant_t), intent(in) :: constants(:)
-      real(rk), intent(out) :: value
-      character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: good
+      real(rk), intent(out) :: value  !< [any unit]
+      character(len=:), allocatable, intent(out) :: fault  !< reason of a failure; unallocated: good
       type(reading_t) :: reading
 
       value = 0.0_rk
@@ -95,13 +94,14 @@ contains
       if (blanks >= 0) next = reading%text(reading%position + blanks:)
    end function next
 
-   !> Go on behind a character that was the next one.
+   !> Move the position behind the next character.
    pure subroutine take(reading)
       type(reading_t), intent(inout) :: reading
 
       reading%position = reading%position + verify(reading%text(reading%position:), " ")
    end subroutine take
 
+   !> Products with + and - between them.
    pure recursive subroutine read_sum(reading, constants, value)
       type(reading_t), intent(inout) :: reading
       type(constant_t), intent(in) :: constants(:)
@@ -119,6 +119,7 @@ contains
       end do
    end subroutine read_sum
 
+   !> Signed powers with * and / between them.
    pure recursive subroutine read_product(reading, constants, value)
       type(reading_t), intent(inout) :: reading
       type(constant_t), intent(in) :: constants(:)
@@ -185,6 +186,7 @@ contains
       end if
    end subroutine read_power
 
+   !> A number, a name or an expression in brackets.
    pure recursive subroutine read_operand(reading, constants, value)
       type(reading_t), intent(inout) :: reading
       type(constant_t), intent(in) :: constants(:)
@@ -215,6 +217,7 @@ contains
       end select
    end subroutine read_operand
 
+   !> Count a bracket, sign or exponent, and refuse too many within each other.
    pure subroutine go_down(reading)
       type(reading_t), intent(inout) :: reading
 
@@ -222,6 +225,7 @@ contains
       if (reading%depth > most_brackets) reading%fault = "it is nested too deeply"
    end subroutine go_down
 
+   !> A number.
    pure subroutine read_number(reading, value)
       type(reading_t), intent(inout) :: reading
       real(rk), intent(out) :: value
@@ -242,6 +246,7 @@ contains
       if (status /= 0) reading%fault = "'"//reading%text(first:last)//"' is no number"
    end subroutine read_number
 
+   !> The value of a name.
    pure subroutine read_name(reading, constants, value)
       type(reading_t), intent(inout) :: reading
       type(constant_t), intent(in) :: constants(:)
@@ -267,9 +272,10 @@ contains
    pure subroutine tokenize(source, tokens, fault, fault_line)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(out) :: tokens
-      character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: good
-      integer(ik), intent(out) :: fault_line
-      integer :: position, last
+      character(len=:), allocatable, intent(out) :: fault  !< reason of a failure; unallocated: good
+      integer(ik), intent(out) :: fault_line  !< 0 without a fault
+      integer, parameter :: marks(3) = [token_equals, token_comma, token_slash]
+      integer :: kind, last, position
       integer(ik) :: line
 
       fault_line = 0
@@ -288,14 +294,9 @@ contains
             position = position + 1
          case ("!")
             position = position + rest_of_line(source(position:))
-         case ("=")
-            call append(tokens, token_t(token_equals, position, position, line))
-            position = position + 1
-         case (",")
-            call append(tokens, token_t(token_comma, position, position, line))
-            position = position + 1
-         case ("/")
-            call append(tokens, token_t(token_slash, position, position, line))
+         case ("=", ",", "/")
+            kind = marks(index("=,/", source(position:position)))
+            call append(tokens, token_t(kind, position, position, line))
             position = position + 1
          case ("&")
             last = position + word_length(source(position + 1:))
@@ -325,7 +326,7 @@ contains
       call append(tokens, token_t(token_end, len(source) + 1, len(source), line))
    end subroutine tokenize
 
-   !> What a quoted text says.
+   !> The contents of a quoted text.
    pure function unquoted(quoted) result(text)
       character(len=*), intent(in) :: quoted  !< with its quotes
       character(len=:), allocatable :: text
@@ -343,7 +344,7 @@ contains
       text = buffer(1:n)
    end function unquoted
 
-   !> Characters up to the end of the line, which is not counted.
+   !> Number of characters before the end of the line.
    pure integer function rest_of_line(source) result(length)
       character(len=*), intent(in) :: source
 
@@ -351,7 +352,7 @@ contains
       if (length < 0) length = len(source)
    end function rest_of_line
 
-   !> Characters of the word that begins here; 0 where none begins.
+   !> Length of the word at the beginning of a source; 0 if there is none.
    pure integer function word_length(source) result(length)
       character(len=*), intent(in) :: source
       integer :: i
@@ -368,7 +369,8 @@ contains
       end do
    end function word_length
 
-   !> Characters of the quoted text that begins here, with both quotes; 0 if it is not closed.
+   !> Length of the quoted text at the beginning of a source, with both quotes; 0 if it is not
+   !! closed on its line.
    pure integer function text_length(source) result(length)
       character(len=*), intent(in) :: source
       integer :: i
@@ -391,6 +393,7 @@ contains
       end do
    end function text_length
 
+   !> Add a token to a list.
    pure subroutine append(tokens, token)
       type(token_list_t), intent(inout) :: tokens
       type(token_t), intent(in) :: token
@@ -405,7 +408,7 @@ contains
       tokens%items(tokens%length) = token
    end subroutine append
 
-   !> A word with `=` behind it; the last token, token_end, is never one.
+   !> A token and the next one are a word and `=`.
    pure logical function begins_value(kind, next_kind)
       integer, intent(in) :: kind, next_kind
 

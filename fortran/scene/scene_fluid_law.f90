@@ -11,7 +11,7 @@
 !! potential m (Kirchhoff's transformation), which increases with p for every law: without one m =
 !! p.
 !!
-!! The storage of the rock of a scene, and its undrained pressure under a load.
+!! Also the storage of the rock, and its undrained pressure under a load.
 module scene_fluid_law
    use base_kinds, only: ik, rk
    use scene_types, only: fluid_t, material_t
@@ -20,23 +20,23 @@ module scene_fluid_law
 
    public :: fluid_law_t, has_law, least_compressibility, new_fluid_law, skempton, storage
 
-   !> An exponential law ends where it has changed by as much as this, as a logarithm: numbers stay
-   !! finite whatever an iteration tries.
+   !> Range of an exponential law, as a logarithm of its change: values remain finite in every
+   !! iteration [-].
    real(rk), parameter :: largest_exponent = 50.0_rk
 
-   !> Pieces 0 to n, number k from pressure k on.
+   !> Density and viscosity in the intervals 0 to n, of which interval k begins at pressure k.
    type :: fluid_law_t
-      real(rk), allocatable :: pressure(:)  !< (n) rising [Pa]
-      real(rk), allocatable :: compressibility(:)  !< (0:n) d ln rho/dp of each piece [1/Pa]
-      real(rk), allocatable :: thickening(:)  !< (0:n) d ln mu/dp [1/Pa]
-      real(rk), allocatable :: density(:)  !< (n) r there [-]
-      real(rk), allocatable :: mobility(:)  !< (n) mu_0 r/mu there [-]
-      real(rk), allocatable :: potential(:)  !< (n) m there [Pa]
-      integer(ik) :: reference = 1  !< number of the reference pressure
-      logical :: changes_density = .false.  !< else r = 1
-      logical :: is_table = .false.  !< which says nothing beyond its pressures
+      real(rk), allocatable :: pressure(:)  !< (n) increasing [Pa]
+      real(rk), allocatable :: compressibility(:)  !< (0:n) d ln rho/dp in each interval [1/Pa]
+      real(rk), allocatable :: thickening(:)  !< (0:n) d ln mu/dp in each interval [1/Pa]
+      real(rk), allocatable :: density(:)  !< (n) r at the pressures [-]
+      real(rk), allocatable :: mobility(:)  !< (n) mu_0 r/mu at the pressures [-]
+      real(rk), allocatable :: potential(:)  !< (n) m at the pressures [Pa]
+      integer(ik) :: reference = 1  !< index of the reference pressure
+      logical :: changes_density = .false.  !< .false.: r = 1
+      logical :: is_table = .false.  !< the law is known only between its pressures
    contains
-      procedure :: piece
+      procedure :: interval
       procedure :: density_at
       procedure :: potential_at
       procedure :: thickness_at
@@ -45,14 +45,14 @@ module scene_fluid_law
 
 contains
 
-   !> Viscosity or density depend on pressure in another way than by compressibility in the balance.
+   !> Viscosity or density of the fluid in fractures depends on pressure.
    pure logical function has_law(fluid)
       type(fluid_t), intent(in) :: fluid
 
       has_law = fluid%viscosity_law /= "constant" .or. fluid%density_law /= "linear"
    end function has_law
 
-   !> The law of a scene.
+   !> The law of the fluid of a scene.
    pure function new_fluid_law(fluid) result(law)
       type(fluid_t), intent(in) :: fluid
       type(fluid_law_t) :: law
@@ -100,7 +100,7 @@ contains
       end do
    end function new_fluid_law
 
-   !> Of the potential from one place to its neighbour [Pa].
+   !> Increase of the potential from a pressure of the law to an adjacent one [Pa].
    pure real(rk) function rise(law, from, to)
       type(fluid_law_t), intent(in) :: law
       integer(ik), intent(in) :: from, to
@@ -111,7 +111,7 @@ contains
       end associate
    end function rise
 
-   !> A pressure among rising ones.
+   !> Insert a pressure into an increasing list, unless it is in it.
    pure subroutine insert(value, list)
       real(rk), intent(in) :: value  !< [Pa]
       real(rk), allocatable, intent(inout) :: list(:)  !< [Pa]
@@ -120,7 +120,7 @@ contains
       list = [pack(list, list < value), value, pack(list, list > value)]
    end subroutine insert
 
-   !> ln rho but for a constant.
+   !> ln rho up to a constant [-].
    pure real(rk) function log_density(fluid, pressure) result(density)
       type(fluid_t), intent(in) :: fluid
       real(rk), intent(in) :: pressure  !< [Pa]
@@ -151,9 +151,10 @@ contains
       end select
    end function log_viscosity
 
-   !> Linear between the places of a table, constant beyond them.
+   !> Value of a table at a pressure: linear between its pressures, constant beyond them [unit of
+   !! y].
    pure real(rk) function interpolated(x, y, at) result(value)
-      real(rk), intent(in) :: x(:)  !< rising [Pa]
+      real(rk), intent(in) :: x(:)  !< increasing pressures [Pa]
       real(rk), intent(in) :: y(:)  !< [any unit]
       real(rk), intent(in) :: at  !< [Pa]
       integer(ik) :: k
@@ -180,20 +181,20 @@ contains
       end if
    end function grown
 
-   !> The piece of a pressure, and where it is measured from: its end towards the reference
-   !! pressure, for beyond the other one numbers may be larger by decades.
-   pure subroutine piece(self, pressure, number, from)
+   !> Find the interval of a pressure, and its end towards the reference pressure, from which values
+   !! are computed: at the other end they may be larger by decades.
+   pure subroutine interval(self, pressure, number, from)
       class(fluid_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< [Pa]
       integer(ik), intent(out) :: number
-      integer(ik), intent(out) :: from  !< a place of the piece
+      integer(ik), intent(out) :: from  !< index of the pressure at that end
 
       number = count(self%pressure <= pressure, kind=ik)
       from = number
       if (number < self%reference) from = number + 1
-   end subroutine piece
+   end subroutine interval
 
-   !> r and its derivative.
+   !> Find r and its derivative at a pressure.
    pure subroutine density_at(self, pressure, density, slope)
       class(fluid_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< [Pa]
@@ -201,13 +202,13 @@ contains
       real(rk), intent(out) :: slope  !< [1/Pa]
       integer(ik) :: from, k
 
-      call self%piece(pressure, k, from)
+      call self%interval(pressure, k, from)
       density = self%density(from) &
                 *exp(self%compressibility(k)*(pressure - self%pressure(from)))
       slope = self%compressibility(k)*density
    end subroutine density_at
 
-   !> m and its derivative mu_0 r/mu.
+   !> Find m and its derivative mu_0 r/mu at a pressure.
    pure subroutine potential_at(self, pressure, potential, slope)
       class(fluid_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< [Pa]
@@ -215,7 +216,7 @@ contains
       real(rk), intent(out) :: slope  !< [-]
       integer(ik) :: from, k
 
-      call self%piece(pressure, k, from)
+      call self%interval(pressure, k, from)
       associate (length => pressure - self%pressure(from), &
                  rate => self%compressibility(k) - self%thickening(k))
          potential = self%potential(from) + self%mobility(from)*grown(rate, length)
@@ -223,7 +224,7 @@ contains
       end associate
    end subroutine potential_at
 
-   !> mu/(mu_0 r): how much more pressure a flow of mass takes than at the reference pressure.
+   !> mu/(mu_0 r): pressure gradient of a mass flow over that at the reference pressure [-].
    elemental real(rk) function thickness_at(self, pressure) result(thickness)
       class(fluid_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< [Pa]
@@ -233,13 +234,13 @@ contains
       thickness = 1.0_rk/slope
    end function thickness_at
 
-   !> Its derivative [1/Pa].
+   !> Derivative of mu/(mu_0 r) [1/Pa].
    pure real(rk) function thickness_slope(self, pressure) result(slope)
       class(fluid_law_t), intent(in) :: self
       real(rk), intent(in) :: pressure  !< [Pa]
       integer(ik) :: from, k
 
-      call self%piece(pressure, k, from)
+      call self%interval(pressure, k, from)
       slope = (self%thickening(k) - self%compressibility(k))*self%thickness_at(pressure)
    end function thickness_slope
 
@@ -251,7 +252,7 @@ contains
       storage = material%porosity*fluid%compressibility + solid_storage(material)
    end function storage
 
-   !> The part of the solid in it [1/Pa].
+   !> Part of the solid in the storage [1/Pa].
    pure real(rk) function solid_storage(material)
       type(material_t), intent(in) :: material
 
@@ -259,7 +260,7 @@ contains
       if (material%storage == "textbook") solid_storage = solid_storage*(1.0_rk - material%biot)
    end function solid_storage
 
-   !> Skempton's coefficient B: pressure over mean compression where no fluid moves [-].
+   !> Skempton's coefficient B: undrained pressure over mean compression [-].
    pure real(rk) function skempton(material, fluid)
       type(material_t), intent(in) :: material
       type(fluid_t), intent(in) :: fluid
@@ -271,8 +272,8 @@ contains
       end if
    end function skempton
 
-   !> Compressibility of a fluid that makes Skempton's coefficient 1 [1/Pa]; only where pores would
-   !! make it larger than that without one.
+   !> Compressibility of the fluid at which Skempton's coefficient is 1, if that of an
+   !! incompressible fluid is larger [1/Pa].
    pure real(rk) function least_compressibility(material)
       type(material_t), intent(in) :: material
 
@@ -280,7 +281,7 @@ contains
                                - solid_storage(material))/material%porosity
    end function least_compressibility
 
-   !> Drained [Pa].
+   !> Drained bulk modulus [Pa].
    pure real(rk) function bulk_modulus(material)
       type(material_t), intent(in) :: material
 

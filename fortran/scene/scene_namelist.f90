@@ -1,19 +1,23 @@
-!> Reading of a scene file.
-!!
-!! Defaults that depend on other values: resolved only here, so that scene.nml shows the numbers
-!! used.
+!> Reads a scene file. Defaults that depend on other values are resolved only here, so that
+!! scene.nml shows the numbers used.
 module scene_namelist
-   use base_errors, only: error_t
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use scene_check, only: check_scene, check_sheet
    use scene_exchange, only: sheet_to_scene
    use scene_exchange_values, only: not_given
    use scene_fluid_law, only: has_law
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
+                               need_choice, need_fluid, need_fracture, need_growth, need_tips
    use scene_parse, only: parse_scene
    use scene_schedule, only: load_schedules
-   use scene_sheet, only: sheet_t
-   use scene_types, only: injection_t, material_t, region_t, scene_t
+   use scene_sheet, only: add_record, empty_record, group_index, parameter_index, refuse, sheet_t
+   use scene_sides, only: normal_tractions
+   use scene_types, only: injection_t, material_t, name_length, region_t, scene_t
+   use scene_values, only: default_value, shortened, value_t
+   use scene_words, only: is_identifier
    implicit none(type, external)
    private
 
@@ -21,8 +25,8 @@ module scene_namelist
 
 contains
 
-   !> Read a scene, fill in its defaults and check it. On an error the scene is not to be used.
-   !! Whether its geometry can be meshed is not for this room to judge.
+   !> Read a scene, fill in its defaults and check it. On an error the scene must not be used.
+   !! Whether the geometry can be meshed is checked by app_geometry.
    subroutine read_scene(path, scene, error, source)
       character(len=*), intent(in) :: path
       type(scene_t), intent(out) :: scene
@@ -31,10 +35,9 @@ contains
       type(sheet_t) :: sheet
 
       call parse_scene(path, sheet, error)
-      if (allocated(error)) return
-      call load_schedules(sheet, error)
-      if (allocated(error)) return
-      call check_sheet(sheet, error)
+      if (.not. allocated(error)) call complete_sheet(sheet, error)
+      if (.not. allocated(error)) call load_schedules(sheet, error)
+      if (.not. allocated(error)) call check_sheet(sheet, error)
       if (allocated(error)) return
       call sheet_to_scene(sheet, scene)
       call resolve_defaults(scene)
@@ -42,12 +45,156 @@ contains
       if (present(source)) source = sheet
    end subroutine read_scene
 
-   !> Give every value that is still 0, for it was not given, what it stands for.
+   !> Fill in the defaults of a parsed sheet, and refuse groups that lack a required value.
+   pure subroutine complete_sheet(sheet, error)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      type(value_t) :: enabled, intensities
+      logical :: has_fluid, is_needed(0:need_choice)
+      integer :: i, item
+
+      has_fluid = sheet%has("fluid")
+      do i = 1, size(groups)
+         if (.not. (groups(i)%implied .and. applies(groups(i)%scenes, has_fluid))) cycle
+         if (.not. sheet%has(trim(groups(i)%name))) call add_record(sheet, empty_record(i, 0_ik))
+      end do
+      do i = 1, sheet%length
+         associate (values => sheet%records(i)%values)
+            do item = lbound(values, 1), ubound(values, 1)
+               if (values(item)%is_set) cycle
+               if (applies(parameters(item)%scenes, has_fluid)) then
+                  call default_value(parameters(item), values(item))
+               end if
+            end do
+         end associate
+      end do
+      call name_by_file(sheet, error)
+      if (.not. allocated(error)) call refuse_foreign(sheet, error)
+      if (allocated(error)) return
+      enabled = sheet%records(sheet%find("growth"))%value("enabled")
+      intensities = sheet%records(sheet%find("growth"))%value("intensities")
+      is_needed = .false.
+      is_needed(need_always) = .true.
+      is_needed(need_fluid) = has_fluid
+      is_needed(need_fracture) = sheet%has("fracture")
+      is_needed(need_tips) = enabled%flag .or. intensities%flag
+      is_needed(need_growth) = enabled%flag
+      do i = 1, sheet%length
+         call refuse_missing(sheet, i, is_needed, error)
+         if (allocated(error)) return
+      end do
+   end subroutine complete_sheet
+
+   !> Name a scene without a name after its file.
+   pure subroutine name_by_file(sheet, error)
+      type(sheet_t), intent(inout) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: stem
+      integer :: dot, record
+
+      record = sheet%find("scene")
+      if (sheet%records(record)%is_set("name")) return
+      stem = sheet%path(index(sheet%path, "/", back=.true.) + 1:)
+      dot = index(stem, ".", back=.true.)
+      if (dot > 1) stem = stem(1:dot - 1)
+      if (len(stem) > name_length .or. .not. is_identifier(stem)) then
+         call refuse(error, sheet, record, "name", "is missing, and '"//shortened(stem)// &
+                     "', as the file is called, cannot serve for it: a name has at most 64 "// &
+                     "letters, digits, '_', '-' and '.'")
+         return
+      end if
+      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), &
+                                                                       "name")))
+         value%is_set = .true.
+         value%text = stem
+      end associate
+   end subroutine name_by_file
+
+   !> Refuse groups and names of scenes with a fluid in one without, and the reverse.
+   pure subroutine refuse_foreign(sheet, error)
+      type(sheet_t), intent(in) :: sheet
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason
+      logical :: has_fluid
+      integer :: i, item
+
+      has_fluid = sheet%has("fluid")
+      reason = "needs a fluid, but the group &fluid is missing"
+      if (has_fluid) reason = "is for mechanics-only scenes, but this one has the group &fluid"
+      do i = 1, sheet%length
+         associate (record => sheet%records(i))
+            if (.not. applies(groups(record%group)%scenes, has_fluid)) then
+               call refuse(error, sheet, i, "", reason)
+               return
+            end if
+            do item = lbound(record%values, 1), ubound(record%values, 1)
+               if (record%values(item)%line == 0) cycle
+               if (applies(parameters(item)%scenes, has_fluid)) cycle
+               call refuse(error, sheet, i, trim(parameters(item)%name), reason)
+               return
+            end do
+         end associate
+      end do
+   end subroutine refuse_foreign
+
+   !> Refuse a group that lacks a value which this scene needs.
+   pure subroutine refuse_missing(sheet, record, is_needed, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record  !< index into sheet%records
+      logical, intent(in) :: is_needed(0:)  !< in this scene, by the need of a parameter
+      type(error_t), allocatable, intent(out) :: error
+      integer :: item
+
+      associate (group => groups(sheet%records(record)%group), given => sheet%records(record))
+         if (.not. applies(group%scenes, sheet%has("fluid"))) return
+         do item = lbound(given%values, 1), ubound(given%values, 1)
+            if (given%values(item)%is_set) cycle
+            if (parameters(item)%need == need_choice) then
+               if (.not. given%suits(item)) cycle
+            else if (.not. is_needed(parameters(item)%need)) then
+               cycle
+            end if
+            if (given%line == 0) then
+               call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
+                                " is missing, and with it "//described(item)// &
+                                " (see docs/input.md)")
+            else
+               call refuse(error, sheet, record, "", described(item)//", is missing")
+            end if
+            return
+         end do
+      end associate
+   end subroutine refuse_missing
+
+   !> Name, unit and reason of a needed parameter.
+   pure function described(item) result(words)
+      integer, intent(in) :: item  !< index into parameters
+      character(len=:), allocatable :: words
+      character(len=*), parameter :: reason(need_always:need_growth) = [character(len=46) :: &
+                                                                        "which is always needed", &
+                                                                "which a scene with &fluid needs", &
+                                                            "which a scene with a fracture needs", &
+                                                 "which growth and stress intensity factors need", &
+                                                                        "which growth needs"]
+
+      associate (parameter => parameters(item))
+         words = trim(parameter%name)
+         if (parameter%unit /= "-") words = words//" ["//trim(parameter%unit)//"]"
+         if (parameter%need == need_choice) then
+            words = words//", which the "//choice_name(parameter)//" '"// &
+                    choice_value(parameter)//"' needs"
+         else
+            words = words//", "//trim(reason(parameter%need))
+         end if
+      end associate
+   end function described
+
+   !> Set values that are not given to their defaults, which depend on other values.
    pure subroutine resolve_defaults(scene)
       type(scene_t), intent(inout) :: scene
       integer :: i
 
-      if (.not. scene%has_fluid()) then  ! the programme takes one unit of time
+      if (.not. scene%has_fluid()) then  ! the load programme lasts one unit of time
          scene%time%end = 1.0_rk
          scene%time%step = 1.0_rk/real(scene%load%steps, rk)
       end if
@@ -81,8 +228,8 @@ contains
       end do
    end subroutine resolve_defaults
 
-   !> Wells without a name are called after their number; with stages they begin with the first,
-   !! and one rate or pressure is that of all.
+   !> Name wells without a name after their number. Wells with stages start with the first; a single
+   !! rate or pressure is that of all stages.
    pure subroutine name_wells(wells)
       type(injection_t), intent(inout) :: wells(:)
       integer(ik) :: i
@@ -96,7 +243,7 @@ contains
       end do
    end subroutine name_wells
 
-   !> One value is that of all stages.
+   !> Extend a list of one value to n equal ones.
    pure subroutine repeat_value(list, n)
       real(rk), allocatable, intent(inout) :: list(:)  !< [any unit]
       integer, intent(in) :: n
@@ -105,7 +252,7 @@ contains
       if (size(list) == 1) list = spread(list(1), 1, n)
    end subroutine repeat_value
 
-   !> The rock of regions is that of the scene but for what they give themselves.
+   !> Complete the rock of regions by the properties of the scene's rock that they do not give.
    pure subroutine complete(material, regions)
       type(material_t), intent(in) :: material  !< of the scene
       type(region_t), intent(inout) :: regions(:)
@@ -130,15 +277,16 @@ contains
       end do
    end subroutine complete
 
+   !> Replace a value by that of a region, if given.
    pure subroutine take(own, value)
-      real(rk), intent(in) :: own  !< what is given, or not_given [any unit]
+      real(rk), intent(in) :: own  !< value of the region, or not_given [any unit]
       real(rk), intent(inout) :: value  !< [unit of own]
 
       if (own < not_given) value = own
    end subroutine take
 
-   !> Steps of a given length, or such that their error is small; fields as often as they are given,
-   !! or a hundred times.
+   !> Set the defaults of the tolerance, the smallest step and the interval of written fields, which
+   !! without a step is a hundredth of the run.
    pure subroutine choose_steps(scene)
       type(scene_t), intent(inout) :: scene
       real(rk), parameter :: usual_tolerance = 0.01_rk
@@ -155,24 +303,18 @@ contains
       end associate
    end subroutine choose_steps
 
-   !> Whether stresses and pressures of the scene are those of a state in situ, and not changes of
-   !! one that it does not tell: only then 0 is vacuum.
+   !> Stresses and pressures are those of a state in situ, and not changes of an unknown state: only
+   !! then a pressure of 0 is vacuum.
    pure logical function is_pressed(scene)
       type(scene_t), intent(in) :: scene
-      real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
-      integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
-      integer :: i
 
       is_pressed = scene%initial%pressure > 0.0_rk .or. scene%fluid%density > 0.0_rk &
                    .or. any(scene%in_situ%stress(1:2) < 0.0_rk) &
                    .or. any(abs(scene%in_situ%per_y) > 0.0_rk)
-      do i = 1, 4
-         associate (side => scene%sides(i))
-            is_pressed = is_pressed .or. outward(i)*side%traction(axis(i)) < 0.0_rk &
-                         .or. (side%pressure_given .and. side%pressure > 0.0_rk)
-         end associate
-      end do
-      is_pressed = is_pressed .or. any(scene%sides%normal_traction < 0.0_rk)
+      associate (side => scene%sides)
+         is_pressed = is_pressed .or. any(normal_tractions(side) < 0.0_rk) &
+                      .or. any(side%pressure_given .and. side%pressure > 0.0_rk)
+      end associate
       if (.not. allocated(scene%parts)) return
       associate (side => scene%parts)
          is_pressed = is_pressed .or. any(side%normal_traction < 0.0_rk) &
@@ -180,6 +322,7 @@ contains
       end associate
    end function is_pressed
 
+   !> Set a value that is not positive, and so not given, to a default.
    pure subroutine default(value, otherwise)
       real(rk), intent(inout) :: value  !< [any unit]
       real(rk), intent(in) :: otherwise  !< [unit of value]

@@ -14,7 +14,7 @@ module scene_outline
       real(rk), allocatable :: corners(:, :)  !< (2, n) [m]
       !> (n) side from each corner to the next, as sides_of_scene numbers them
       integer(ik), allocatable :: edge_side(:)
-      real(rk), allocatable :: fixed_points(:, :)  !< (2, n) places that must be nodes [m]
+      real(rk), allocatable :: fixed_points(:, :)  !< (2, n_points) points that must be nodes [m]
    end type outline_t
 
 contains
@@ -69,7 +69,7 @@ contains
       corners(2, :) = domain%y
    end function corners_of
 
-   !> What number the scene gives to a corner of its polygon's outline.
+   !> Number in the scene of a corner of its polygon's outline.
    pure integer(ik) function scene_corner(domain, corner)
       type(domain_t), intent(in) :: domain
       integer(ik), intent(in) :: corner
@@ -78,7 +78,7 @@ contains
       if (runs_clockwise(domain)) scene_corner = size(domain%x, kind=ik) + 1_ik - corner
    end function scene_corner
 
-   !> What number the scene gives to an edge of its polygon's outline.
+   !> Number in the scene of an edge of its polygon's outline.
    pure integer(ik) function scene_edge(domain, edge)
       type(domain_t), intent(in) :: domain
       integer(ik), intent(in) :: edge
@@ -89,8 +89,8 @@ contains
       if (runs_clockwise(domain)) scene_edge = modulo(n - edge - 1_ik, n) + 1_ik
    end function scene_edge
 
-   !> What is prescribed on each side of the body, by its number; the last one of a polygon or disc
-   !! is all that the scene does not speak of, free of traction.
+   !> Conditions on each side of the body, by its number; the last side of a polygon or disc is the
+   !! rest of the boundary, free of traction.
    pure function sides_of_scene(scene) result(sides)
       type(scene_t), intent(in) :: scene
       type(boundary_side_t), allocatable :: sides(:)
@@ -100,19 +100,12 @@ contains
          sides = scene%sides
          return
       end if
-      n = n_parts(scene)
+      n = scene%n_parts()
       allocate (sides(n + 1))
       do i = 1, n
          sides(i) = scene%parts(i)%boundary_side_t
       end do
    end function sides_of_scene
-
-   pure integer function n_parts(scene)
-      type(scene_t), intent(in) :: scene
-
-      n_parts = 0
-      if (allocated(scene%parts)) n_parts = size(scene%parts)
-   end function n_parts
 
    !> Sides of a polygon's edges, in the scene's order.
    pure function polygon_sides(scene) result(edge_side)
@@ -120,8 +113,8 @@ contains
       integer(ik), allocatable :: edge_side(:)
       integer(ik) :: i
 
-      allocate (edge_side(size(scene%domain%x)), source=int(n_parts(scene) + 1, ik))
-      do i = 1, n_parts(scene)
+      allocate (edge_side(size(scene%domain%x)), source=int(scene%n_parts() + 1, ik))
+      do i = 1, scene%n_parts()
          edge_side(scene%parts(i)%edges) = i
       end do
    end function polygon_sides
@@ -135,17 +128,18 @@ contains
       integer(ik) :: i, k, n
 
       n = size(corners, 2, kind=ik)
-      allocate (edge_side(n), source=int(n_parts(scene) + 1, ik))
+      allocate (edge_side(n), source=int(scene%n_parts() + 1, ik))
       do k = 1, n
          arm = 0.5_rk*(corners(:, k) + corners(:, mod(k, n) + 1)) &
                - [scene%domain%x_centre, scene%domain%y_centre]
          angle = atan2(arm(2), arm(1))
-         do i = 1, n_parts(scene)
+         do i = 1, scene%n_parts()
             if (holds_angle(scene%parts(i), angle)) edge_side(k) = i
          end do
       end do
    end function rim_sides
 
+   !> A part of a disc's rim contains an angle.
    pure logical function holds_angle(part, angle)
       type(boundary_part_t), intent(in) :: part
       real(rk), intent(in) :: angle  !< [rad]
@@ -154,40 +148,22 @@ contains
                     modulo(angle - part%arc(1), 2.0_rk*pi) < part%arc(2) - part%arc(1)
    end function holds_angle
 
-   !> Points on a circle: equally spaced ones, of which those next to a given point, to the end of
-   !! an arc or to the end of a fracture on the circle give way to it.
+   !> Points on the circle of a disc: fixed ones (fixed_angles), and equally spaced ones, without
+   !! those next to a fixed one.
    !!
    !! A polygon of n corners on the circle lacks 2/3 (pi/n)**2 of its area: 1e-4 with 256, 2e-6 with
    !! 2000. More would be of no use, and each edge is compared with every other one.
    pure function circle(scene, given) result(corners)
       type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: given(:, :)  !< (2, n) of which some lie on the circle [m]
-      real(rk), allocatable :: corners(:, :)
-      real(rk), parameter :: on_circle = 1.0e-6_rk  ! distance over the radius
+      real(rk), intent(in) :: given(:, :)  !< (2, n) points, some of which lie on the circle [m]
+      real(rk), allocatable :: corners(:, :)  !< (2, n_corners) [m]
       real(rk), parameter :: fewest = 256.0_rk, most = 2000.0_rk
       real(rk), allocatable :: angle(:), fixed(:)
-      real(rk) :: spacing, candidate
-      integer :: i, k, n
+      real(rk) :: candidate, spacing
+      integer :: i, n
 
       associate (d => scene%domain, size_boundary => scene%discretization%size_boundary)
-         allocate (fixed(0))
-         do i = 1, size(given, 2)
-            call keep(given(:, i), fixed)
-         end do
-         do i = 1, size(scene%fractures)
-            do k = 1, size(scene%fractures(i)%x)
-               call keep([scene%fractures(i)%x(k), scene%fractures(i)%y(k)], fixed)
-            end do
-         end do
-         do i = 1, n_parts(scene)
-            if (scene%parts(i)%whole_rim) cycle
-            do k = 1, 2
-               associate (place => scene%parts(i)%arc(k))
-                  call keep([d%x_centre + d%radius*cos(place), d%y_centre + d%radius*sin(place)], &
-                            fixed)
-               end associate
-            end do
-         end do
+         fixed = fixed_angles(scene, given)
          n = ceiling(min(most, max(fewest, 2.0_rk*pi*d%radius/size_boundary)))
          spacing = 2.0_rk*pi/n
          angle = fixed
@@ -201,32 +177,60 @@ contains
          corners(1, :) = d%x_centre + d%radius*cos(angle)
          corners(2, :) = d%y_centre + d%radius*sin(angle)
       end associate
-
-   contains
-
-      !> Keep the angle of a point on the circle, once.
-      pure subroutine keep(xy, fixed)
-         real(rk), intent(in) :: xy(2)  !< [m]
-         real(rk), allocatable, intent(inout) :: fixed(:)  !< angles so far [rad]
-         real(rk) :: arm(2), place
-
-         arm = xy - [scene%domain%x_centre, scene%domain%y_centre]
-         if (abs(norm2(arm)/scene%domain%radius - 1.0_rk) > on_circle) return
-         place = modulo(atan2(arm(2), arm(1)), 2.0_rk*pi)
-         if (any(abs(turned(fixed - place)) < on_circle)) return
-         fixed = [fixed, place]
-      end subroutine keep
-
-      !> An angle between -pi and pi.
-      elemental real(rk) function turned(difference)
-         real(rk), intent(in) :: difference  !< [rad]
-
-         turned = modulo(difference + pi, 2.0_rk*pi) - pi
-      end function turned
-
    end function circle
 
-   !> Ascending order, by insertion: nearly all are in order.
+   !> Angles of the given points, vertices of fractures and ends of arcs that lie on the circle,
+   !! each of them once [rad].
+   pure function fixed_angles(scene, given) result(angles)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: given(:, :)  !< (2, n) [m]
+      real(rk), allocatable :: angles(:)
+      integer :: i, k
+
+      allocate (angles(0))
+      do i = 1, size(given, 2)
+         call add_angle(scene%domain, given(:, i), angles)
+      end do
+      do i = 1, size(scene%fractures)
+         associate (fracture => scene%fractures(i))
+            do k = 1, size(fracture%x)
+               call add_angle(scene%domain, [fracture%x(k), fracture%y(k)], angles)
+            end do
+         end associate
+      end do
+      do i = 1, scene%n_parts()
+         if (scene%parts(i)%whole_rim) cycle
+         do k = 1, 2
+            associate (d => scene%domain, place => scene%parts(i)%arc(k))
+               call add_angle(d, [d%x_centre + d%radius*cos(place), &
+                                  d%y_centre + d%radius*sin(place)], angles)
+            end associate
+         end do
+      end do
+   end function fixed_angles
+
+   !> Add the angle of a point if it lies on the circle and is not among the angles so far.
+   pure subroutine add_angle(domain, xy, angles)
+      type(domain_t), intent(in) :: domain  !< a disc
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk), allocatable, intent(inout) :: angles(:)  !< [rad]
+      real(rk), parameter :: on_circle = 1.0e-6_rk  ! distance over the radius
+      real(rk) :: arm(2), angle
+
+      arm = xy - [domain%x_centre, domain%y_centre]
+      if (abs(norm2(arm)/domain%radius - 1.0_rk) > on_circle) return
+      angle = modulo(atan2(arm(2), arm(1)), 2.0_rk*pi)
+      if (.not. any(abs(turned(angles - angle)) < on_circle)) angles = [angles, angle]
+   end subroutine add_angle
+
+   !> The same angle between -pi and pi [rad].
+   elemental real(rk) function turned(angle)
+      real(rk), intent(in) :: angle  !< [rad]
+
+      turned = modulo(angle + pi, 2.0_rk*pi) - pi
+   end function turned
+
+   !> Sort into ascending order, by insertion: nearly all values are in order.
    pure subroutine sort(values)
       real(rk), intent(inout) :: values(:)  !< angles [rad]
       real(rk) :: value

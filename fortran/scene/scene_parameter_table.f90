@@ -1,583 +1,461 @@
-!> The elements of the table of a scene file: groups and the names within them.
-!!
-!! Parameters of the body, its supports and its loads.
-!!
-!! Parameters of rock and fluid.
-!!
-!! Parameters of fractures.
-!!
-!! Parameters of wells, initial state, time and loads.
-!!
-!! Parameters of meshes, growth and output.
+!> The names of a scene file, each with its group, kind, unit, default, range and meaning. A new
+!! name is one entry here and one line in scene_exchange.
 module scene_parameter_table
+   use scene_parameters, only: in_fluid, in_mechanics, kind_choice, kind_integer, kind_logical, &
+                               kind_name, kind_reals, kind_text, kind_wholes, need_always, &
+                               need_choice, need_fluid, need_fracture, need_growth, need_tips, &
+                               parameter_t
    use scene_words, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
-                          exponent_range, interval_t, newton_range, passes_range, poisson_range, &
+                          exponent_range, newton_range, passes_range, poisson_range, &
                           porosity_range, positive, rosette_range, share, steps_range, &
                           tolerance_range
    implicit none(type, external)
    private
 
-   public :: body_parameters, fracture_parameters, group_t, in_all, in_fluid, in_mechanics
-   public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
-   public :: kind_wholes, need_always, need_choice, need_fluid, need_fracture, need_growth
-   public :: need_never, need_tips, numerics_parameters, parameter_t, process_parameters
-   public :: rock_parameters, text_length
+   public :: parameters
 
-   integer, parameter :: kind_real = 1
-   integer, parameter :: kind_reals = 2  !< a list of any length
-   integer, parameter :: kind_integer = 3
-   integer, parameter :: kind_logical = 4
-   integer, parameter :: kind_text = 5
-   integer, parameter :: kind_name = 6  !< a text that is safe as a file name
-   integer, parameter :: kind_choice = 7  !< a text out of `choices`
-   integer, parameter :: kind_wholes = 8  !< a list of whole numbers, kept as reals
-
-   integer, parameter :: need_never = 0
-   integer, parameter :: need_always = 1  !< in every such group
-   integer, parameter :: need_fluid = 2  !< where there is a fluid
-   integer, parameter :: need_fracture = 3  !< where there is a fracture
-   integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
-   integer, parameter :: need_growth = 5  !< where fractures grow
-   integer, parameter :: need_choice = 6  !< with the choice that it belongs to
-
-   ! Scenes that may give a group or a parameter.
-   integer, parameter :: in_all = 0
-   integer, parameter :: in_fluid = 1  !< scenes with &fluid
-   integer, parameter :: in_mechanics = 2  !< scenes without &fluid: mechanics only
-
-   integer, parameter :: text_length = 256  !< longest text; names are shorter (scene_types)
-
-   !> A namelist group.
-   type :: group_t
-      character(len=12) :: name = ""
-      logical :: repeated = .false.  !< one group per item
-      logical :: implied = .false.  !< an absent group stands for one that holds the defaults
-      integer :: scenes = in_all  !< which may have it
-      character(len=600) :: meaning = ""
-   end type group_t
-
-   !> A name within a group.
-   type :: parameter_t
-      character(len=12) :: group = ""
-      character(len=20) :: name = ""
-      integer :: kind = kind_real
-      character(len=8) :: unit = "-"
-      integer :: need = need_never
-      character(len=16) :: default = ""  !< as a file would give it; empty: none
-      character(len=40) :: absent = ""  !< what it means if neither given nor defaulted
-      logical :: derived = .false.  !< then `absent` names the default, which follows from others
-      type(interval_t) :: range = interval_t()
-      integer :: scenes = in_all  !< which may give it
-      !> Separated by `|`; of a single number: words that may stand in its place
-      character(len=32) :: choices = ""
-      character(len=160) :: meaning = ""
-      ! Towards other names of its group:
-      character(len=28) :: of = ""  !< the choice that it belongs to, as `law=slip`; empty: all
-      character(len=20) :: with = ""  !< given only if this is given too
-      character(len=20) :: at_most = ""  !< a number that it must not exceed
-   end type parameter_t
-
-   ! The table keeps its own layout.
+   ! The parts of the table, which keep their own layout; one statement cannot be longer.
    !&<
    type(parameter_t), parameter :: body_parameters(*) = [ &
-      parameter_t("scene", "name", kind_name, &
-                  absent="the file's name without .nml", derived=.true., &
-                  meaning="Short name; results are in `out/<name>` unless --out is used"), &
-      parameter_t("scene", "title", kind_text, default="''", &
-                  meaning="One-line description"), &
+      parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
+         derived=.true., meaning="Short name; results are in `out/<name>` unless --out is used"), &
+      parameter_t("scene", "title", kind_text, default="''", meaning="One-line description"), &
       parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
-                  choices="rectangle|disc|polygon", &
-                  meaning="Shape of the body"), &
+         choices="rectangle|disc|polygon", meaning="Shape of the body"), &
       parameter_t("domain", "x_min", unit="m", need=need_choice, absent="no rectangle", &
-                  of="shape=rectangle", &
-                  meaning="Left side"), &
+         of="shape=rectangle", meaning="Left side"), &
       parameter_t("domain", "x_max", unit="m", need=need_choice, absent="no rectangle", &
-                  of="shape=rectangle", &
-                  meaning="Right side, above x_min"), &
+         of="shape=rectangle", meaning="Right side, above x_min"), &
       parameter_t("domain", "y_min", unit="m", need=need_choice, absent="no rectangle", &
-                  of="shape=rectangle", &
-                  meaning="Bottom side"), &
+         of="shape=rectangle", meaning="Bottom side"), &
       parameter_t("domain", "y_max", unit="m", need=need_choice, absent="no rectangle", &
-                  of="shape=rectangle", &
-                  meaning="Top side, above y_min"), &
+         of="shape=rectangle", meaning="Top side, above y_min"), &
       parameter_t("domain", "x_centre", unit="m", need=need_choice, absent="no disc", &
-                  of="shape=disc", &
-                  meaning="x of the disc's centre"), &
+         of="shape=disc", meaning="x of the disc's centre"), &
       parameter_t("domain", "y_centre", unit="m", need=need_choice, absent="no disc", &
-                  of="shape=disc", &
-                  meaning="y of the disc's centre"), &
+         of="shape=disc", meaning="y of the disc's centre"), &
       parameter_t("domain", "radius", unit="m", need=need_choice, range=positive, of="shape=disc", &
-                  absent="no disc", meaning="Radius of the disc"), &
+         absent="no disc", meaning="Radius of the disc"), &
       parameter_t("domain", "x", kind_reals, "m", need_choice, absent="no polygon", &
-                  of="shape=polygon", &
-                  meaning="x of the corners of a polygon, in either orientation; edge k "// &
-                          "connects corner k and the next one, the last edge ends at corner 1"), &
+         of="shape=polygon", &
+         meaning="x of the corners of a polygon, in either orientation; edge k connects corner "// &
+                 "k and the next one, the last edge ends at corner 1"), &
       parameter_t("domain", "y", kind_reals, "m", need_choice, absent="no polygon", &
-                  of="shape=polygon", &
-                  meaning="y of the corners"), &
+         of="shape=polygon", meaning="y of the corners"), &
       parameter_t("side", "name", kind_name, need=need_always, &
-                  meaning="`left`, `right`, `bottom` or `top` of a rectangle; otherwise any, "// &
-                          "different from that of every other side"), &
+         meaning="`left`, `right`, `bottom` or `top` of a rectangle; otherwise any, different "// &
+                 "from that of every other side"), &
       parameter_t("side", "edges", kind_wholes, absent="no polygon", range=at_least_one, &
-                  meaning="Numbers of a polygon's edges, required there"), &
+         meaning="Numbers of a polygon's edges, required there"), &
       parameter_t("side", "arc_from_deg", unit="degree", absent="the whole rim", &
-                  with="arc_to_deg", &
-                meaning="Start of an arc of a disc's rim, counter-clockwise from the x axis"), &
+         with="arc_to_deg", &
+         meaning="Start of an arc of a disc's rim, counter-clockwise from the x axis"), &
       parameter_t("side", "arc_to_deg", unit="degree", absent="the whole rim", &
-                  with="arc_from_deg", &
-                  meaning="End of the arc, above arc_from_deg by at most 360"), &
+         with="arc_from_deg", meaning="End of the arc, above arc_from_deg by at most 360"), &
       parameter_t("side", "x_displacement", kind_reals, "m", absent="traction is prescribed", &
-                  meaning="Prescribed displacement in x"), &
+         meaning="Prescribed displacement in x"), &
       parameter_t("side", "y_displacement", kind_reals, "m", absent="traction is prescribed", &
-                  meaning="Prescribed displacement in y"), &
-      parameter_t("side", "x_traction", kind_reals, "Pa", absent= &
-                  "0, or displacement is prescribed", &
-                  meaning="Total traction in x: on the right side, compression is negative"), &
-      parameter_t("side", "y_traction", kind_reals, "Pa", absent= &
-                  "0, or displacement is prescribed", &
-                  meaning="Total traction in y: on the top side, compression is negative"), &
+         meaning="Prescribed displacement in y"), &
+      parameter_t("side", "x_traction", kind_reals, "Pa", &
+         absent="0, or displacement is prescribed", &
+         meaning="Total traction in x: on the right side, compression is negative"), &
+      parameter_t("side", "y_traction", kind_reals, "Pa", &
+         absent="0, or displacement is prescribed", &
+         meaning="Total traction in y: on the top side, compression is negative"), &
       parameter_t("side", "normal_traction", kind_reals, "Pa", absent="0", &
-                  meaning="Traction along the outward normal, compression is negative; not "// &
-                          "with displacements or tractions in x and y"), &
+         meaning="Traction along the outward normal, compression is negative; not with "// &
+                 "displacements or tractions in x and y"), &
       parameter_t("side", "shear_traction", kind_reals, "Pa", absent="0", &
-                  meaning="Tangential traction, positive with the body on the left; "// &
-                          "conditions as for normal_traction"), &
+         meaning="Tangential traction, positive with the body on the left; conditions as for "// &
+                 "normal_traction"), &
       parameter_t("side", "x_spring", unit="Pa/m", absent="no spring", range=positive, &
-                  meaning="Stiffness of springs on the side in x: traction opposite to the "// &
-                          "displacement and proportional to it, in addition to prescribed "// &
-                          "tractions"), &
+         meaning="Stiffness of springs on the side in x: traction opposite to the displacement "// &
+                 "and proportional to it, in addition to prescribed tractions"), &
       parameter_t("side", "y_spring", unit="Pa/m", absent="no spring", range=positive, &
-                  meaning="The same in y"), &
+         meaning="The same in y"), &
       parameter_t("side", "pressure", kind_reals, "Pa", absent="no flow", scenes=in_fluid, &
-                  meaning="Prescribed pore pressure; with a fluid density that at y_datum of "// &
-                          "&in_situ"), &
+         meaning="Prescribed pore pressure; with a fluid density that at y_datum of &in_situ"), &
       parameter_t("side", "inflow", kind_reals, "m/s", absent="no flow", scenes=in_fluid, &
-                  meaning="Prescribed inflow per time and area; negative: outflow. Not with "// &
-                          "pressure"), &
+         meaning="Prescribed inflow per time and area; negative: outflow. Not with pressure"), &
       parameter_t("side", "time", kind_reals, "s", absent="constant in time", scenes=in_fluid, &
-                  range=at_least_zero, &
-                meaning="Times of the values of the side, each of which has one value or one "// &
-                        "per time; linear between times, with a jump at two equal times. No "// &
-                        "step straddles them"), &
+         range=at_least_zero, &
+         meaning="Times of the values of the side, each of which has one value or one per "// &
+                 "time; linear between times, with a jump at two equal times. No step "// &
+                 "straddles them"), &
       parameter_t("side", "schedule", kind_text, absent="no table", scenes=in_fluid, &
-                  meaning="CSV file in the folder of the scene with a row per time, instead "// &
-                          "of time and values: columns time_s, x_traction_pa, pressure_pa, "// &
-                          "inflow_m_s and so on"), &
+         meaning="CSV file in the folder of the scene with a row per time, instead of time and "// &
+                 "values: columns time_s, x_traction_pa, pressure_pa, inflow_m_s and so on"), &
       parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
       parameter_t("restraint", "y", unit="m", need=need_always, meaning="y of the point"), &
       parameter_t("restraint", "x_displacement", unit="m", absent="free in x", &
-                  meaning="Prescribed displacement in x, times the load factor"), &
+         meaning="Prescribed displacement in x, times the load factor"), &
       parameter_t("restraint", "y_displacement", unit="m", absent="free in y", &
-                  meaning="Prescribed displacement in y, times the load factor"), &
+         meaning="Prescribed displacement in y, times the load factor"), &
       parameter_t("point_load", "x", unit="m", need=need_always, meaning="x of the point"), &
       parameter_t("point_load", "y", unit="m", need=need_always, meaning="y of the point"), &
       parameter_t("point_load", "x_force", unit="N/m", default="0.0", meaning="Force in x"), &
       parameter_t("point_load", "y_force", unit="N/m", default="0.0", meaning="Force in y")]
-   !&>
 
-   ! The table keeps its own layout.
-   !&<
    type(parameter_t), parameter :: rock_parameters(*) = [ &
       parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
-                  meaning="Young's modulus E"), &
+         meaning="Young's modulus E"), &
       parameter_t("material", "poisson", need=need_always, range=poisson_range, &
-                  meaning="Poisson's ratio nu (drained)"), &
+         meaning="Poisson's ratio nu (drained)"), &
       parameter_t("material", "biot", need=need_fluid, range=biot_range, &
-                  meaning="Biot's coefficient alpha"), &
+         meaning="Biot's coefficient alpha"), &
       parameter_t("material", "porosity", need=need_fluid, range=porosity_range, &
-                  meaning="Porosity phi"), &
+         meaning="Porosity phi"), &
       parameter_t("material", "permeability", unit="m2", range=positive, &
-                  absent="see permeability_xx", &
-                  meaning="Isotropic permeability; with a fluid either this or the tensor is "// &
-                  "required"), &
+         absent="see permeability_xx", &
+         meaning="Isotropic permeability; with a fluid either this or the tensor is required"), &
       parameter_t("material", "permeability_xx", unit="m2", range=positive, &
-                  absent="see permeability", &
-                  meaning="Component xx of the permeability tensor"), &
+         absent="see permeability", meaning="Component xx of the permeability tensor"), &
       parameter_t("material", "permeability_yy", unit="m2", range=positive, &
-                  absent="see permeability", &
-                  meaning="Component yy of the permeability tensor"), &
+         absent="see permeability", meaning="Component yy of the permeability tensor"), &
       parameter_t("material", "permeability_xy", unit="m2", absent="0", &
-                  meaning="Component xy of the permeability tensor"), &
+         meaning="Component xy of the permeability tensor"), &
       parameter_t("material", "density", unit="kg/m3", range=positive, absent="no weight", &
-                  meaning="Density of the rock, with a fluid including the pore fluid, for "// &
-                          "gravity"), &
+         meaning="Density of the rock, with a fluid including the pore fluid, for gravity"), &
       parameter_t("material", "radiation_damping", unit="Pa s/m", default="0.0", &
-                  range=at_least_zero, scenes=in_fluid, &
-                  meaning="Radiation damping: shear traction per slip rate, G/(2 c_s), with "// &
-                          "the shear wave velocity c_s; gives unstable slip a duration. Not "// &
-                          "with intensities"), &
-      parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, &
-                  absent="unlimited", range=positive, &
-                  meaning="Fracture toughness K_IC"), &
+         range=at_least_zero, scenes=in_fluid, &
+         meaning="Radiation damping: shear traction per slip rate, G/(2 c_s), with the shear "// &
+                 "wave velocity c_s; gives unstable slip a duration. Not with intensities"), &
+      parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, absent="unlimited", &
+         range=positive, meaning="Fracture toughness K_IC"), &
       parameter_t("material", "plane", kind_choice, default="'strain'", choices="strain|stress", &
-                  meaning="Plane strain or plane stress"), &
+         meaning="Plane strain or plane stress"), &
       parameter_t("material", "storage", kind_choice, default="'thesis'", &
-                  choices="thesis|textbook", &
-                  meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second "// &
-                  "term times (1 - alpha)"), &
+         choices="thesis|textbook", &
+         meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second term times "// &
+                 "(1 - alpha)"), &
       parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
-                  meaning="Compressibility c_p"), &
+         meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
-                  meaning="Dynamic viscosity mu"), &
+         meaning="Dynamic viscosity mu"), &
       parameter_t("fluid", "density", unit="kg/m3", range=positive, absent="no weight", &
-                  meaning="Density of the fluid, for gravity: pressures of &initial and &side "// &
-                  "are then those at y_datum of &in_situ"), &
+         meaning="Density of the fluid, for gravity: pressures of &initial and &side are then "// &
+                 "those at y_datum of &in_situ"), &
       parameter_t("fluid", "vapour_pressure", unit="Pa", absent="0, or without loads no limit", &
-                  derived=.true., &
-                  meaning="Lowest pressure in fractures, at which vapour forms: about 0 for "// &
-                          "absolute pressures"), &
+         derived=.true., &
+         meaning="Lowest pressure in fractures, at which vapour forms: about 0 for absolute "// &
+                 "pressures"), &
       parameter_t("fluid", "viscosity_law", kind_choice, default="'constant'", &
-                  choices="constant|exponential|table", &
-                  meaning="Pressure dependence of the viscosity in fractures. The rock uses "// &
-                          "`viscosity` and `compressibility`"), &
+         choices="constant|exponential|table", &
+         meaning="Pressure dependence of the viscosity in fractures. The rock uses `viscosity` "// &
+                 "and `compressibility`"), &
       parameter_t("fluid", "viscosity_exponent", unit="1/Pa", need=need_choice, &
-                  absent="no exponential law", range=exponent_range, &
-                  of="viscosity_law=exponential", &
-                  meaning="beta in mu = viscosity exp(beta (p - reference_pressure))"), &
+         absent="no exponential law", range=exponent_range, of="viscosity_law=exponential", &
+         meaning="beta in mu = viscosity exp(beta (p - reference_pressure))"), &
       parameter_t("fluid", "density_law", kind_choice, default="'linear'", &
-                  choices="linear|exponential|table", &
-                  meaning="Density in fractures. linear: a volume V stores V c_p dp in a "// &
-                          "step. exponential: exp(compressibility (p - reference_pressure))"), &
+         choices="linear|exponential|table", &
+         meaning="Density in fractures. linear: a volume V stores V c_p dp in a step. "// &
+                 "exponential: exp(compressibility (p - reference_pressure))"), &
       parameter_t("fluid", "reference_pressure", unit="Pa", &
-                  absent="pressure of &initial, if there is a law", derived=.true., &
-                  meaning="Pressure at which the fluid has its `viscosity`, and the reference "// &
-                          "density of rates, volumes and balances"), &
+         absent="pressure of &initial, if there is a law", derived=.true., &
+         meaning="Pressure at which the fluid has its `viscosity`, and the reference density "// &
+                 "of rates, volumes and balances"), &
       parameter_t("fluid", "table_pressure", kind_reals, "Pa", absent="no table", &
-                  meaning="Increasing pressures of a table. Logarithms are interpolated "// &
-                          "linearly; beyond the table values are constant and run.json warns"), &
-      parameter_t("fluid", "table_viscosity", kind_reals, "Pa s", need_choice, &
-                  absent="no table", range=positive, of="viscosity_law=table", &
-                  meaning="Viscosities at these pressures"), &
-      parameter_t("fluid", "table_density", kind_reals, "kg/m3", need_choice, &
-                  absent="no table", range=positive, of="density_law=table", &
-                  meaning="Densities at these pressures, not decreasing; only ratios matter"), &
+         meaning="Increasing pressures of a table. Logarithms are interpolated linearly; "// &
+                 "beyond the table values are constant and run.json warns"), &
+      parameter_t("fluid", "table_viscosity", kind_reals, "Pa s", need_choice, absent="no table", &
+         range=positive, of="viscosity_law=table", meaning="Viscosities at these pressures"), &
+      parameter_t("fluid", "table_density", kind_reals, "kg/m3", need_choice, absent="no table", &
+         range=positive, of="density_law=table", &
+         meaning="Densities at these pressures, not decreasing; only ratios matter"), &
       parameter_t("region", "name", kind_name, need=need_always, &
-                  meaning="Name, different from that of every other region"), &
+         meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
-                  choices="polygon|half_plane|band|parabola", &
-                  meaning="A polygon, the half-plane left of a line, a band between two "// &
-                          "curves, or the part right of a parabola or between two"), &
+         choices="polygon|half_plane|band|parabola", &
+         meaning="A polygon, the half-plane left of a line, a band between two curves, or the "// &
+                 "part right of a parabola or between two"), &
       parameter_t("region", "x", kind_reals, "m", absent="a parabola", &
-                  meaning="x of a polygon's corners, in either orientation; of two points of "// &
-                          "the line; or along the first curve of a band"), &
+         meaning="x of a polygon's corners, in either orientation; of two points of the line; "// &
+                 "or along the first curve of a band"), &
       parameter_t("region", "y", kind_reals, "m", absent="a parabola", meaning="y of the same"), &
       parameter_t("region", "x_other", kind_reals, "m", need_choice, absent="no band", &
-                  of="shape=band", &
-                  meaning="x along the second curve of a band, in the same direction as the "// &
-                          "first"), &
+         of="shape=band", &
+         meaning="x along the second curve of a band, in the same direction as the first"), &
       parameter_t("region", "y_other", kind_reals, "m", need_choice, absent="no band", &
-                  of="shape=band", meaning="y along the second curve"), &
+         of="shape=band", meaning="y along the second curve"), &
       parameter_t("region", "x_vertex", kind_reals, "m", need_choice, absent="no parabola", &
-                  of="shape=parabola", &
-                  meaning="x of the vertex of one parabola or of two: x = x_vertex + curvature "// &
-                  "(y - y_vertex)^2"), &
+         of="shape=parabola", &
+         meaning="x of the vertex of one parabola or of two: x = x_vertex + curvature (y - "// &
+                 "y_vertex)^2"), &
       parameter_t("region", "y_vertex", kind_reals, "m", need_choice, absent="no parabola", &
-                  of="shape=parabola", meaning="y of the vertex"), &
+         of="shape=parabola", meaning="y of the vertex"), &
       parameter_t("region", "curvature", kind_reals, "1/m", need_choice, absent="no parabola", &
-                  of="shape=parabola", meaning="Positive: open to the right; 0: a straight line"), &
+         of="shape=parabola", meaning="Positive: open to the right; 0: a straight line"), &
       parameter_t("region", "young", unit="Pa", range=positive, absent="that of &material", &
-                  derived=.true., meaning="Young's modulus E (drained)"), &
+         derived=.true., meaning="Young's modulus E (drained)"), &
       parameter_t("region", "poisson", range=poisson_range, absent="that of &material", &
-                  derived=.true., meaning="Poisson's ratio nu (drained)"), &
+         derived=.true., meaning="Poisson's ratio nu (drained)"), &
       parameter_t("region", "biot", scenes=in_fluid, range=biot_range, absent="that of &material", &
-                  derived=.true., meaning="Biot's coefficient alpha"), &
+         derived=.true., meaning="Biot's coefficient alpha"), &
       parameter_t("region", "porosity", scenes=in_fluid, range=porosity_range, &
-                  absent="that of &material", derived=.true., meaning="Porosity phi"), &
+         absent="that of &material", derived=.true., meaning="Porosity phi"), &
       parameter_t("region", "permeability", unit="m2", scenes=in_fluid, range=positive, &
-                  absent="see permeability_xx", &
-                  meaning="Isotropic permeability"), &
+         absent="see permeability_xx", meaning="Isotropic permeability"), &
       parameter_t("region", "permeability_xx", unit="m2", scenes=in_fluid, range=positive, &
-                  absent="see permeability, or &material", &
-                  meaning="Component xx of the permeability tensor"), &
+         absent="see permeability, or &material", &
+         meaning="Component xx of the permeability tensor"), &
       parameter_t("region", "permeability_yy", unit="m2", scenes=in_fluid, range=positive, &
-                  absent="see permeability", &
-                  meaning="Component yy of the permeability tensor"), &
+         absent="see permeability", meaning="Component yy of the permeability tensor"), &
       parameter_t("region", "permeability_xy", unit="m2", scenes=in_fluid, absent="0", &
-                  meaning="Component xy of the permeability tensor"), &
+         meaning="Component xy of the permeability tensor"), &
       parameter_t("region", "density", unit="kg/m3", scenes=in_fluid, range=positive, &
-                  absent="that of &material", derived=.true., &
-                  meaning="Density of the rock including the pore fluid; the body settles "// &
-                          "under it. Not with a stress in situ that varies with y, nor with "// &
-                          "windows"), &
+         absent="that of &material", derived=.true., &
+         meaning="Density of the rock including the pore fluid; the body settles under it. Not "// &
+                 "with a stress in situ that varies with y, nor with windows"), &
       parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
-                  absent="that of &material", derived=.true., &
-                  meaning="Fracture toughness K_IC of tips in the region")]
-   !&>
+         absent="that of &material", derived=.true., &
+         meaning="Fracture toughness K_IC of tips in the region")]
 
-   ! The table keeps its own layout.
-   !&<
    type(parameter_t), parameter :: fracture_parameters(*) = [ &
       parameter_t("fracture", "name", kind_name, need=need_always, &
-                  meaning="Name, different from that of every other fracture"), &
+         meaning="Name, different from that of every other fracture"), &
       parameter_t("fracture", "x", kind_reals, "m", need_always, &
-                  meaning="x of the vertices, from one end to the other"), &
+         meaning="x of the vertices, from one end to the other"), &
       parameter_t("fracture", "y", kind_reals, "m", need_always, meaning="y of the vertices"), &
       parameter_t("fracture", "law", kind_choice, default="'friction'", &
-                  choices="friction|frictionless|slip|open", &
-                  meaning="Law of the faces; open and slip only without a fluid. slip: "// &
-                          "contact with prescribed slip; open: traction-free, may overlap"), &
+         choices="friction|frictionless|slip|open", &
+         meaning="Law of the faces; open and slip only without a fluid. slip: contact with "// &
+                 "prescribed slip; open: traction-free, may overlap"), &
       parameter_t("fracture", "slip", unit="m", need=need_choice, absent="not given", &
-                  of="law=slip", scenes=in_mechanics, &
-                  meaning="Prescribed slip of the left side relative to the right side in the "// &
-                          "fracture's direction, times the load factor"), &
+         of="law=slip", scenes=in_mechanics, &
+         meaning="Prescribed slip of the left side relative to the right side in the "// &
+                 "fracture's direction, times the load factor"), &
       parameter_t("fracture", "slip_taper", unit="m", range=positive, scenes=in_mechanics, &
-                  of="law=slip", &
-                  absent="half the fracture's length", derived=.true., &
-                  meaning="The prescribed slip increases from a free end as a quarter ellipse "// &
-                          "of this length"), &
+         of="law=slip", absent="half the fracture's length", derived=.true., &
+         meaning="The prescribed slip increases from a free end as a quarter ellipse of this "// &
+                 "length"), &
       parameter_t("fracture", "friction", need=need_choice, range=at_least_zero, &
-                  of="law=friction", absent="no friction", &
-                  meaning="Coefficient of friction mu_s; 0: frictionless"), &
+         of="law=friction", absent="no friction", &
+         meaning="Coefficient of friction mu_s; 0: frictionless"), &
       parameter_t("fracture", "friction_residual", with="weakening_slip", range=at_least_zero, &
-                  of="law=friction", at_most="friction", absent="friction does not weaken", &
-                  meaning="Residual friction mu_r after weakening_slip"), &
+         of="law=friction", at_most="friction", absent="friction does not weaken", &
+         meaning="Residual friction mu_r after weakening_slip"), &
       parameter_t("fracture", "weakening_slip", unit="m", range=positive, of="law=friction", &
-                  with="friction_residual", absent="friction does not weaken", &
-                  meaning="Slip distance over which friction decreases, linearly with the "// &
-                          "accumulated slip path"), &
+         with="friction_residual", absent="friction does not weaken", &
+         meaning="Slip distance over which friction decreases, linearly with the accumulated "// &
+                 "slip path"), &
       parameter_t("fracture", "dilation_slip", unit="m", range=positive, of="law=friction", &
-                  absent="unlimited dilation", &
-                  meaning="Slip at which dilation ends"), &
+         absent="unlimited dilation", meaning="Slip at which dilation ends"), &
       parameter_t("fracture", "dilation_deg", unit="degree", default="0.0", range=dilation_range, &
-                  of="law=friction", &
-                  meaning="Dilation angle psi: opening is tan(psi) times slip"), &
+         of="law=friction", meaning="Dilation angle psi: opening is tan(psi) times slip"), &
       parameter_t("fracture", "normal_stiffness", unit="Pa/m", with="closure", range=positive, &
-                  absent="closed faces are rigid", &
-                  meaning="Initial normal stiffness k_ni of faces in contact at zero stress, "// &
-                          "s = k_ni d/(1 - d/closure)"), &
+         absent="closed faces are rigid", &
+         meaning="Initial normal stiffness k_ni of faces in contact at zero stress, s = k_ni "// &
+                 "d/(1 - d/closure)"), &
       parameter_t("fracture", "closure", unit="m", with="normal_stiffness", range=positive, &
-                  absent="closed faces are rigid", &
-                  meaning="Maximum closure d under contact stress; aperture is that at zero "// &
-                          "contact stress. Wings do not close"), &
+         absent="closed faces are rigid", &
+         meaning="Maximum closure d under contact stress; aperture is that at zero contact "// &
+                 "stress. Wings do not close"), &
       parameter_t("fracture", "cohesion", unit="Pa", range=positive, of="law=friction", &
-                  absent="no bond", &
-                  meaning="Shear strength of a bond, in addition to friction. Slip of "// &
-                          "weakening_slip breaks it permanently; friction_residual may be "// &
-                          "friction"), &
+         absent="no bond", &
+         meaning="Shear strength of a bond, in addition to friction. Slip of weakening_slip "// &
+                 "breaks it permanently; friction_residual may be friction"), &
       parameter_t("fracture", "tensile_strength", unit="Pa", range=positive, of="law=friction", &
-                  with="opening_weakening", absent="no bond", &
-                  meaning="Tensile strength of the same bond, at most cohesion/friction"), &
+         with="opening_weakening", absent="no bond", &
+         meaning="Tensile strength of the same bond, at most cohesion/friction"), &
       parameter_t("fracture", "opening_weakening", unit="m", range=positive, of="law=friction", &
-                  with="tensile_strength", absent="no bond", &
-                  meaning="Opening that breaks the bond, with the energy tensile_strength "// &
-                  "opening_weakening/2"), &
+         with="tensile_strength", absent="no bond", &
+         meaning="Opening that breaks the bond, with the energy tensile_strength "// &
+                 "opening_weakening/2"), &
       parameter_t("fracture", "toughness", unit="Pa m^1/2", range=positive, &
-                  absent="that of the rock", &
-                  meaning="K_IC of its tips and those of its wings, in any rock"), &
+         absent="that of the rock", &
+         meaning="K_IC of its tips and those of its wings, in any rock"), &
       parameter_t("fracture", "skin", unit="Pa s/m", scenes=in_fluid, range=positive, &
-                  absent="no skin", &
-                  meaning="Resistance of a layer on each face, pressure difference over flux "// &
-                          "between fracture and rock; new faces have none"), &
-      parameter_t("fracture", "held_closed", kind_logical, default=".false.", &
-                  scenes=in_mechanics, &
-                  meaning="The faces slide but never separate, and friction continues with "// &
-                          "tensile normal traction: a model of reference solutions. New faces "// &
-                          "may separate"), &
+         absent="no skin", &
+         meaning="Resistance of a layer on each face, pressure difference over flux between "// &
+                 "fracture and rock; new faces have none"), &
+      parameter_t("fracture", "held_closed", kind_logical, default=".false.", scenes=in_mechanics, &
+         meaning="The faces slide but never separate, and friction continues with tensile "// &
+                 "normal traction: a model of reference solutions. New faces may separate"), &
       parameter_t("fracture", "face_pressure", unit="Pa", default="0.0", scenes=in_mechanics, &
-                  meaning="Pressure on the faces, also on those of its wings, times the load "// &
-                          "factor, in addition to contact"), &
+         meaning="Pressure on the faces, also on those of its wings, times the load factor, in "// &
+                 "addition to contact"), &
       parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
-                  meaning="Residual hydraulic aperture a_0 of the closed fracture")]
-   !&>
+         meaning="Residual hydraulic aperture a_0 of the closed fracture")]
 
-   ! The table keeps its own layout.
-   !&<
    type(parameter_t), parameter :: process_parameters(*) = [ &
       parameter_t("injection", "name", kind_name, absent="well_ and its number", derived=.true., &
-                  meaning="Name, different from that of every other well"), &
+         meaning="Name, different from that of every other well"), &
       parameter_t("injection", "fracture", kind_name, absent="in the rock, at x and y", &
-                  meaning="Name of the fracture"), &
+         meaning="Name of the fracture"), &
       parameter_t("injection", "rate", kind_reals, "m2/s", absent="follows from pressure", &
-                  meaning="Volume per time and metre of thickness, of the whole well; "// &
-                          "negative: extraction. One value, or one per stage"), &
+         meaning="Volume per time and metre of thickness, of the whole well; negative: "// &
+                 "extraction. One value, or one per stage"), &
       parameter_t("injection", "pressure", kind_reals, "Pa", absent="no limit", &
-               meaning="Pressure of the well, at its depth; with a rate its limit: the "// &
-                       "largest in injection, the lowest in extraction. One value, or one per "// &
-                       "stage"), &
+         meaning="Pressure of the well, at its depth; with a rate its limit: the largest in "// &
+                 "injection, the lowest in extraction. One value, or one per stage"), &
       parameter_t("injection", "time", kind_reals, "s", range=at_least_zero, &
-                  absent="one stage, from start", &
-                  meaning="Start of each stage, in increasing order"), &
+         absent="one stage, from start", meaning="Start of each stage, in increasing order"), &
       parameter_t("injection", "schedule", kind_text, absent="no table", &
-                  meaning="CSV file with a row per stage instead of time, rate and pressure: "// &
-                          "columns time_s, rate_m2_s, pressure_pa; in the folder of the scene"), &
+         meaning="CSV file with a row per stage instead of time, rate and pressure: columns "// &
+                 "time_s, rate_m2_s, pressure_pa; in the folder of the scene"), &
       parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
-                  meaning="Start time; with stages that of the first"), &
+         meaning="Start time; with stages that of the first"), &
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
-                  meaning="Time of shut-in, after start and after the start of the last stage"), &
-      parameter_t("injection", "x", unit="m", absent="over the whole fracture", &
-                  with="y", meaning="x of the point of injection"), &
-      parameter_t("injection", "y", unit="m", absent="over the whole fracture", &
-                  with="x", meaning="y of the point of injection"), &
+         meaning="Time of shut-in, after start and after the start of the last stage"), &
+      parameter_t("injection", "x", unit="m", absent="over the whole fracture", with="y", &
+         meaning="x of the point of injection"), &
+      parameter_t("injection", "y", unit="m", absent="over the whole fracture", with="x", &
+         meaning="y of the point of injection"), &
       parameter_t("injection", "storage", unit="m2/Pa", default="0.0", range=at_least_zero, &
-                  meaning="Wellbore storage: stored volume per metre of thickness and per "// &
-                          "pressure at the head"), &
+         meaning="Wellbore storage: stored volume per metre of thickness and per pressure at "// &
+                 "the head"), &
       parameter_t("injection", "friction", unit="Pa s/m2", default="0.0", range=at_least_zero, &
-                  meaning="Pressure loss between well head and fracture, per rate"), &
-      parameter_t("injection", "turbulence", unit="Pa s2/m4", default="0.0", &
-                  range=at_least_zero, &
-                  meaning="Pressure loss per rate squared"), &
+         meaning="Pressure loss between well head and fracture, per rate"), &
+      parameter_t("injection", "turbulence", unit="Pa s2/m4", default="0.0", range=at_least_zero, &
+         meaning="Pressure loss per rate squared"), &
       parameter_t("injection", "radius", unit="m", default="0.1", range=positive, &
-                 meaning="Radius of a well in the rock, for its pressure; not for a well in a "// &
-                         "fracture"), &
+         meaning="Radius of a well in the rock, for its pressure; not for a well in a fracture"), &
       parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &
-                  choices="equilibrated|undrained", &
-                  meaning="After loading: that of the surrounding rock, or the undrained "// &
-                          "response in the fracture"), &
+         choices="equilibrated|undrained", &
+         meaning="After loading: that of the surrounding rock, or the undrained response in "// &
+                 "the fracture"), &
       parameter_t("initial", "pressure", unit="Pa", default="0.0", &
-                  meaning="Pore pressure before loading; with a fluid density that at y_datum "// &
-                          "of &in_situ"), &
+         meaning="Pore pressure before loading; with a fluid density that at y_datum of "// &
+                 "&in_situ"), &
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
-                  meaning="End of the run"), &
+         meaning="End of the run"), &
       parameter_t("time", "step", unit="s", range=positive, at_most="end", &
-                  absent="limited by tolerance", &
-                  meaning="Step size; with a tolerance the largest one"), &
+         absent="limited by tolerance", meaning="Step size; with a tolerance the largest one"), &
       parameter_t("time", "tolerance", range=below_one, derived=.true., &
-                  absent="0.01, or 0 with step alone", &
-                 meaning="Time error of a step relative to the range of pressure, slip and "// &
-                         "opening so far; 0: the default, 0.01 without step or with growth in "// &
-                         "equilibrium"), &
+         absent="0.01, or 0 with step alone", &
+         meaning="Time error of a step relative to the range of pressure, slip and opening so "// &
+                 "far; 0: the default, 0.01 without step or with growth in equilibrium"), &
       parameter_t("time", "growth_factor", default="0.01", range=share, &
-                  meaning="Fraction of step used after growth with law = 'paris'"), &
+         meaning="Fraction of step used after growth with law = 'paris'"), &
       parameter_t("time", "smallest_factor", range=below_one, derived=.true., &
-                  at_most="growth_factor", &
-                  absent="1e-6, or 1e-9 without step", &
-                  meaning="Fraction of step, or of end without it, below which a cut step "// &
-                          "ends the run; no step is cut to less than a 64th of that; 0: the "// &
-                          "default"), &
+         at_most="growth_factor", absent="1e-6, or 1e-9 without step", &
+         meaning="Fraction of step, or of end without it, below which a cut step ends the run; "// &
+                 "no step is cut to less than a 64th of that; 0: the default"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
       parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &
       parameter_t("in_situ", "sxx_per_y", unit="Pa/m", default="0.0", &
-                  meaning="Change of stress xx per metre upwards"), &
+         meaning="Change of stress xx per metre upwards"), &
       parameter_t("in_situ", "syy_per_y", unit="Pa/m", default="0.0", &
-                  meaning="Change of stress yy per metre upwards; it must balance the weight: "// &
-                          "density times gravity g gives density*g"), &
+         meaning="Change of stress yy per metre upwards; it must balance the weight: density "// &
+                 "times gravity g gives density*g"), &
       parameter_t("in_situ", "y_datum", unit="m", default="0.0", &
-                  meaning="Level of the prescribed stresses xx and yy, and with a fluid "// &
-                          "density of all pressures"), &
+         meaning="Level of the prescribed stresses xx and yy, and with a fluid density of all "// &
+                 "pressures"), &
       parameter_t("gravity", "x", unit="m/s2", default="0.0", meaning="Acceleration in x"), &
       parameter_t("gravity", "y", unit="m/s2", default="0.0", &
-                  meaning="Acceleration in y, on earth -9.81"), &
-      parameter_t("load", "from", default="0.0", &
-                  meaning="Load factor before the first step"), &
-      parameter_t("load", "to", default="1.0", meaning="Load factor at the end, different "// &
-                                                       "from from"), &
+         meaning="Acceleration in y, on earth -9.81"), &
+      parameter_t("load", "from", default="0.0", meaning="Load factor before the first step"), &
+      parameter_t("load", "to", default="1.0", &
+         meaning="Load factor at the end, different from from"), &
       parameter_t("load", "factors", kind_reals, absent="one load segment, to its end", &
-                  meaning="Successive load factors instead of to: the table of a load cycle. "// &
-                          "Each differs from the previous one"), &
+         meaning="Successive load factors instead of to: the table of a load cycle. Each "// &
+                 "differs from the previous one"), &
       parameter_t("load", "steps", kind_integer, default="1", range=steps_range, &
-                  meaning="Number of equal steps between from and to, or to each of factors"), &
+         meaning="Number of equal steps between from and to, or to each of factors"), &
       parameter_t("load", "control", kind_choice, absent="'length', with factors 'dead'", &
-                  derived=.true., choices="length|dead", &
-                  meaning="If equilibrium growth requires a smaller load, the factor "// &
-                          "decreases (length), or stays and growth is unstable until it "// &
-                          "arrests (dead)")]
-   !&>
+         derived=.true., choices="length|dead", &
+         meaning="If equilibrium growth requires a smaller load, the factor decreases "// &
+                 "(length), or stays and growth is unstable until it arrests (dead)")]
 
-   ! The table keeps its own layout.
-   !&<
    type(parameter_t), parameter :: numerics_parameters(*) = [ &
       parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &
-                  absent="no fracture", &
-                  at_most="size_boundary", &
-                  meaning="Element size at the fractures, at most the length of each fracture"), &
+         absent="no fracture", at_most="size_boundary", &
+         meaning="Element size at the fractures, at most the length of each fracture"), &
       parameter_t("fe", "size_boundary", unit="m", need=need_always, range=positive, &
-                  meaning="Element size far from the fractures, at most the shorter edge of "// &
-                  "the domain"), &
+         meaning="Element size far from the fractures, at most the shorter edge of the domain"), &
       parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
-                  derived=.true., &
-                  meaning="Size of the elements around a tip, smaller if another object is near"), &
+         derived=.true., &
+         meaning="Size of the elements around a tip, smaller if another object is near"), &
       parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
-                  meaning="Quarter-point elements around a tip"), &
+         meaning="Quarter-point elements around a tip"), &
       parameter_t("fe", "element", kind_choice, default="'quarter_point'", &
-                  choices="quarter_point|collapsed|plain", &
-                  meaning="Elements around a tip: triangles with quarter points, collapsed "// &
-                          "quadrilaterals with quarter points, or ordinary triangles"), &
+         choices="quarter_point|collapsed|plain", &
+         meaning="Elements around a tip: triangles with quarter points, collapsed "// &
+                 "quadrilaterals with quarter points, or ordinary triangles"), &
       parameter_t("adaptive", "enabled", kind_logical, default=".false.", &
-                  meaning="Adaptive meshes"), &
+         meaning="Adaptive meshes"), &
       parameter_t("adaptive", "tolerance", default="0.01", range=share, &
-                  meaning="Target relative error of the stresses in the energy norm"), &
+         meaning="Target relative error of the stresses in the energy norm"), &
       parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
-                  meaning="Maximum number of adapted meshes"), &
+         meaning="Maximum number of adapted meshes"), &
       parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
-                  absent="no fracture", &
-                  at_most="size_boundary", &
-                  meaning="Cell size dH at the fractures, at most the length of each fracture"), &
+         absent="no fracture", at_most="size_boundary", &
+         meaning="Cell size dH at the fractures, at most the length of each fracture"), &
       parameter_t("coarse", "size_boundary", unit="m", need=need_always, range=positive, &
-                  meaning="Cell size far from the fractures, at most the shorter edge of the "// &
-                  "domain"), &
+         meaning="Cell size far from the fractures, at most the shorter edge of the domain"), &
       parameter_t("coarse", "newton_max", kind_integer, default="30", range=newton_range, &
-                  meaning="Newton iterations before a step is cut"), &
+         meaning="Newton iterations before a step is cut"), &
       parameter_t("coarse", "newton_tolerance", default="1.0e-9", range=tolerance_range, &
-                  meaning="Relative residual at which a step has converged"), &
+         meaning="Relative residual at which a step has converged"), &
       parameter_t("coarse", "condensation", kind_choice, default="'auto'", &
-                  choices="auto|full|sparse", &
-                 meaning="Solution of the fracture equations: condensation of the rock onto a "// &
-                         "full matrix, or one sparse system; `auto` selects the cheaper one"), &
-      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, &
-                  choices="body", absent="no fine level", &
-                 meaning="Edge l of the square window around a tip, more than 2 size_ratio "// &
-                         "dH; or the whole body as one window for all tips"), &
+         choices="auto|full|sparse", &
+         meaning="Solution of the fracture equations: condensation of the rock onto a full "// &
+                 "matrix, or one sparse system; `auto` selects the cheaper one"), &
+      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, choices="body", &
+         absent="no fine level", &
+         meaning="Edge l of the square window around a tip, more than 2 size_ratio dH; or the "// &
+                 "whole body as one window for all tips"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &
-                  meaning="Fine mesh size at the tip as a fraction eps_m of dH"), &
+         meaning="Fine mesh size at the tip as a fraction eps_m of dH"), &
       parameter_t("fine", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
-                  meaning="Quarter-point elements around a tip"), &
+         meaning="Quarter-point elements around a tip"), &
       parameter_t("fine", "face_condition", kind_choice, default="'contact'", &
-                  choices="contact|jump|traction", &
-                  meaning="Condition on existing fracture faces: contact, or the coarse jump "// &
-                          "or traction"), &
+         choices="contact|jump|traction", &
+         meaning="Condition on existing fracture faces: contact, or the coarse jump or traction"), &
       parameter_t("growth", "enabled", kind_logical, default=".false.", meaning="Fractures grow"), &
       parameter_t("growth", "intensities", kind_logical, default=".false.", &
-                  meaning="Compute stress intensity factors; always done with growth"), &
+         meaning="Compute stress intensity factors; always done with growth"), &
       parameter_t("growth", "law", kind_choice, default="'equilibrium'", &
-                  choices="equilibrium|paris", &
-                  meaning="Growing tips remain at K_eq = K_IC in time or under load, or "// &
-                          "advance by increments, at constant load, by the Paris-type law of "// &
-                          "the thesis"), &
+         choices="equilibrium|paris", &
+         meaning="Growing tips remain at K_eq = K_IC in time or under load, or advance by "// &
+                 "increments, at constant load, by the Paris-type law of the thesis"), &
       parameter_t("growth", "increment", unit="m", range=at_least_zero, derived=.true., &
-                  absent="the fine mesh size, or size_fracture", &
-                  meaning="Largest advance l_max of a tip, or length of a path segment; 0: "// &
-                          "the default, the fine mesh size, or without a fluid size_fracture"), &
+         absent="the fine mesh size, or size_fracture", &
+         meaning="Largest advance l_max of a tip, or length of a path segment; 0: the default, "// &
+                 "the fine mesh size, or without a fluid size_fracture"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
-                  meaning="Exponent m of advance = l_max (G/G_max)^m, with law = 'paris'"), &
+         meaning="Exponent m of advance = l_max (G/G_max)^m, with law = 'paris'"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &
-                 meaning="Growth updates the coarse level at this fraction eps_p of dH, with "// &
-                         "law = 'paris'"), &
+         meaning="Growth updates the coarse level at this fraction eps_p of dH, with law = "// &
+                 "'paris'"), &
       parameter_t("growth", "new_aperture", unit="m", default="1.0e-5", range=positive, &
-                  scenes=in_fluid, &
-                  meaning="Residual aperture of new fracture cells: a roughness that conducts "// &
-                          "fluid but stores none, unless new_volume is 'prefilled'"), &
-      parameter_t("growth", "new_volume", kind_choice, default="'conserved'", &
-                  scenes=in_fluid, &
-                  choices="conserved|prefilled", &
-                  meaning="Fluid of new cells: supplied by the connected cells as they open, "// &
-                          "or added with them"), &
+         scenes=in_fluid, &
+         meaning="Residual aperture of new fracture cells: a roughness that conducts fluid but "// &
+                 "stores none, unless new_volume is 'prefilled'"), &
+      parameter_t("growth", "new_volume", kind_choice, default="'conserved'", scenes=in_fluid, &
+         choices="conserved|prefilled", &
+         meaning="Fluid of new cells: supplied by the connected cells as they open, or added "// &
+                 "with them"), &
       parameter_t("growth", "stop_gain", unit="m", range=positive, absent="no limit", &
-                  meaning="The run ends when any fracture end has grown by this length"), &
+         meaning="The run ends when any fracture end has grown by this length"), &
       parameter_t("probe", "name", kind_name, need=need_always, &
-                  meaning="Name, different from that of every other probe"), &
+         meaning="Name, different from that of every other probe"), &
       parameter_t("probe", "x", unit="m", need=need_always, meaning="x, within the domain"), &
       parameter_t("probe", "y", unit="m", need=need_always, meaning="y, within the domain"), &
       parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
       parameter_t("output", "interval", unit="s", range=at_least_zero, scenes=in_fluid, &
-                  absent="the regular step", derived=.true., &
-                  meaning="Time between written fields; 0: the regular step"), &
+         absent="the regular step", derived=.true., &
+         meaning="Time between written fields; 0: the regular step"), &
       parameter_t("output", "growth_states", kind_integer, range=at_least_zero, default="200", &
-                  meaning="Maximum number of states of growth with VTU files, in addition to "// &
-                          "those of interval or of the load steps"), &
+         meaning="Maximum number of states of growth with VTU files, in addition to those of "// &
+                 "interval or of the load steps"), &
       parameter_t("output", "stimulated_jump", unit="m", default="1.0e-6", range=positive, &
-                  scenes=in_fluid, &
-                  meaning="Slip or opening since the start above which fractures count as "// &
-                          "stimulated, and mean slip of the smallest event in slip_events.csv"), &
+         scenes=in_fluid, &
+         meaning="Slip or opening since the start above which fractures count as stimulated, "// &
+                 "and mean slip of the smallest event in slip_events.csv"), &
       parameter_t("output", "out_of_plane_length", unit="m", default="1.0", range=positive, &
-                  scenes=in_fluid, &
-                meaning="Assumed out-of-plane length of the fractures, used only for area and "// &
-                        "moment in slip_events.csv"), &
+         scenes=in_fluid, &
+         meaning="Assumed out-of-plane length of the fractures, used only for area and moment "// &
+                 "in slip_events.csv"), &
       parameter_t("output", "seismic_slip_rate", unit="m/s", default="1.0e-3", range=positive, &
-                  scenes=in_fluid, &
-                  meaning="Slip rate above which slip is seismic: where the largest one of a "// &
-                          "patch passes it, an event of slip_events.csv ends and another one "// &
-                          "begins")]
+         scenes=in_fluid, &
+         meaning="Slip rate above which slip is seismic: where the largest one of a patch "// &
+                 "passes it, an event of slip_events.csv ends and another one begins")]
    !&>
+
+   type(parameter_t), parameter :: parameters(*) = [ &
+                                   body_parameters, rock_parameters, fracture_parameters, &
+                                   process_parameters, numerics_parameters]
 
 end module scene_parameter_table

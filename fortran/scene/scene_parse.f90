@@ -1,6 +1,5 @@
-!> Reads a scene file into a sheet: checks syntax, names, kinds and ranges one by one.
-!!
-!! Named values: those of &define groups, and expressions with them in the place of numbers.
+!> Reads a scene file into a sheet: checks syntax, names, kinds and ranges one by one. Named values
+!! of &define groups, and expressions with them, may replace numbers.
 module scene_parse
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
@@ -9,24 +8,21 @@ module scene_parse
    use scene_expression, only: begins_value, constant_t, evaluate, token_comma, token_end, &
                                token_group, token_list_t, token_slash, token_t, token_text, &
                                token_word, tokenize, unquoted
-   use scene_parameter_table, only: kind_real, kind_reals, parameter_t
-   use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
-                               need_choice, need_fluid, need_fracture, need_growth, need_tips, &
-                               parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: groups, kind_real, kind_reals, parameter_t
    use scene_schedule, only: load_file
    use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
-                          path_beside, place, record_t, refuse, sheet_t
-   use scene_types, only: name_length
-   use scene_values, only: default_value, read_value, shortened, value_t
-   use scene_words, only: is_identifier, lower_case, nearest_word, real_text
+                          path_from, place, record_t, refuse, sheet_t
+   use scene_values, only: read_value, shortened, value_t
+   use scene_words, only: lower_case, nearest_word, real_text
    implicit none(type, external)
    private
 
    public :: parse_scene
 
    integer, parameter :: most_groups = 10000
-   integer, parameter :: most_included = 1000  !< files, each as often as it is included
-   integer, parameter :: most_nested = 20  !< files that include each other
+   integer, parameter :: most_included = 1000  !< included files, each as often as it is included
+   integer, parameter :: most_nested = 20  !< nesting of files that include each other
 
    integer, parameter :: most_constants = 1000
 
@@ -47,13 +43,11 @@ contains
          return
       end if
       call parse_file([text_t ::], sheet, error)
-      if (allocated(error)) return
-      call complete(sheet, error)
    end subroutine parse_scene
 
-   !> The groups of the file sheet%path, and of those that it includes.
+   !> Add the groups of the file sheet%path, and of the files that it includes, to the sheet.
    recursive subroutine parse_file(parents, sheet, error)
-      type(text_t), intent(in) :: parents(:)  !< paths of the files that include it, from the first
+      type(text_t), intent(in) :: parents(:)  !< paths of the including files, from the first
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: source, fault
@@ -76,11 +70,11 @@ contains
       end if
    end subroutine parse_file
 
-   !> The first that is no comment is the name of a group or an include, or there is nothing else.
+   !> The first token is the name of a group or an include, or there is none.
    pure logical function begins_as_scene(source, tokens, is_cut)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
-      logical, intent(in) :: is_cut  !< at something that is no token
+      logical, intent(in) :: is_cut  !< the list ends at a character that belongs to no token
 
       associate (token => tokens%items(1))
          select case (token%kind)
@@ -94,8 +88,8 @@ contains
       end associate
    end function begins_as_scene
 
-   !> `include 'path'` between groups: the groups of that file stand here. Its path is seen from the
-   !! folder of the file that includes it.
+   !> Add the groups of the file of `include 'path'` between groups. The path is relative to the
+   !! folder of the including file.
    recursive subroutine include_file(quoted, line, parents, sheet, error)
       character(len=*), intent(in) :: quoted  !< the path in its quotes
       integer(ik), intent(in) :: line
@@ -109,7 +103,7 @@ contains
 
       here = sheet%path
       chain = [parents, text_t(here)]
-      sheet%path = path_beside(here, unquoted(quoted))
+      sheet%path = path_from(here, unquoted(quoted))
       sheet%n_included = sheet%n_included + 1
       inquire (file=sheet%path, exist=exists)
       do k = 1, size(chain)
@@ -135,7 +129,7 @@ contains
       if (.not. allocated(error)) sheet%path = here
    end subroutine include_file
 
-   !> All groups of a file.
+   !> Add all groups of a file to the sheet.
    recursive subroutine parse_groups(source, tokens, parents, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
@@ -195,7 +189,7 @@ contains
       end do
    end subroutine parse_groups
 
-   !> What stands between `&group` and `/`, into the last record.
+   !> Read the values between `&group` and `/` into the last record.
    pure subroutine parse_values(source, tokens, next, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens
@@ -247,7 +241,7 @@ contains
       next = next + 1
    end subroutine parse_values
 
-   !> The word include with a text behind it; the last token, token_end, is never one.
+   !> A token and the next one are the word include and a text.
    pure logical function is_include(source, token, next)
       character(len=*), intent(in) :: source
       type(token_t), intent(in) :: token, next
@@ -257,7 +251,7 @@ contains
       is_include = lower_case(source(token%first:token%last)) == "include"
    end function is_include
 
-   !> Message for a group that there is not.
+   !> Message for an unknown group.
    pure function unknown_group(word) result(message)
       character(len=*), intent(in) :: word
       character(len=:), allocatable :: message, likely
@@ -268,7 +262,7 @@ contains
       message = message//" (see docs/input.md)"
    end function unknown_group
 
-   !> Message for a name that the group does not have.
+   !> Message for an unknown name of a group.
    pure function unknown_name(group, word) result(message)
       integer, intent(in) :: group
       character(len=*), intent(in) :: word
@@ -292,158 +286,7 @@ contains
       message = message//" (see docs/input.md)"
    end function unknown_name
 
-   !> Fill in the defaults, and refuse what lacks a required value.
-   pure subroutine complete(sheet, error)
-      type(sheet_t), intent(inout) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: enabled, intensities
-      logical :: has_fluid
-      integer :: i, item, growth
-
-      has_fluid = sheet%has("fluid")
-      do i = 1, size(groups)
-         if (.not. (groups(i)%implied .and. applies(groups(i)%scenes, has_fluid))) cycle
-         if (.not. sheet%has(trim(groups(i)%name))) call add_record(sheet, empty_record(i, 0_ik))
-      end do
-      do i = 1, sheet%length
-         do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
-            if (sheet%records(i)%values(item)%is_set) cycle
-            if (applies(parameters(item)%scenes, has_fluid)) then
-               call default_value(parameters(item), sheet%records(i)%values(item))
-            end if
-         end do
-      end do
-      call name_by_file(sheet, error)
-      if (.not. allocated(error)) call refuse_foreign(sheet, error)
-      if (allocated(error)) return
-      growth = sheet%find("growth")
-      enabled = sheet%records(growth)%value("enabled")
-      intensities = sheet%records(growth)%value("intensities")
-      do i = 1, sheet%length
-         call refuse_missing(sheet, i, enabled%flag, enabled%flag .or. intensities%flag, error)
-         if (allocated(error)) return
-      end do
-   end subroutine complete
-
-   !> A scene without a name is called as its file.
-   pure subroutine name_by_file(sheet, error)
-      type(sheet_t), intent(inout) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: stem
-      integer :: dot, record
-
-      record = sheet%find("scene")
-      if (sheet%records(record)%is_set("name")) return
-      stem = sheet%path(index(sheet%path, "/", back=.true.) + 1:)
-      dot = index(stem, ".", back=.true.)
-      if (dot > 1) stem = stem(1:dot - 1)
-      if (len(stem) > name_length .or. .not. is_identifier(stem)) then
-         call refuse(error, sheet, record, "name", "is missing, and '"//shortened(stem)// &
-                     "', as the file is called, cannot serve for it: a name has at most 64 "// &
-                     "letters, digits, '_', '-' and '.'")
-         return
-      end if
-      associate (value => sheet%records(record)%values(parameter_index(group_index("scene"), &
-                                                                       "name")))
-         value%is_set = .true.
-         value%text = stem
-      end associate
-   end subroutine name_by_file
-
-   !> Scenes with and without fluid have groups and names of their own.
-   pure subroutine refuse_foreign(sheet, error)
-      type(sheet_t), intent(in) :: sheet
-      type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: reason
-      logical :: has_fluid
-      integer :: i, item
-
-      has_fluid = sheet%has("fluid")
-      reason = "needs a fluid, but the group &fluid is missing"
-      if (has_fluid) reason = "is for mechanics-only scenes, but this one has the group &fluid"
-      do i = 1, sheet%length
-         associate (record => sheet%records(i))
-            if (.not. applies(groups(record%group)%scenes, has_fluid)) then
-               call refuse(error, sheet, i, "", reason)
-               return
-            end if
-            do item = lbound(record%values, 1), ubound(record%values, 1)
-               if (record%values(item)%line == 0) cycle
-               if (applies(parameters(item)%scenes, has_fluid)) cycle
-               call refuse(error, sheet, i, trim(parameters(item)%name), reason)
-               return
-            end do
-         end associate
-      end do
-   end subroutine refuse_foreign
-
-   !> Refuse a group that lacks a value which this scene needs.
-   pure subroutine refuse_missing(sheet, record, has_growth, has_tips, error)
-      type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: record
-      logical, intent(in) :: has_growth, has_tips
-      type(error_t), allocatable, intent(out) :: error
-      logical :: needed
-      integer :: item
-
-      if (.not. applies(groups(sheet%records(record)%group)%scenes, sheet%has("fluid"))) return
-      associate (group => groups(sheet%records(record)%group))
-         do item = lbound(sheet%records(record)%values, 1), ubound(sheet%records(record)%values, 1)
-            if (sheet%records(record)%values(item)%is_set) cycle
-            select case (parameters(item)%need)
-            case (need_always)
-               needed = .true.
-            case (need_fluid)
-               needed = sheet%has("fluid")
-            case (need_fracture)
-               needed = sheet%has("fracture")
-            case (need_tips)
-               needed = has_tips
-            case (need_growth)
-               needed = has_growth
-            case (need_choice)
-               needed = sheet%records(record)%suits(item)
-            case default
-               needed = .false.
-            end select
-            if (.not. needed) cycle
-            if (sheet%records(record)%line == 0) then
-               call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
-                                " is missing, and with it "//described(item)// &
-                                " (see docs/input.md)")
-            else
-               call refuse(error, sheet, record, "", trim(described(item))//", is missing")
-            end if
-            return
-         end do
-      end associate
-   end subroutine refuse_missing
-
-   !> Name, unit and reason of a needed parameter.
-   pure function described(item) result(words)
-      integer, intent(in) :: item
-      character(len=:), allocatable :: words
-
-      words = trim(parameters(item)%name)
-      if (parameters(item)%unit /= "-") words = words//" ["//trim(parameters(item)%unit)//"]"
-      select case (parameters(item)%need)
-      case (need_fluid)
-         words = words//", which a scene with &fluid needs"
-      case (need_fracture)
-         words = words//", which a scene with a fracture needs"
-      case (need_tips)
-         words = words//", which growth and stress intensity factors need"
-      case (need_growth)
-         words = words//", which growth needs"
-      case (need_choice)
-         words = words//", which the "//choice_name(parameters(item))//" '"// &
-                 choice_value(parameters(item))//"' needs"
-      case default
-         words = words//", which is always needed"
-      end select
-   end function described
-
-   !> Values where texts stand for numbers: below a &define those are expressions.
+   !> Read values; after a &define, texts instead of numbers are expressions.
    pure subroutine read_resolved(parameter, source, items, constants, value, reason)
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: source
@@ -465,14 +308,14 @@ contains
       resolved = repeat(" ", sum(max(items%last - items%first, number_width) + 2))
       length = 0
       do k = 1, size(items)
-         associate (piece => source(items(k)%first:items(k)%last))
+         associate (item => source(items(k)%first:items(k)%last))
             if (items(k)%kind /= token_text) then
-               call add_word(resolved, length, piece)
+               call add_word(resolved, length, item)
                cycle
             end if
-            call evaluate(unquoted(piece), constants, number, fault)
+            call evaluate(unquoted(item), constants, number, fault)
             if (allocated(fault)) then
-               reason = "is "//shortened(piece)//", which is no expression: "//fault
+               reason = "is "//shortened(item)//", which is no expression: "//fault
                return
             end if
             call add_word(resolved, length, real_text(number))
@@ -482,7 +325,7 @@ contains
       call read_value(parameter, resolved, tokens%items(:tokens%length - 1), value, reason)
    end subroutine read_resolved
 
-   !> Put a word and a blank behind the first characters of a text that has room for them.
+   !> Put a word and a blank after the first characters of a text of sufficient length.
    pure subroutine add_word(text, length, word)
       character(len=:), allocatable, intent(inout) :: text
       integer, intent(inout) :: length  !< characters in use
@@ -492,7 +335,7 @@ contains
       length = length + len(word) + 1
    end subroutine add_word
 
-   !> Numbers, unless a text may stand in their place.
+   !> A parameter takes expressions: numbers for which no word is allowed.
    pure logical function takes_expressions(parameter)
       type(parameter_t), intent(in) :: parameter
 
@@ -500,7 +343,7 @@ contains
                           len_trim(parameter%choices) == 0
    end function takes_expressions
 
-   !> What stands between `&define` and `/`: names and what they stand for, from top to bottom.
+   !> Read the named values between `&define` and `/`.
    pure subroutine parse_constants(source, tokens, next, sheet, error)
       character(len=*), intent(in) :: source
       type(token_list_t), intent(in) :: tokens

@@ -1,39 +1,36 @@
 !> Warnings for scenes that can be simulated but are probably not intended: values out of the usual
-!! range, as wrong units give, and values that are inconsistent. Scenes that cannot be simulated are
-!! refused (scene_check).
+!! range, as from wrong units, inconsistent values, and ends of fractures that almost touch
+!! something or just pass it. Scenes that cannot be simulated are refused (scene_check).
 !!
-!! The regime of growth of a fracture that a well supplies: dominated by the toughness of the rock
-!! or by the viscosity of the fluid.
-!!
-!! In plane strain, at a constant rate Q and without leak-off, it is given by the dimensionless
-!! toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12
-!! mu (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
-!!
-!! Ends of fractures that almost touch another fracture or a side of the body, or that lie just
-!! beyond a fracture that they cross: probably not intended where fractures grow.
+!! The growth regime of a fracture with a well: in plane strain, at a constant rate Q and without
+!! leak-off, it is given by the dimensionless toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' =
+!! sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu (Detournay 2004, International Journal of
+!! Geomechanics 4, 35), which is constant in time.
 module scene_plausible
    use base_kinds, only: degrees, ik, pi, rk
-   use base_plane, only: meeting, nearest_share, point_distance, polygon_area
+   use base_plane, only: polygon_area
    use base_texts, only: add_text, text_t
-   use base_tolerances, only: round_off, same_place, same_time
+   use base_tolerances, only: round_off, same_time
+   use scene_check_geometry, only: near_end_t, near_ends
    use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
    use scene_fluid_law, only: skempton
    use scene_region_outline, only: body_part
-   use scene_types, only: domain_t, fracture_t, scene_t
+   use scene_sides, only: normal_tractions
+   use scene_types, only: fracture_t, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
    private
 
-   public :: doubt_t, doubts, doubts_of_scene, find_regime, regime_words
+   public :: doubts, doubts_of_scene, find_regime, regime_words
 
-   !> A value that is doubted, and why.
+   !> A plausibility check.
    type :: doubt_t
       character(len=12) :: group = ""
       character(len=16) :: name = ""
       character(len=8) :: unit = "-"
-      character(len=64) :: doubtful = ""  !< when, in words
-      character(len=150) :: usual = ""  !< what would be, or what follows; a sentence
+      character(len=64) :: doubtful = ""  !< condition of the warning, in words
+      character(len=150) :: usual = ""  !< usual values or consequences; a sentence
    end type doubt_t
 
    ! Indices into the table.
@@ -50,108 +47,92 @@ module scene_plausible
    ! The table keeps its own layout.
    !&<
    type(doubt_t), parameter :: doubts(*) = [ &
-      doubt_t("material", "young", "Pa", "below 1e8 or above 1e12", &
-              "rock has 1e9 to 1e11 Pa"), &
+      doubt_t("material", "young", "Pa", "below 1e8 or above 1e12", "rock has 1e9 to 1e11 Pa"), &
       doubt_t("material", "poisson", "-", &
-              "above 0.49, with intensities, in plane strain, without &adaptive", &
-              "elements around the tips are then too stiff: stress intensity factors are up "// &
-              "to 1 % off, with &adaptive 0.1 %"), &
+         "above 0.49, with intensities, in plane strain, without &adaptive", &
+         "elements around the tips are then too stiff: stress intensity factors are up to 1 % "// &
+         "off, with &adaptive 0.1 %"), &
       doubt_t("material", "density", "kg/m3", "below 100 or above 10000, if not 0", &
-              "rock has 2000 to 3000 kg/m3"), &
-      doubt_t("material", "porosity", "-", "above 0.5", &
-              "rock has 0.001 to 0.3, not per cent"), &
+         "rock has 2000 to 3000 kg/m3"), &
+      doubt_t("material", "porosity", "-", "above 0.5", "rock has 0.001 to 0.3, not per cent"), &
       doubt_t("material", "permeability", "m2", "above 1e-8, with &fluid", &
-              "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
+         "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
       doubt_t("material", "toughness", "Pa m^1/2", "below 1e4 or above 1e8, with growth", &
-              "rock has 1e5 to 1e7 Pa m^1/2, and 1 MPa m^1/2 is 1e6"), &
+         "rock has 1e5 to 1e7 Pa m^1/2, and 1 MPa m^1/2 is 1e6"), &
       doubt_t("fluid", "compressibility", "1/Pa", "above 1e-6", &
-              "water has 4e-10 1/Pa, a gas the inverse of its pressure"), &
+         "water has 4e-10 1/Pa, a gas the inverse of its pressure"), &
       doubt_t("fluid", "viscosity", "Pa s", "below 1e-6 or above 10", &
-              "water has 1e-4 to 1e-3 Pa s, gels 0.01 to 1 Pa s"), &
-      doubt_t("fracture", "friction", "-", "above 1.5", &
-              "rock has 0.3 to 1"), &
+         "water has 1e-4 to 1e-3 Pa s, gels 0.01 to 1 Pa s"), &
+      doubt_t("fracture", "friction", "-", "above 1.5", "rock has 0.3 to 1"), &
       doubt_t("fracture", "dilation_deg", "degree", "above the angle of friction", &
-              "a slipping fracture then releases energy instead of dissipating it; 0 to 10 is "// &
-              "usual"), &
+         "a slipping fracture then releases energy instead of dissipating it; 0 to 10 is usual"), &
       doubt_t("fracture", "aperture", "m", "above a tenth of the fracture's length", &
-              "natural fractures have 1e-5 to 1e-3 m; the cubic law is valid for thin ones"), &
+         "natural fractures have 1e-5 to 1e-3 m; the cubic law is valid for thin ones"), &
       doubt_t("side", "traction", "Pa", "tension across a side, with wells", &
-              "rock at depth is compressed, and compression is negative"), &
+         "rock at depth is compressed, and compression is negative"), &
       doubt_t("injection", "start", "s", "not before the end of &time", &
-              "the well is never active"), &
+         "the well is never active"), &
       doubt_t("fine", "window", "m", "at least the body's shorter side, with &fluid", &
-              "a window is a part of the body around a tip; a few fracture lengths are usual, "// &
-              "and 'body' is one window for all tips"), &
+         "a window is a part of the body around a tip; a few fracture lengths are usual, and "// &
+         "'body' is one window for all tips"), &
       doubt_t("output", "interval", "s", "below the step of &time", &
-              "fields are written at most once per step"), &
+         "fields are written at most once per step"), &
       doubt_t("fluid", "compressibility", "1/Pa", &
-              "above 0, but Skempton's coefficient B exceeds 1", &
-              "the undrained pressure then exceeds the load; rock has B of 0.3 to 1"), &
+         "above 0, but Skempton's coefficient B exceeds 1", &
+         "the undrained pressure then exceeds the load; rock has B of 0.3 to 1"), &
       doubt_t("region", "permeability", "m2", "above 1e-8", &
-              "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
+         "rock has 1e-22 to 1e-11 m2, and a millidarcy is 1e-15 m2"), &
       doubt_t("region", "width", "m", "below size_boundary: twice its area over its outline", &
-              "cells may be wider and average its permeability with that around it; reduce "// &
-              "size_boundary"), &
-      doubt_t("fracture", "gap", "m", &
-              "of an end below 0.05 increments, with growth and &fluid", &
-             "the ligament fails as soon as the tip exceeds its toughness; let them touch, or "// &
-             "separate them, if this is unintended"), &
+         "cells may be wider and average its permeability with that around it; reduce "// &
+         "size_boundary"), &
+      doubt_t("fracture", "gap", "m", "of an end below 0.05 increments, with growth and &fluid", &
+         "the ligament fails as soon as the tip exceeds its toughness; let them touch, or "// &
+         "separate them, if this is unintended"), &
       doubt_t("fracture", "stub", "m", &
-              "past a fracture that it crosses below 0.05 increments, likewise", &
-              "its end is a separate tip, with cells as small as the stub; let it end on the "// &
-              "other one if this is unintended"), &
+         "past a fracture that it crosses below 0.05 increments, likewise", &
+         "its end is a separate tip, with cells as small as the stub; let it end on the other "// &
+         "one if this is unintended"), &
       doubt_t("material", "anisotropy", "-", "above 10, with &fluid", &
-              "with such anisotropy pressures may leave their bounds: by a fifth of their "// &
-              "range at 100"), &
+         "with such anisotropy pressures may leave their bounds: by a fifth of their range at "// &
+         "100"), &
       doubt_t("fluid", "density", "kg/m3", "below 1 or above 3000, if not 0", &
-              "water has 1000 kg/m3"), &
+         "water has 1000 kg/m3"), &
       doubt_t("fluid", "density", "kg/m3", "0, with &gravity", &
-              "its pressure then does not increase with depth; water has 1000 kg/m3"), &
+         "its pressure then does not increase with depth; water has 1000 kg/m3"), &
       doubt_t("in_situ", "syy_per_y", "Pa/m", "0, with &gravity and a stress, with &fluid", &
-              "the weight then loads the body in addition to that stress; a gradient of "// &
-              "density times gravity balances it from the start"), &
+         "the weight then loads the body in addition to that stress; a gradient of density "// &
+         "times gravity balances it from the start"), &
       doubt_t("in_situ", "tension", "Pa", "above 0 somewhere in the body, with &fluid", &
-              "rock at depth is compressed, and compression is negative"), &
+         "rock at depth is compressed, and compression is negative"), &
       doubt_t("initial", "pressure", "Pa", &
-              "below vapour_pressure somewhere, by the fluid's density", &
-              "there is no water table: fractures there begin with vapour; use a larger "// &
-              "pressure or another y_datum"), &
-      doubt_t("initial", "pressure", "Pa", &
-              "above the smallest compression in situ somewhere", &
-              "fractures across that compression are open from the start"), &
+         "below vapour_pressure somewhere, by the fluid's density", &
+         "there is no water table: fractures there begin with vapour; use a larger pressure or "// &
+         "another y_datum"), &
+      doubt_t("initial", "pressure", "Pa", "above the smallest compression in situ somewhere", &
+         "fractures across that compression are open from the start"), &
       doubt_t("injection", "K_m", "-", &
-              "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
-              "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, "// &
-              "and below it the run may end early"), &
-      doubt_t("restraint", "surplus", "-", &
-              "above 0: more components than fix the rigid motions", &
-              "they are then point loads, around which results depend on the cell size; use "// &
-              "displacements or springs on sides instead"), &
+         "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
+         "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, and "// &
+         "below it the run may end early"), &
+      doubt_t("restraint", "surplus", "-", "above 0: more components than fix the rigid motions", &
+         "they are then point loads, around which results depend on the cell size; use "// &
+         "displacements or springs on sides instead"), &
       doubt_t("material", "poisson", "-", &
-              "above 0.49, likewise, with friction, with &adaptive too", &
-              "friction then follows wrong normal tractions around tips: K_II of closed "// &
-              "sliding tips is several per cent off, within their stated errors")]
+         "above 0.49, likewise, with friction, with &adaptive too", &
+         "friction then follows wrong normal tractions around tips: K_II of closed sliding "// &
+         "tips is several per cent off, within their stated errors")]
    !&>
 
-   !> Ends nearer than that to something have come to it (twolevel_pieces) [increments].
+   !> Distance below which an end reaches a target (twolevel_pieces) [increments].
    real(rk), parameter :: near_end = 0.05_rk
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
-   real(rk), parameter, public :: least_verified = 1.0_rk  !< K_m, verification/kgd
-
-   !> An end, and what it is near to.
-   type :: near_end_t
-      integer :: fracture = 0  !< whose end it is
-      integer :: other = 0  !< the fracture that it is near to, or 0 for a side
-      integer :: side = 0  !< left, right, bottom, top
-      real(rk) :: distance = 0.0_rk  !< [m]
-      logical :: is_past = .false.  !< the fracture crosses the other one and ends behind it
-   end type near_end_t
+   real(rk), parameter :: least_verified = 1.0_rk  !< smallest verified K_m, verification/kgd [-]
 
 contains
 
-   !> A sentence for each doubt about a scene.
+   !> A sentence for each plausibility check that a scene does not pass.
    pure function doubts_of_scene(scene) result(list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable :: list(:)
@@ -174,6 +155,7 @@ contains
       end if
    end function doubts_of_scene
 
+   !> Check the rock.
    pure subroutine doubt_material(scene, has_fluid, list)
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: has_fluid
@@ -205,6 +187,7 @@ contains
       end associate
    end subroutine doubt_material
 
+   !> Check the laws of the fractures.
    pure subroutine doubt_fractures(fractures, has_fluid, list)
       type(fracture_t), intent(in) :: fractures(:)
       logical, intent(in) :: has_fluid
@@ -222,7 +205,7 @@ contains
       end do
    end subroutine doubt_fractures
 
-   !> Growth by so viscous a fluid, or at such a rate, that none like it has been verified.
+   !> Check the growth regime: viscosity-dominated growth has not been verified.
    pure subroutine doubt_growth(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -236,7 +219,7 @@ contains
                " '"//trim(scene%injections(well)%name)//"'")
    end subroutine doubt_growth
 
-   !> Ends that almost touch something, or lie just past it.
+   !> Check for ends that almost touch something, or just pass it.
    pure subroutine doubt_ends(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -259,7 +242,7 @@ contains
       end do
    end subroutine doubt_ends
 
-   !> Regions that the cells may miss, and their permeability.
+   !> Check the permeability and the width of regions.
    pure subroutine doubt_regions(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -288,7 +271,7 @@ contains
       end do
    end subroutine doubt_regions
 
-   !> Stress and pressure in situ, at the bottom and the top of the body.
+   !> Check stress and pressure in situ, at the bottom and the top of the body.
    pure subroutine doubt_column(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
@@ -325,13 +308,11 @@ contains
       end associate
    end subroutine doubt_column
 
-   !> What only a scene with a fluid has: the body is a rectangle then.
+   !> Check the fluid, the wells and the times of a scene with a fluid.
    pure subroutine doubt_flow(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
-      real(rk), parameter :: outward(4) = [-1.0_rk, 1.0_rk, -1.0_rk, 1.0_rk]
-      integer, parameter :: axis(4) = [1, 1, 2, 2]  ! across each side
-      real(rk) :: across
+      real(rk) :: across(4)
       integer :: i
 
       associate (fluid => scene%fluid, d => scene%domain)
@@ -342,11 +323,9 @@ contains
                   fluid%compressibility)
          call add(list,.not. within(fluid%viscosity, 1.0e-6_rk, 10.0_rk), of_viscosity, &
                   fluid%viscosity)
+         across = normal_tractions(scene%sides)
          do i = 1, 4
-            if (.not. allocated(scene%injections)) exit
-            across = outward(i)*scene%sides(i)%traction(axis(i)) &
-                     + scene%sides(i)%normal_traction
-            call add(list, size(scene%injections) > 0 .and. across > 0.0_rk, of_traction, across, &
+            call add(list, scene%has_wells() .and. across(i) > 0.0_rk, of_traction, across(i), &
                      trim(sides(i)))
          end do
          call add(list, scene%growth%intensities .and. scene%discretization%window >= &
@@ -363,24 +342,25 @@ contains
       end associate
    end subroutine doubt_flow
 
+   !> A value lies between two limits.
    pure logical function within(value, lowest, highest)
-      real(rk), intent(in) :: value, lowest, highest
+      real(rk), intent(in) :: value, lowest, highest  !< [any unit]
 
       within = value >= lowest .and. value <= highest
    end function within
 
-   !> Add the sentence of a doubt that there is.
-   pure subroutine add(list, there_is, doubt, value, whose)
+   !> Add the sentence of a check that has failed.
+   pure subroutine add(list, has_failed, check, value, whose)
       type(text_t), allocatable, intent(inout) :: list(:)
-      logical, intent(in) :: there_is
-      integer, intent(in) :: doubt  !< index into the table
-      real(rk), intent(in) :: value  !< in the doubt's unit
+      logical, intent(in) :: has_failed
+      integer, intent(in) :: check  !< index into the table
+      real(rk), intent(in) :: value  !< in the unit of the check
       character(len=*), intent(in), optional :: whose  !< name of fracture or side, in quotes
       character(len=:), allocatable :: place, unit
       type(doubt_t) :: d
 
-      if (.not. there_is) return
-      d = doubts(doubt)
+      if (.not. has_failed) return
+      d = doubts(check)
       place = "&"//trim(d%group)
       if (present(whose)) place = place//whose
       unit = ""
@@ -389,11 +369,11 @@ contains
                     trim(d%usual))
    end subroutine add
 
-   !> The smallest K_m of the wells with a rate in a fracture, if the scene grows.
+   !> Find the smallest K_m of the wells with a rate in a fracture, in a scene with growth.
    pure subroutine find_regime(scene, dimensionless_toughness, well)
       type(scene_t), intent(in) :: scene
       real(rk), intent(out) :: dimensionless_toughness  !< [-]
-      integer, intent(out) :: well  !< which one has it; 0: there is none
+      integer, intent(out) :: well  !< its well; 0: none
       real(rk) :: modulus, rate, toughness, value
       integer :: i
 
@@ -417,7 +397,7 @@ contains
       end do
    end subroutine find_regime
 
-   !> What decides: viscosity up to a K_m of 1, toughness from 4 on.
+   !> Growth regime: dominated by viscosity up to a K_m of 1, by toughness from 4 on.
    pure function regime_words(dimensionless_toughness) result(words)
       real(rk), intent(in) :: dimensionless_toughness  !< [-]
       character(len=:), allocatable :: words
@@ -430,91 +410,5 @@ contains
          words = "viscosity-dominated growth"
       end if
    end function regime_words
-
-   !> All ends that are nearer than that to something that they do not touch. Two ends that are near
-   !! to each other are told once.
-   pure function near_ends(fractures, domain, near) result(list)
-      type(fracture_t), intent(in) :: fractures(:)
-      type(domain_t), intent(in) :: domain  !< its sides count if it is a rectangle
-      real(rk), intent(in) :: near  !< [m]
-      type(near_end_t), allocatable :: list(:)
-      real(rk) :: distance, last(2, 2), room(4)
-      integer :: end, i, j, side
-      logical :: is_at_end, is_past
-
-      allocate (list(0))
-      do i = 1, size(fractures)
-         do end = 1, 2
-            last = last_segment(fractures(i), end)
-            room = [last(1, 1) - domain%x_min, domain%x_max - last(1, 1), &
-                    last(2, 1) - domain%y_min, domain%y_max - last(2, 1)]
-            do side = 1, merge(4, 0, domain%shape == "rectangle")
-               if (is_near(room(side))) list = [list, near_end_t(i, 0, side, room(side))]
-            end do
-            do j = 1, size(fractures)
-               if (j == i) cycle
-               call look_at(last, fractures(j), distance, is_at_end, is_past)
-               if (.not. is_near(distance)) cycle
-               if (is_at_end .and. j < i .and. .not. is_past) cycle
-               list = [list, near_end_t(i, j, 0, distance, is_past)]
-            end do
-         end do
-      end do
-
-   contains
-
-      pure logical function is_near(distance)
-         real(rk), intent(in) :: distance  !< [m]
-
-         is_near = distance > same_place*fractures(i)%length() .and. distance < near
-      end function is_near
-
-   end function near_ends
-
-   !> The segment that a fracture ends with, from its end inwards [m].
-   pure function last_segment(fracture, end) result(ends)
-      type(fracture_t), intent(in) :: fracture
-      integer, intent(in) :: end  !< 1 or 2
-      real(rk) :: ends(2, 2)
-      integer :: first, next
-
-      first = merge(1, size(fracture%x), end == 1)
-      next = merge(2, size(fracture%x) - 1, end == 1)
-      ends(:, 1) = [fracture%x(first), fracture%y(first)]
-      ends(:, 2) = [fracture%x(next), fracture%y(next)]
-   end function last_segment
-
-   !> How near an end is to a fracture, or how far past it.
-   pure subroutine look_at(last, other, distance, is_at_end, is_past)
-      real(rk), intent(in) :: last(2, 2)  !< the segment with the end, which comes first [m]
-      type(fracture_t), intent(in) :: other
-      real(rk), intent(out) :: distance  !< [m]
-      logical, intent(out) :: is_at_end  !< of the other one
-      logical, intent(out) :: is_past
-      real(rk) :: ends(2, 2), here, length, place, share(2)
-      integer(ik) :: n, v
-
-      distance = huge(1.0_rk)
-      is_at_end = .false.
-      is_past = .false.
-      length = norm2(last(:, 2) - last(:, 1))
-      n = size(other%x, kind=ik)
-      do v = 1, n - 1
-         ends = reshape([other%x(v), other%y(v), other%x(v + 1), other%y(v + 1)], [2, 2])
-         here = point_distance(last(:, 1), ends)
-         share = meeting(last, ends)
-         if (all(share >= 0.0_rk .and. share <= 1.0_rk) .and. &
-             here > same_place*length .and. share(1)*length < distance) then
-            distance = share(1)*length
-            is_past = .true.
-            is_at_end = .false.
-         else if (here < distance) then
-            distance = here
-            is_past = .false.
-            place = nearest_share(last(:, 1), ends)
-            is_at_end = (v == 1 .and. place <= 0.0_rk) .or. (v == n - 1 .and. place >= 1.0_rk)
-         end if
-      end do
-   end subroutine look_at
 
 end module scene_plausible

@@ -1,10 +1,8 @@
-!> The outlines of regions as polygons, for all shapes of a scene.
+!> The outlines of regions as polygons, for all shapes of a scene, and the rock at each point.
 !!
-!! A half-plane and a region bounded by parabolas end at a distance outside of the body; a parabola
-!! is a polyline of short segments, with an error below 1e-5 of the body's height for a curvature of
-!! one over that height.
-!!
-!! The rock at each place: the regions of a scene by place.
+!! A half-plane and a region bounded by parabolas end outside of the body; a parabola is a polyline
+!! of short segments, with an error below 1e-5 of the body's height for a curvature of one over that
+!! height.
 module scene_region_outline
    use base_kinds, only: ik, rk
    use base_plane, only: left_part, point_distance, polygon_area, triangle_area
@@ -19,9 +17,9 @@ module scene_region_outline
       real(rk), allocatable :: corners(:, :)
    end type outline_t
 
-   !> The outlines of the regions of a scene, in its order; none of a uniform rock.
+   !> The outlines of the regions of a scene.
    type :: rock_places_t
-      type(outline_t), allocatable :: outline(:)
+      type(outline_t), allocatable :: outline(:)  !< (regions) in the order of the scene
    contains
       procedure :: set
       procedure :: region_at
@@ -30,7 +28,7 @@ module scene_region_outline
 
 contains
 
-   !> The corners of a region, counter-clockwise, none of them twice in a row.
+   !> The corners of a region, counter-clockwise, without successive equal ones.
    pure function region_outline(region, domain) result(corners)
       type(region_t), intent(in) :: region
       type(domain_t), intent(in) :: domain
@@ -52,7 +50,7 @@ contains
       if (polygon_area(corners) < 0.0_rk) corners = corners(:, size(corners, 2):1:-1)
    end function region_outline
 
-   !> What of a region lies in the body: a rectangle.
+   !> The part of a region in a rectangular body.
    pure function body_part(region, domain) result(corners)
       type(region_t), intent(in) :: region
       type(domain_t), intent(in) :: domain
@@ -80,20 +78,20 @@ contains
       corners(2, :) = y([1, 1, 2, 2])
    end function box
 
-   !> Between two parabolas, or one and a line outside of the body, on its right.
+   !> The region between two parabolas, or between one and a line on the right of the body.
    pure function between_parabolas(region, domain) result(corners)
       type(region_t), intent(in) :: region
       type(domain_t), intent(in) :: domain
       real(rk), allocatable :: corners(:, :)  !< [m]
-      integer(ik), parameter :: pieces = 256
+      integer(ik), parameter :: segments = 256
       real(rk), parameter :: margin = 0.01_rk
-      real(rk) :: x(0:pieces, 2), y(0:pieces), height, width
+      real(rk) :: x(0:segments, 2), y(0:segments), height, width
       integer(ik) :: k
 
       height = domain%y_max - domain%y_min
       width = domain%x_max - domain%x_min
-      y = [(domain%y_min + height*((1.0_rk + 2.0_rk*margin)*real(k, rk)/real(pieces, rk) &
-                                   - margin), k=0, pieces)]
+      y = [(domain%y_min + height*((1.0_rk + 2.0_rk*margin)*real(k, rk)/real(segments, rk) &
+                                   - margin), k=0, segments)]
       do k = 1, size(region%x_vertex, kind=ik)
          x(:, k) = region%x_vertex(k) + region%curvature(k)*(y - region%y_vertex(k))**2
       end do
@@ -101,7 +99,7 @@ contains
       corners = joined(x(:, 1), y, x(:, 2), y)
    end function between_parabolas
 
-   !> Along one curve and back along another.
+   !> The corners along one curve and back along another.
    pure function joined(x, y, x_other, y_other) result(corners)
       real(rk), intent(in) :: x(:), y(:), x_other(:), y_other(:)  !< [m]
       real(rk), allocatable :: corners(:, :)
@@ -111,6 +109,7 @@ contains
       corners = pairs([x, x_other(n:1:-1)], [y, y_other(n:1:-1)])
    end function joined
 
+   !> Points (2, n) from their coordinates.
    pure function pairs(x, y) result(corners)
       real(rk), intent(in) :: x(:), y(:)  !< [m]
       real(rk) :: corners(2, size(x))
@@ -119,7 +118,7 @@ contains
       corners(2, :) = y
    end function pairs
 
-   !> Corners on the one before are left out, and the last one on the first.
+   !> The corners that differ from the one before.
    pure function without_repeats(corners) result(kept)
       real(rk), intent(in) :: corners(:, :)
       real(rk), allocatable :: kept(:, :)
@@ -133,7 +132,7 @@ contains
       kept = corners(:, pack([(k, k=1, n)], differs))
    end function without_repeats
 
-   !> Take the regions of a scene.
+   !> Set the outlines of the regions of a scene.
    pure subroutine set(self, scene)
       class(rock_places_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -150,7 +149,7 @@ contains
       end do
    end subroutine set
 
-   !> The region that counts at a point; 0: none, the rock of the scene.
+   !> Index of the region at a point, the last one of several; 0: none, the rock of the scene.
    pure integer(ik) function region_at(self, point)
       class(rock_places_t), intent(in) :: self
       real(rk), intent(in) :: point(2)  !< [m]
@@ -160,11 +159,11 @@ contains
       end do
    end function region_at
 
-   !> From a point to the nearest outline of the regions that count; huge if there is none [m].
+   !> Distance from a point to the nearest outline of some regions; huge if there is none [m].
    pure real(rk) function distance(self, point, counts)
       class(rock_places_t), intent(in) :: self
       real(rk), intent(in) :: point(2)  !< [m]
-      logical, intent(in) :: counts(:)  !< (regions)
+      logical, intent(in) :: counts(:)  !< (regions) the outline is included
       integer(ik) :: i, k, n
 
       distance = huge(1.0_rk)
@@ -179,15 +178,15 @@ contains
       end do
    end function distance
 
-   !> K_IC of the rock that a tip grows in [Pa m^1/2]. From one rock to the next it changes linearly
-   !! over the last piece of the way there, so that there is an equilibrium: a tip that tougher
-   !! rock holds stands within that piece before it.
+   !> K_IC of the rock ahead of a tip [Pa m^1/2]. Before another rock K_IC changes linearly over a
+   !! given length, so that there is an equilibrium: a tip that stops at tougher rock is within this
+   !! length before it.
    pure real(rk) function toughness_ahead(places, scene, xy, direction, reach) result(toughness)
       type(rock_places_t), intent(in) :: places
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: xy(2)  !< the tip [m]
       real(rk), intent(in) :: direction(2)  !< unit vector ahead [-]
-      real(rk), intent(in) :: reach  !< of that piece [m]
+      real(rk), intent(in) :: reach  !< length of the linear change [m]
       integer, parameter :: halvings = 40
       real(rk) :: ahead, high, low, middle
       integer :: k
@@ -209,8 +208,9 @@ contains
 
    contains
 
+      !> Toughness of the rock at a fraction of the reach ahead of the tip [Pa m^1/2].
       pure real(rk) function at(share)
-         real(rk), intent(in) :: share  !< of the reach [-]
+         real(rk), intent(in) :: share  !< [-]
          integer(ik) :: region
 
          region = places%region_at(xy + share*reach*direction)
@@ -223,8 +223,8 @@ contains
 
    end function toughness_ahead
 
-   !> A ray to the right from a point inside meets the outline an odd number of times (Shimrat
-   !! 1962); the point is not on the outline.
+   !> A point lies in a polygon, and not on its outline: a ray to the right meets the outline an odd
+   !! number of times (Shimrat 1962).
    pure logical function is_inside(outline, point)
       real(rk), intent(in) :: outline(:, :), point(2)  !< [m]
       integer(ik) :: k, n, next

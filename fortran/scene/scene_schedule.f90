@@ -1,5 +1,5 @@
 !> Tables in CSV files that replace lists of a scene file: the stages of a well, the time-dependent
-!! values of a side.
+!! values of a side; and reading of whole files.
 !!
 !! The first row names the columns: a name of the group and its unit, as `time_s`, `rate_m2_s`,
 !! `pressure_pa`; times may be in min, h or d, pressures and tractions in kPa, MPa or bar instead.
@@ -8,18 +8,17 @@
 !! countries. Rows that begin with # are comments. The values of a table become values of the group,
 !! so that all later steps, including scene.nml, use lists alone.
 !!
-!! The bytes of a scene file and of files that it names.
-!!
 !! A scene may have any author, and may name any file of this machine. So no contents of a file are
-!! quoted in a message before the file has the form of a scene or of its table.
+!! quoted in a message unless the file has the form of a scene or of its table.
 module scene_schedule
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
    use base_number, only: integer_text
    use base_texts, only: text_t
    use scene_expression, only: token_list_t, tokenize
-   use scene_parameters, only: groups, kind_reals, parameter_t, parameters
-   use scene_sheet, only: parameter_index, path_beside, path_of, refuse, sheet_t
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: groups, kind_reals, parameter_t
+   use scene_sheet, only: parameter_index, path_from, path_of, refuse, sheet_t
    use scene_values, only: most_values, read_value, shortened, value_t
    use scene_words, only: lower_case
    implicit none(type, external)
@@ -27,16 +26,16 @@ module scene_schedule
 
    public :: load_file, load_schedules
 
-   !> What some programs put before a text in UTF-8.
+   !> Mark at the beginning of a text in UTF-8 from some programs.
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
 
-   !> What the first time of a table says besides.
+   !> Name that the first time of a table replaces.
    character(len=*), parameter :: start = "start"
 
-   !> A unit that a column may have instead of that of its parameter.
+   !> Unit allowed for a column instead of that of its parameter.
    type :: unit_t
-      character(len=3) :: name, of  !< in lower case; of which unit
-      real(rk) :: factor  !< how many of these it is [-]
+      character(len=3) :: name, of  !< the unit and that of the parameter, in lower case
+      real(rk) :: factor  !< ratio of the two [-]
    end type unit_t
 
    type(unit_t), parameter :: other_units(*) = &
@@ -44,12 +43,12 @@ module scene_schedule
                                unit_t("d", "s", 86400.0_rk), unit_t("kpa", "pa", 1.0e3_rk), &
                                unit_t("mpa", "pa", 1.0e6_rk), unit_t("bar", "pa", 1.0e5_rk)]
 
-   integer(lk), parameter :: largest_file = 4000000_lk  !< [byte]; more is no scene, and no table
-   integer(lk), parameter :: largest_scene = 10000000_lk  !< [byte] of all its files
+   integer(lk), parameter :: largest_file = 4000000_lk  !< size of a scene file or table [byte]
+   integer(lk), parameter :: largest_scene = 10000000_lk  !< size of all files of a scene [byte]
 
 contains
 
-   !> Take over all tables that a sheet names.
+   !> Replace the names `schedule` of a sheet by the lists in their tables.
    subroutine load_schedules(sheet, error)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
@@ -60,7 +59,7 @@ contains
          if (parameter_index(sheet%records(i)%group, "schedule") == 0) cycle
          file = sheet%records(i)%value("schedule")
          if (.not. file%is_set) cycle
-         call load_table(sheet, i, path_beside(path_of(sheet, i), file%text), file%line, error)
+         call load_table(sheet, i, path_from(path_of(sheet, i), file%text), file%line, error)
          if (allocated(error)) return
          associate (record => sheet%records(i))
             record%values(parameter_index(record%group, "schedule"))%is_set = .false.
@@ -68,7 +67,7 @@ contains
       end do
    end subroutine load_schedules
 
-   !> What the table says, and when it begins, must not stand in the scene file as well.
+   !> Refuse names in the scene file that are in the table too, and the start.
    pure subroutine refuse_both(sheet, record, names, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
@@ -90,12 +89,11 @@ contains
       type(sheet_t), intent(inout) :: sheet
       integer, intent(in) :: record
       character(len=*), intent(in) :: path
-      integer(ik), intent(in) :: line  !< where the scene file names the table
+      integer(ik), intent(in) :: line  !< line of the name `schedule`
       type(error_t), allocatable, intent(out) :: error
       type(text_t), allocatable :: cells(:), rows(:)
       integer, allocatable :: item(:)
       real(rk), allocatable :: factor(:), numbers(:, :)
-      type(value_t) :: value
       character(len=:), allocatable :: reason
       character :: mark
       integer :: k, n, row
@@ -115,19 +113,12 @@ contains
                                                 parameters(item)%name, start], error)
                if (allocated(error)) return
             end if
-         else if (size(cells) /= size(item)) then
-            reason = wrong_count(size(cells), size(item), mark)
          else if (n == most_values) then
             reason = "the table has more than the "//integer_text(int(most_values, ik))// &
                      " rows that it may have"
          else
             n = n + 1
-            do k = 1, size(item)
-               if (mark /= ",") cells(k)%text = with_point(cells(k)%text)
-               call read_cell(cells(k)%text, parameters(item(k)), value, reason)
-               if (allocated(reason)) exit
-               numbers(n, k) = factor(k)*value%reals(1)
-            end do
+            call read_row(cells, mark, item, factor, numbers(n, :), reason)
          end if
          if (.not. allocated(reason)) cycle
          call raise_error(error, "", path//":"//integer_text(int(row, ik))//": "//reason// &
@@ -148,17 +139,36 @@ contains
       end do
    end subroutine load_table
 
-   !> A row has not one value per column.
-   pure function wrong_count(n, wanted, mark) result(reason)
-      integer, intent(in) :: n, wanted
-      character, intent(in) :: mark  !< what parts the columns
-      character(len=:), allocatable :: reason
+   !> The numbers of a row, in the units of the parameters.
+   pure subroutine read_row(cells, mark, item, factor, numbers, reason)
+      type(text_t), intent(in) :: cells(:)
+      character, intent(in) :: mark  !< separator of the columns
+      integer, intent(in) :: item(:)  !< (columns) indices into parameters
+      real(rk), intent(in) :: factor(:)  !< (columns) units of the parameters in those given [-]
+      real(rk), intent(out) :: numbers(:)  !< (columns) [unit of the parameter]
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
+      character(len=:), allocatable :: cell
+      type(value_t) :: value
+      integer :: k
 
-      reason = "the row has "//integer_text(int(n, ik))//" values but must have "// &
-               integer_text(int(wanted, ik))//", one per column"
-      if (mark == "," .and. n > wanted) reason = reason//"; with decimal commas, columns must "// &
-                                                 "be separated by semicolons or tabs"
-   end function wrong_count
+      numbers = 0.0_rk
+      if (size(cells) /= size(item)) then
+         reason = "the row has "//integer_text(size(cells, kind=ik))//" values but must have "// &
+                  integer_text(size(item, kind=ik))//", one per column"
+         if (mark == "," .and. size(cells) > size(item)) then
+            reason = reason//"; with decimal commas, columns must be separated by semicolons "// &
+                     "or tabs"
+         end if
+         return
+      end if
+      do k = 1, size(item)
+         cell = cells(k)%text
+         if (mark /= ",") cell = with_point(cell)
+         call read_cell(cell, parameters(item(k)), value, reason)
+         if (allocated(reason)) return
+         numbers(k) = factor(k)*value%reals(1)
+      end do
+   end subroutine read_row
 
    !> The rows of a file, without line ends.
    subroutine read_rows(sheet, record, path, rows, error)
@@ -197,7 +207,7 @@ contains
       if (.not. is_comment) is_comment = index(adjustl(row), "#") == 1
    end function is_comment
 
-   !> What parts the columns: a tab or a semicolon if the row has one, else commas.
+   !> Separator of the columns: a tab or a semicolon if the row has one, otherwise a comma.
    pure character function mark_of(row) result(mark)
       character(len=*), intent(in) :: row
 
@@ -206,7 +216,7 @@ contains
       if (index(row, achar(9)) > 0) mark = achar(9)
    end function mark_of
 
-   !> A number with a point where it has one comma; what has more is no such number.
+   !> A number with a point instead of its decimal comma, if it has exactly one comma.
    pure function with_point(cell) result(text)
       character(len=*), intent(in) :: cell
       character(len=len(cell)) :: text
@@ -218,7 +228,7 @@ contains
       if (index(cell, ".") == 0) text(place:place) = "."
    end function with_point
 
-   !> What stands between the marks, without blanks around it, nor double quotes.
+   !> The cells between the separators, without surrounding blanks and double quotes.
    pure function split(row, mark) result(cells)
       character(len=*), intent(in) :: row
       character, intent(in) :: mark
@@ -239,13 +249,13 @@ contains
       end do
    end function split
 
-   !> The parameters that columns are named after; times are among them.
+   !> Find the parameters of the columns, which must include the time.
    pure subroutine find_columns(names, group, item, factor, reason)
       type(text_t), intent(in) :: names(:)
       integer, intent(in) :: group
       integer, allocatable, intent(out) :: item(:)
       real(rk), allocatable, intent(out) :: factor(:)  !< units of the parameters in those given [-]
-      character(len=:), allocatable, intent(out) :: reason  !< unallocated: they are good
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       character(len=:), allocatable :: known
       integer :: k, m
 
@@ -262,7 +272,7 @@ contains
          end do
       end do
       known = known(3:)//"; or in place of _s _min, _h or _d, and of _pa _kpa, _mpa or _bar"
-      if (all(item == 0)) then  ! perhaps a file of another kind, whose content is not to be told
+      if (all(item == 0)) then  ! possibly another file, whose contents must not be quoted
          reason = "the file is no table, whose first row has the names of its columns: "//known
          return
       end if
@@ -277,12 +287,12 @@ contains
       if (.not. any(parameters(item)%name == "time")) reason = "the column time_s is missing"
    end subroutine find_columns
 
-   !> Whether a column is that of a parameter, in its own or another unit.
+   !> Set item and factor if a column is that of a parameter, in its unit or another allowed one.
    pure subroutine compare(name, parameter, m, item, factor)
       character(len=*), intent(in) :: name  !< of the column, in lower case
       type(parameter_t), intent(in) :: parameter
       integer, intent(in) :: m  !< the parameter's number
-      integer, intent(inout) :: item  !< becomes that number if it is
+      integer, intent(inout) :: item  !< m if the column is that of the parameter
       real(rk), intent(inout) :: factor  !< [-]
       integer :: k
 
@@ -295,7 +305,7 @@ contains
       end do
    end subroutine compare
 
-   !> A list of this group, which a table may hold.
+   !> A parameter is a list of the group, and so a possible column of a table.
    pure logical function is_column(parameter, group)
       type(parameter_t), intent(in) :: parameter
       integer, intent(in) :: group
@@ -303,7 +313,7 @@ contains
       is_column = parameter%group == groups(group)%name .and. parameter%kind == kind_reals
    end function is_column
 
-   !> Name and unit: `rate` [m2/s] is `rate_m2_s`.
+   !> Column name of a parameter with its unit: `rate` [m2/s] is `rate_m2_s`.
    pure function column_name(parameter) result(name)
       type(parameter_t), intent(in) :: parameter
       character(len=:), allocatable :: name
@@ -315,11 +325,12 @@ contains
       end do
    end function column_name
 
+   !> Read one number.
    pure subroutine read_cell(cell, parameter, value, reason)
       character(len=*), intent(in) :: cell
       type(parameter_t), intent(in) :: parameter
       type(value_t), intent(out) :: value
-      character(len=:), allocatable, intent(out) :: reason  !< unallocated: it is good
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       type(token_list_t) :: tokens
       character(len=:), allocatable :: fault
       integer(ik) :: fault_line
@@ -338,12 +349,12 @@ contains
       if (allocated(reason)) reason = column_name(parameter)//" "//reason
    end subroutine read_cell
 
-   !> Read a whole file. What has no size, as a pipe or a device, is not opened: it may never end.
+   !> Read a whole file. A pipe or a device, which has no size, is not opened: it may never end.
    subroutine load_file(path, n_read, source, fault)
       character(len=*), intent(in) :: path
-      integer(lk), intent(inout) :: n_read  !< [byte] of all files of the scene so far
-      character(len=:), allocatable, intent(out) :: source  !< its bytes
-      character(len=:), allocatable, intent(out) :: fault  !< what it is instead
+      integer(lk), intent(inout) :: n_read  !< size of all files of the scene so far [byte]
+      character(len=:), allocatable, intent(out) :: source  !< contents
+      character(len=:), allocatable, intent(out) :: fault  !< why not; unallocated: good
       character(len=256) :: reason
       integer(lk) :: n_bytes
       integer :: unit, status

@@ -4,24 +4,23 @@ module scene_sheet
    use base_kinds, only: ik, lk
    use base_number, only: integer_text
    use scene_expression, only: constant_t
-   use scene_parameters, only: choice_name, choice_value, groups, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: choice_name, choice_value, groups
    use scene_values, only: value_t
    implicit none(type, external)
    private
 
    public :: record_t, sheet_t
-   public :: add_record, empty_record, group_index, line_text, parameter_index, path_beside
+   public :: add_record, empty_record, group_index, line_text, parameter_index, path_from
    public :: path_of, place, refuse
-
-   character(len=*), parameter :: read_about_it = "(see docs/input.md)"
 
    !> One group.
    type :: record_t
       integer :: group = 0  !< index into groups
-      integer(ik) :: line = 0  !< of `&group`; 0: not in the file, all values are defaults
-      character(len=:), allocatable :: path  !< of the file, which may be an included one
-      type(value_t), allocatable :: values(:)  !< the group's; indexed as scene_parameters
-      logical :: reading = .false.  !< a scene takes its values, rather than gives them
+      integer(ik) :: line = 0  !< line of `&group`; 0: not in the file, all values are defaults
+      character(len=:), allocatable :: path  !< path of its file, which may be an included one
+      type(value_t), allocatable :: values(:)  !< values, with the indices of `parameters`
+      logical :: reading = .false.  !< values go to a scene; otherwise they come from it
    contains
       procedure :: value => value_of
       procedure :: is_set
@@ -34,9 +33,9 @@ module scene_sheet
       character(len=:), allocatable :: path
       type(record_t), allocatable :: records(:)
       integer :: length = 0  !< records in use
-      type(constant_t), allocatable :: constants(:)  !< named values, in their order
-      integer :: n_included = 0  !< files, each as often as it is included
-      integer(lk) :: n_bytes = 0_lk  !< of all its files, tables among them
+      type(constant_t), allocatable :: constants(:)  !< named values of &define, in their order
+      integer :: n_included = 0  !< included files, each as often as it is included
+      integer(lk) :: n_bytes = 0_lk  !< size of all its files, with tables [byte]
    contains
       procedure :: find
       procedure :: has
@@ -44,7 +43,7 @@ module scene_sheet
 
 contains
 
-   !> Index of a group by name in lower case; 0: there is none.
+   !> Index of a group by its name in lower case; 0 if there is none.
    pure integer function group_index(name) result(group)
       character(len=*), intent(in) :: name
 
@@ -54,7 +53,7 @@ contains
       group = 0
    end function group_index
 
-   !> Index of a parameter by its group and its name in lower case; 0: there is none.
+   !> Index of a parameter by its group and its name in lower case; 0 if there is none.
    pure integer function parameter_index(group, name) result(item)
       integer, intent(in) :: group
       character(len=*), intent(in) :: name
@@ -66,7 +65,7 @@ contains
       item = 0
    end function parameter_index
 
-   !> A group without any values.
+   !> A group in which no value is set.
    pure function empty_record(group, line) result(record)
       integer, intent(in) :: group
       integer(ik), intent(in) :: line
@@ -120,7 +119,7 @@ contains
       is_set = self%values(parameter_index(self%group, name))%is_set
    end function is_set
 
-   !> The file gives a value for a parameter.
+   !> The file contains a value for a parameter.
    pure logical function is_given(self, name)
       class(record_t), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -128,7 +127,7 @@ contains
       is_given = self%values(parameter_index(self%group, name))%line > 0
    end function is_given
 
-   !> A parameter of this group belongs to the choice that the group makes, or to every one.
+   !> A parameter belongs to the choice made in this group, or to every choice.
    pure logical function suits(self, item)
       class(record_t), intent(in) :: self
       integer, intent(in) :: item  !< index into parameters
@@ -140,7 +139,7 @@ contains
       suits = choice%text == choice_value(parameters(item))
    end function suits
 
-   !> Index of the n-th group of a name; 0: there are fewer.
+   !> Index of the n-th group of a name in the records; 0 if there are fewer.
    pure integer function find(self, name, n) result(record)
       class(sheet_t), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -158,7 +157,7 @@ contains
       record = 0
    end function find
 
-   !> There is such a group.
+   !> The sheet has a group of this name.
    pure logical function has(self, name)
       class(sheet_t), intent(in) :: self
       character(len=*), intent(in) :: name
@@ -166,7 +165,7 @@ contains
       has = self%find(name) > 0
    end function has
 
-   !> The file that a group stands in.
+   !> Path of the file that contains a group.
    pure function path_of(sheet, record) result(path)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record  !< index into sheet%records
@@ -176,22 +175,22 @@ contains
       if (allocated(sheet%records(record)%path)) path = sheet%records(record)%path
    end function path_of
 
-   !> A path as seen from the folder of a scene file.
-   pure function path_beside(scene_path, path) result(whole)
+   !> A path relative to the folder of a scene file, or an absolute one, as it can be opened.
+   pure function path_from(scene_path, path) result(whole)
       character(len=*), intent(in) :: scene_path, path
       character(len=:), allocatable :: whole
 
       whole = path
       if (index(path, "/") == 1) return
       whole = scene_path(:index(scene_path, "/", back=.true.))//path
-   end function path_beside
+   end function path_from
 
-   !> "line 12", and of which file where that is not the one of another group.
+   !> "line 12", with the file if it is not that of another group.
    pure function line_text(sheet, record, line, other) result(text)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record  !< index into sheet%records
       integer(ik), intent(in) :: line
-      integer, intent(in) :: other  !< index of the group that the message begins with
+      integer, intent(in) :: other  !< index of the group with which the message begins
       character(len=:), allocatable :: text
 
       text = "line "//integer_text(line)
@@ -200,41 +199,33 @@ contains
       end if
    end function line_text
 
-   !> Raise an error about a parameter of a group.
+   !> Raise an error about a parameter of a group: file, line, group, name, reason, and where to
+   !! read about it.
    pure subroutine refuse(error, sheet, record, name, reason)
       type(error_t), allocatable, intent(out) :: error
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record  !< index into sheet%records
       character(len=*), intent(in) :: name  !< empty: about the group
-      character(len=*), intent(in) :: reason  !< what is wrong and what would be right
-
-      call raise_error(error, "", blame(sheet, record, name, reason))
-   end subroutine refuse
-
-   !> A message about a parameter: file, line, group, name, what is wrong, where to read about it.
-   pure function blame(sheet, record, name, reason) result(message)
-      type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: record
-      character(len=*), intent(in) :: name, reason
+      character(len=*), intent(in) :: reason  !< the fault and its remedy
       character(len=:), allocatable :: message
       integer(ik) :: line
-      integer :: item
 
-      line = sheet%records(record)%line
-      if (name /= "") then
-         item = parameter_index(sheet%records(record)%group, name)
-         if (sheet%records(record)%values(item)%line > 0) then
-            line = sheet%records(record)%values(item)%line
+      associate (group => sheet%records(record))
+         line = group%line
+         if (name /= "") then
+            associate (item => parameter_index(group%group, name))
+               if (group%values(item)%line > 0) line = group%values(item)%line
+            end associate
          end if
-      end if
-      message = path_of(sheet, record)
-      if (line > 0) message = message//":"//integer_text(line)
-      message = message//": &"//trim(groups(sheet%records(record)%group)%name)//": "
-      if (name /= "") message = message//name//" "
-      message = message//reason//" "//read_about_it
-   end function blame
+         message = path_of(sheet, record)
+         if (line > 0) message = message//":"//integer_text(line)
+         message = message//": &"//trim(groups(group%group)%name)//": "
+         if (name /= "") message = message//name//" "
+         call raise_error(error, "", message//reason//" (see docs/input.md)")
+      end associate
+   end subroutine refuse
 
-   !> File and line for messages about the syntax.
+   !> File and line at the beginning of a message about the syntax.
    pure function place(sheet, line) result(words)
       type(sheet_t), intent(in) :: sheet
       integer(ik), intent(in) :: line

@@ -4,11 +4,12 @@ module scene_sides
    implicit none(type, external)
    private
 
-   public :: boundary_side_t, in_time, mean_in_time, side_course_t, side_quantities
+   public :: boundary_side_t, in_time, mean_in_time, normal_tractions, side_course_t
+   public :: side_quantities
    public :: of_inflow, of_normal_traction, of_pressure, of_shear_traction, of_x_displacement
    public :: of_x_traction, of_y_displacement, of_y_traction
 
-   !> What may change with time, by its name in a scene file.
+   !> Quantities that may change with time, by their names in a scene file.
    character(len=16), parameter :: side_quantities(8) = [character(len=16) :: &
                                                          "x_displacement", "y_displacement", &
                                                          "x_traction", "y_traction", &
@@ -18,30 +19,30 @@ module scene_sides
                          of_y_traction = 4, of_normal_traction = 5, of_shear_traction = 6, &
                          of_pressure = 7, of_inflow = 8
 
-   !> The values of a quantity at the times of a course.
+   !> Values of a quantity at the times of a course.
    type :: list_t
-      real(rk), allocatable :: of(:)  !< (times); unallocated: it does not change
+      real(rk), allocatable :: of(:)  !< (times) [unit of the quantity]; unallocated: constant
    end type list_t
 
-   !> Values in time: straight between the times, the first before and the last after them. Where
-   !! two times are equal the value jumps right after that time.
+   !> Values as functions of time: linear between the times, constant before the first and after the
+   !! last one. At two equal times the value jumps, right after that time.
    type :: side_course_t
-      real(rk), allocatable :: time(:)  !< in rising order; unallocated: nothing changes [s]
+      real(rk), allocatable :: time(:)  !< in increasing order; unallocated: all constant [s]
       type(list_t) :: values(size(side_quantities))
    end type side_course_t
 
-   !> One side of the body, now. Per component either displacement or total traction is prescribed,
-   !! or the side stands on springs, whose forces act beside that traction.
+   !> Conditions on a side of the body at one time. Per component either displacement or total
+   !! traction is prescribed; springs may act in addition to the traction.
    type :: boundary_side_t
-      logical :: displacement_given(2) = .false.  !< x, y: else traction is given
+      logical :: displacement_given(2) = .false.  !< x, y; .false.: traction is prescribed
       real(rk) :: displacement(2) = 0.0_rk  !< [m]
       real(rk) :: traction(2) = 0.0_rk  !< total traction [Pa]
       !> along the outward normal, and along the boundary with the body on the left [Pa]
       real(rk) :: normal_traction = 0.0_rk, shear_traction = 0.0_rk
-      real(rk) :: spring(2) = 0.0_rk  !< traction against the displacement, over it [Pa/m]
-      logical :: pressure_given = .false.  !< else inflow is, mostly none
+      real(rk) :: spring(2) = 0.0_rk  !< traction opposite to the displacement, over it [Pa/m]
+      logical :: pressure_given = .false.  !< .false.: inflow is prescribed
       real(rk) :: pressure = 0.0_rk  !< [Pa]
-      real(rk) :: inflow = 0.0_rk  !< volume that comes in per time and area [m/s]
+      real(rk) :: inflow = 0.0_rk  !< volume per time and area into the body [m/s]
       type(side_course_t) :: course
    contains
       procedure :: changes
@@ -52,19 +53,19 @@ module scene_sides
 
 contains
 
-   !> Something of it changes with time.
+   !> A quantity of the side changes with time.
    elemental logical function changes(self)
       class(boundary_side_t), intent(in) :: self
 
       changes = allocated(self%course%time)
    end function changes
 
-   !> Take the values of a time, and of the inflow the mean since an earlier one: what comes in is
-   !! then what the course says, however long the steps.
+   !> Set the values at a time, and the mean inflow since an earlier time: the inflowing volume then
+   !! does not depend on the length of the steps.
    elemental subroutine set_time(self, time, since)
       class(boundary_side_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      real(rk), intent(in) :: since  !< at most that [s]
+      real(rk), intent(in) :: since  !< at most `time` [s]
 
       if (.not. self%changes()) return
       call set(of_x_displacement, self%displacement(1))
@@ -91,9 +92,9 @@ contains
 
    end subroutine set_time
 
-   !> The value at a time, from those at the times of a course [unit of the values].
+   !> Value at a time, from those at the times of a course [unit of the values].
    pure real(rk) function in_time(times, values, time)
-      real(rk), intent(in) :: times(:)  !< in rising order [s]
+      real(rk), intent(in) :: times(:)  !< in increasing order [s]
       real(rk), intent(in) :: values(:)
       real(rk), intent(in) :: time  !< [s]
       integer(ik) :: k
@@ -110,9 +111,9 @@ contains
       end if
    end function in_time
 
-   !> The mean value between two times; where these are the same the value then.
+   !> Mean value between two times, or the value at a time if they are equal [unit of the values].
    pure real(rk) function mean_in_time(times, values, since, time) result(mean)
-      real(rk), intent(in) :: times(:)  !< in rising order [s]
+      real(rk), intent(in) :: times(:)  !< in increasing order [s]
       real(rk), intent(in) :: values(:)
       real(rk), intent(in) :: since, time  !< [s]
       real(rk) :: ends(2)
@@ -125,13 +126,22 @@ contains
       do k = 2, size(times, kind=ik)
          ends = [max(since, times(k - 1)), min(time, times(k))]
          if (.not. ends(2) > ends(1)) cycle
-         ! Straight in between: the value in the middle.
+         ! Linear in between: the mean is the value in the middle.
          mean = mean + (ends(2) - ends(1))*in_time(times, values, 0.5_rk*sum(ends))
       end do
       mean = mean/(time - since)
    end function mean_in_time
 
-   !> Of all tractions and pressures at any time [Pa].
+   !> Traction along the outward normal of the sides of a rectangle: left, right, bottom, top [Pa].
+   pure function normal_tractions(sides) result(normal)
+      type(boundary_side_t), intent(in) :: sides(4)
+      real(rk) :: normal(4)
+
+      normal = [-sides(1)%traction(1), sides(2)%traction(1), -sides(3)%traction(2), &
+                sides(4)%traction(2)] + sides%normal_traction
+   end function normal_tractions
+
+   !> Largest absolute value of all tractions and pressures at any time [Pa].
    elemental real(rk) function largest_stress(self) result(largest)
       class(boundary_side_t), intent(in) :: self
       integer :: k
@@ -145,7 +155,7 @@ contains
       end do
    end function largest_stress
 
-   !> Of the displacements at any time [m].
+   !> Largest absolute displacement at any time [m].
    elemental real(rk) function largest_displacement(self) result(largest)
       class(boundary_side_t), intent(in) :: self
       integer :: k

@@ -1,4 +1,4 @@
-!> A scene: the problem as the user states it, in SI units, after reading and checking.
+!> A scene: the problem stated by the user, in SI units, after reading and checking.
 module scene_types
    use base_kinds, only: ik, rk
    use scene_sides, only: boundary_side_t
@@ -14,13 +14,14 @@ module scene_types
 
    integer, parameter :: name_length = 64
 
-   !> The body: a rectangle, or a disc or polygon, which a rectangle bounds then.
+   !> The body: a rectangle, or a disc or polygon with x_min to y_max as its bounding rectangle.
    type :: domain_t
       character(len=name_length) :: shape = "rectangle"  !< or "disc", "polygon"
       real(rk) :: x_min = 0.0_rk, x_max = 0.0_rk  !< [m]
       real(rk) :: y_min = 0.0_rk, y_max = 0.0_rk  !< [m]
-      real(rk) :: x_centre = 0.0_rk, y_centre = 0.0_rk, radius = 0.0_rk  !< of a disc [m]
-      real(rk), allocatable :: x(:), y(:)  !< corners of a polygon, either way round [m]
+      !> centre, radius of a disc [m]
+      real(rk) :: x_centre = 0.0_rk, y_centre = 0.0_rk, radius = 0.0_rk
+      real(rk), allocatable :: x(:), y(:)  !< corners of a polygon in either orientation [m]
    end type domain_t
 
    !> Rock.
@@ -32,14 +33,14 @@ module scene_types
       real(rk) :: permeability_xx = 0.0_rk  !< [m2]
       real(rk) :: permeability_yy = 0.0_rk  !< [m2]
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
-      real(rk) :: density = 0.0_rk  !< with the fluid in its pores [kg/m3]
+      real(rk) :: density = 0.0_rk  !< density with the pore fluid [kg/m3]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
       real(rk) :: radiation_damping = 0.0_rk  !< eta = G/(2 c_s) [Pa s/m]
       logical :: plane_stress = .false.
       character(len=name_length) :: storage = "thesis"  !< (alpha - phi)/K_dr; or "textbook"
    end type material_t
 
-   !> A part of the body with rock of its own.
+   !> A part of the body with its own rock.
    type :: region_t
       character(len=name_length) :: name = ""
       character(len=name_length) :: shape = "polygon"  !< or "half_plane", "band", "parabola"
@@ -47,10 +48,10 @@ module scene_types
       !! first curve of a band [m]
       real(rk), allocatable :: x(:), y(:)
       real(rk), allocatable :: x_other(:), y_other(:)  !< second curve of a band [m]
-      !> one or two parabolas x = x_vertex + curvature (y - y_vertex)^2: right of it, between them
+      !> parabolas x = x_vertex + curvature (y - y_vertex)^2: the part right of one or between two
       real(rk), allocatable :: x_vertex(:), y_vertex(:)  !< [m]
       real(rk), allocatable :: curvature(:)  !< [1/m]
-      !> That of the scene but for what the region gives itself.
+      !> rock; properties that the region does not give are the scene's
       type(material_t) :: material
    end type region_t
 
@@ -58,14 +59,14 @@ module scene_types
    type :: fluid_t
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
-      real(rk) :: density = 0.0_rk  !< 0: without weight [kg/m3]
-      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< least pressure in fractures [Pa]
+      real(rk) :: density = 0.0_rk  !< density; 0: no weight [kg/m3]
+      real(rk) :: vapour_pressure = -huge(1.0_rk)  !< lowest pressure in fractures [Pa]
       ! In fractures, as functions of pressure (scene_fluid_law):
       character(len=name_length) :: viscosity_law = "constant"  !< or "exponential", "table"
       real(rk) :: viscosity_exponent = 0.0_rk  !< d ln mu/dp [1/Pa]
       character(len=name_length) :: density_law = "linear"  !< or "exponential", "table"
-      real(rk) :: reference_pressure = -huge(1.0_rk)  !< at which mu and c_p are as given [Pa]
-      real(rk), allocatable :: table_pressure(:)  !< rising [Pa]
+      real(rk) :: reference_pressure = -huge(1.0_rk)  !< pressure of the given mu and c_p [Pa]
+      real(rk), allocatable :: table_pressure(:)  !< increasing pressures [Pa]
       real(rk), allocatable :: table_viscosity(:)  !< [Pa s]
       real(rk), allocatable :: table_density(:)  !< [kg/m3]
    end type fluid_t
@@ -75,22 +76,23 @@ module scene_types
       character(len=name_length) :: name = ""
       real(rk), allocatable :: x(:), y(:)  !< vertices [m]
       character(len=name_length) :: law = "friction"  !< or "frictionless", "slip", "open"
-      real(rk) :: slip = 0.0_rk  !< of the law "slip", at load factor 1 [m]
-      real(rk) :: slip_taper = 0.0_rk  !< over which the slip rises from a free end [m]
+      real(rk) :: slip = 0.0_rk  !< prescribed slip of the law "slip", at load factor 1 [m]
+      real(rk) :: slip_taper = 0.0_rk  !< length over which the slip increases from a free end [m]
       real(rk) :: friction = 0.0_rk  !< mu_s [-]
-      real(rk) :: friction_residual = 0.0_rk  !< mu_r after the slip that weakens it [-]
-      real(rk) :: weakening_slip = 0.0_rk  !< D_c; 0: friction does not weaken [m]
+      real(rk) :: friction_residual = 0.0_rk  !< mu_r after weakening_slip [-]
+      real(rk) :: weakening_slip = 0.0_rk  !< D_c; 0: no weakening of friction [m]
       real(rk) :: dilation = 0.0_rk  !< psi [rad]
-      real(rk) :: dilation_slip = huge(1.0_rk)  !< at which dilation ends [m]
+      real(rk) :: dilation_slip = huge(1.0_rk)  !< slip at the end of dilation [m]
       real(rk) :: normal_stiffness = 0.0_rk  !< k_ni; 0: closed faces are rigid [Pa/m]
       real(rk) :: closure = 0.0_rk  !< d_max [m]
-      real(rk) :: cohesion = 0.0_rk  !< of a bond that weakening_slip breaks [Pa]
-      real(rk) :: tensile_strength = 0.0_rk  !< of a bond that opening_weakening breaks [Pa]
-      real(rk) :: opening_weakening = 0.0_rk  !< W_c [m]
+      real(rk) :: cohesion = 0.0_rk  !< shear strength of a bond, which weakening_slip breaks [Pa]
+      real(rk) :: tensile_strength = 0.0_rk  !< tensile strength of the same bond [Pa]
+      real(rk) :: opening_weakening = 0.0_rk  !< opening W_c that breaks the bond [m]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC of its tips; huge: that of the rock [Pa m^1/2]
-      real(rk) :: skin = 0.0_rk  !< pressure over flux between its fluid and the rock [Pa s/m]
-      logical :: held_closed = .false.  !< the faces slide but do not part; mechanics only
-      real(rk) :: face_pressure = 0.0_rk  !< on the faces, at load factor 1; mechanics only [Pa]
+      real(rk) :: skin = 0.0_rk  !< pressure difference to the rock over flux [Pa s/m]
+      logical :: held_closed = .false.  !< the faces slide but do not separate; mechanics only
+      !> pressure on the faces at load factor 1; mechanics only [Pa]
+      real(rk) :: face_pressure = 0.0_rk
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
    contains
       procedure :: length => fracture_length
@@ -99,13 +101,13 @@ module scene_types
    !> A part of the boundary of a polygon or a disc.
    type, extends(boundary_side_t) :: boundary_part_t
       character(len=name_length) :: name = ""
-      !> of a polygon; edge k runs from corner k to the next one, as the file gives them
+      !> edges of a polygon; edge k connects corner k of the file and the next one
       integer(ik), allocatable :: edges(:)
-      logical :: whole_rim = .false.  !< of a disc: all of it, else an arc
-      real(rk) :: arc(2) = 0.0_rk  !< counter-clockwise from one angle to the other [rad]
+      logical :: whole_rim = .false.  !< the whole rim of a disc, and not an arc
+      real(rk) :: arc(2) = 0.0_rk  !< angles of an arc, counter-clockwise from the first [rad]
    end type boundary_part_t
 
-   !> A point of the body that is held, per component.
+   !> A point of the body with prescribed displacement, per component.
    type :: restraint_t
       real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
       logical :: displacement_given(2) = .false.  !< x, y
@@ -118,50 +120,49 @@ module scene_types
       real(rk) :: force(2) = 0.0_rk  !< [N/m]
    end type point_load_t
 
-   !> Meshes that follow the error.
+   !> Adaptive meshes.
    type :: adaptive_t
       logical :: enabled = .false.
-      real(rk) :: tolerance = 0.01_rk  !< error in the energy norm over the norm [-]
-      integer(ik) :: passes = 4  !< meshes at most after the first
+      real(rk) :: tolerance = 0.01_rk  !< target error in the energy norm over the norm [-]
+      integer(ik) :: passes = 4  !< largest number of meshes after the first
    end type adaptive_t
 
-   !> Stress before the load, linear in y.
+   !> Stress before loading, linear in y.
    type :: in_situ_t
       real(rk) :: stress(3) = 0.0_rk  !< xx, yy, xy at the datum [Pa]
-      real(rk) :: per_y(2) = 0.0_rk  !< xx, yy: rise per metre upwards [Pa/m]
-      real(rk) :: y_datum = 0.0_rk  !< [m]
+      real(rk) :: per_y(2) = 0.0_rk  !< xx, yy: increase per metre upwards [Pa/m]
+      real(rk) :: y_datum = 0.0_rk  !< level of the given stresses and pressures [m]
    end type in_situ_t
 
-   !> How the load of a mechanics-only scene changes: up or down, or to and fro.
+   !> Load programme of a mechanics-only scene.
    type :: load_t
-      real(rk) :: from = 0.0_rk, to = 1.0_rk  !< factor of all loads [-]
-      !> Through which it is led in turn, the last of them then being `to`; unallocated: straight
-      !! from the one to the other [-]
+      real(rk) :: from = 0.0_rk, to = 1.0_rk  !< first and last load factor [-]
+      !> successive load factors of a load cycle, of which `to` is the last; unallocated: none [-]
       real(rk), allocatable :: factors(:)
-      integer(ik) :: steps = 1  !< equal ones, to each of the factors
-      !> "length": growth in equilibrium takes it down; "dead": it never falls by itself
+      integer(ik) :: steps = 1  !< number of equal steps to each of the factors
+      !> "length": the load may decrease in equilibrium growth; "dead": it does not
       character(len=name_length) :: control = ""
    end type load_t
 
-   !> A well: fluid injected into a fracture or into the rock, or drawn from it, in stages.
+   !> A well: injection into a fracture or into the rock, or production, in stages.
    type :: injection_t
       character(len=name_length) :: name = ""
       integer(ik) :: fracture = 0  !< index into scene%fractures; 0: in the rock
-      !> Into the cell nearest to (x, y), else spread over the fracture as it is at the start.
+      !> in the cell nearest to (x, y), and not the whole initial fracture
       logical :: at_point = .false.
-      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
+      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< point of injection [m]
       real(rk) :: start = 0.0_rk, end = huge(1.0_rk)  !< [s]
-      real(rk), allocatable :: time(:)  !< when stages begin; unallocated: one, from start [s]
-      !> (stages) Q per metre of thickness, over the whole well; unallocated: what pressure makes of
-      !! it [m2/s]
+      !> (stages) start times; unallocated: one stage from start [s]
+      real(rk), allocatable :: time(:)
+      !> (stages) rate Q of the whole well per metre of thickness; unallocated: pressure control
+      !! [m2/s]
       real(rk), allocatable :: rate(:)
-      !> (stages) at the well's head, which it has, or beside a rate does not pass; unallocated: no
-      !! limit [Pa]
+      !> (stages) pressure at the well head, with a rate its limit; unallocated: no limit [Pa]
       real(rk), allocatable :: pressure(:)
-      real(rk) :: storage = 0.0_rk  !< fluid that the well holds per pressure [m2/Pa]
-      real(rk) :: friction = 0.0_rk  !< pressure that the flow to the fracture loses [Pa s/m2]
-      real(rk) :: turbulence = 0.0_rk  !< the same for the flow's square [Pa s2/m4]
-      real(rk) :: radius = 0.0_rk  !< of a well in the rock [m]
+      real(rk) :: storage = 0.0_rk  !< wellbore storage: stored volume per pressure [m2/Pa]
+      real(rk) :: friction = 0.0_rk  !< pressure loss to the fracture per flow [Pa s/m2]
+      real(rk) :: turbulence = 0.0_rk  !< pressure loss per flow squared [Pa s2/m4]
+      real(rk) :: radius = 0.0_rk  !< radius of a well in the rock [m]
    contains
       procedure :: stage_count
       procedure :: stage_at
@@ -172,32 +173,33 @@ module scene_types
    !> State before the first step.
    type :: initial_t
       character(len=name_length) :: fracture_pressure = "equilibrated"  !< or "undrained"
-      real(rk) :: pressure = 0.0_rk  !< pore pressure before the load acts [Pa]
+      real(rk) :: pressure = 0.0_rk  !< pore pressure before loading [Pa]
    end type initial_t
 
    !> Time steps.
    type :: time_t
       real(rk) :: end = 0.0_rk  !< [s]
-      real(rk) :: step = 0.0_rk  !< regular or longest step; 0: none is given [s]
-      real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: every step is `step` [-]
-      real(rk) :: share_after_growth = 0.01_rk  !< of the longest step, right after growth [-]
-      real(rk) :: smallest_factor = 0.0_rk  !< of the longest step; below it a run ends [-]
+      real(rk) :: step = 0.0_rk  !< regular or longest step; 0: not given [s]
+      real(rk) :: tolerance = 0.0_rk  !< tolerance of the step error; 0: every step is `step` [-]
+      real(rk) :: share_after_growth = 0.01_rk  !< first step after growth over the longest step [-]
+      !> smallest step over the longest, at which a run ends [-]
+      real(rk) :: smallest_factor = 0.0_rk
    contains
       procedure :: longest
    end type time_t
 
    !> Meshes and solvers of both levels.
    type :: discretization_t
-      real(rk) :: size_fracture = 0.0_rk  !< dH: coarse cells at the fractures [m]
-      real(rk) :: size_boundary = 0.0_rk  !< coarse cells far from them [m]
-      real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window; 0 if it is the body [m]
-      logical :: window_is_body = .false.  !< all tips are in one window, the whole body
+      real(rk) :: size_fracture = 0.0_rk  !< dH: size of cells at the fractures [m]
+      real(rk) :: size_boundary = 0.0_rk  !< size of cells far from the fractures [m]
+      real(rk) :: window = 0.0_rk  !< l: edge of a window; 0 if the window is the body [m]
+      logical :: window_is_body = .false.  !< the whole body is the only window
       real(rk) :: fine_ratio = 0.5_rk  !< eps_m = dh/dH [-]
-      integer(ik) :: rosette_sectors = 12  !< elements around a tip
-      real(rk) :: rosette_radius = 0.0_rk  !< mechanics only [m]
+      integer(ik) :: rosette_sectors = 12  !< number of elements around a tip
+      real(rk) :: rosette_radius = 0.0_rk  !< size of the elements around a tip; mechanics only [m]
       character(len=name_length) :: element = "quarter_point"  !< at tips; or "collapsed", "plain"
       character(len=name_length) :: face_condition = "contact"  !< or "jump", "traction"
-      integer(ik) :: newton_max = 30  !< iterations before a step is cut
+      integer(ik) :: newton_max = 30  !< largest number of iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
       character(len=name_length) :: condensation = "auto"  !< or "full", "sparse"
    end type discretization_t
@@ -205,14 +207,16 @@ module scene_types
    !> Fracture growth.
    type :: growth_t
       logical :: enabled = .false.
-      logical :: intensities = .false.  !< compute stress intensity factors (always with growth)
+      !> stress intensity factors are computed (always with growth)
+      logical :: intensities = .false.
       character(len=name_length) :: law = "equilibrium"  !< "equilibrium" or "paris"
       real(rk) :: increment = 0.0_rk  !< l_max [m]
-      real(rk) :: exponent = 0.35_rk  !< of the Paris-type law [-]
-      real(rk) :: threshold = 0.5_rk  !< eps_p: growth is handed over at eps_p*dH [-]
+      real(rk) :: exponent = 0.35_rk  !< exponent of the Paris-type law [-]
+      !> eps_p: growth over dH at which the coarse mesh is updated [-]
+      real(rk) :: threshold = 0.5_rk
       real(rk) :: new_aperture = 1.0e-5_rk  !< residual aperture of new fracture cells [m]
       character(len=name_length) :: new_volume = "conserved"  !< "conserved" or "prefilled"
-      real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which a run ends [m]
+      real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which the run ends [m]
    end type growth_t
 
    !> A point where the matrix state is recorded.
@@ -221,15 +225,16 @@ module scene_types
       real(rk) :: x = 0.0_rk, y = 0.0_rk  !< [m]
    end type probe_t
 
-   !> What is written, and how often.
+   !> Output.
    type :: output_t
-      logical :: vtu = .true.
-      real(rk) :: interval = 0.0_rk  !< between written fields [s]
-      integer(ik) :: growth_states = 200  !< of which VTU files are written beside these
-      !> slip or opening that stimulates faces, and mean slip that makes an event, at least [m]
+      logical :: vtu = .true.  !< VTU files are written
+      real(rk) :: interval = 0.0_rk  !< time between written fields [s]
+      !> largest number of additional states of growth with VTU files
+      integer(ik) :: growth_states = 200
+      !> smallest slip or opening of stimulated faces, and mean slip of an event [m]
       real(rk) :: stimulated_jump = 1.0e-6_rk
-      real(rk) :: out_of_plane_length = 1.0_rk  !< of slip events [m]
-      real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< from which they are seismic [m/s]
+      real(rk) :: out_of_plane_length = 1.0_rk  !< out-of-plane length of slip events [m]
+      real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< smallest slip rate of seismic events [m/s]
    end type output_t
 
    !> The whole problem.
@@ -238,12 +243,12 @@ module scene_types
       character(len=256) :: title = ""
       type(domain_t) :: domain
       type(material_t) :: material
-      !> in order: where they overlap the later one counts; unallocated: uniform rock
+      !> regions in the order of the file: the later of two that overlap applies; unallocated: none
       type(region_t), allocatable :: regions(:)
       type(fluid_t) :: fluid
       type(fracture_t), allocatable :: fractures(:)
-      type(boundary_side_t) :: sides(4)  !< of a rectangle: left, right, bottom, top
-      type(boundary_part_t), allocatable :: parts(:)  !< of the boundary of another body
+      type(boundary_side_t) :: sides(4)  !< left, right, bottom, top of a rectangle
+      type(boundary_part_t), allocatable :: parts(:)  !< parts of the boundary of a disc or polygon
       type(restraint_t), allocatable :: restraints(:)
       type(point_load_t), allocatable :: point_loads(:)
       type(load_t) :: load
@@ -262,24 +267,26 @@ module scene_types
       procedure :: has_fractures
       procedure :: has_wells
       procedure :: has_points
+      procedure :: n_parts
    end type scene_t
 
 contains
 
-   !> No step is longer [s].
+   !> Longest step [s].
    pure real(rk) function longest(self)
       class(time_t), intent(in) :: self
 
       longest = merge(self%step, self%end, self%step > 0.0_rk)
    end function longest
 
-   !> Else it is mechanics only.
+   !> The scene has a fluid; otherwise it is mechanics only.
    pure logical function has_fluid(self)
       class(scene_t), intent(in) :: self
 
       has_fluid = self%fluid%viscosity > 0.0_rk
    end function has_fluid
 
+   !> The scene has fractures.
    pure logical function has_fractures(self)
       class(scene_t), intent(in) :: self
 
@@ -287,6 +294,7 @@ contains
       if (has_fractures) has_fractures = size(self%fractures) > 0
    end function has_fractures
 
+   !> The scene has wells.
    pure logical function has_wells(self)
       class(scene_t), intent(in) :: self
 
@@ -294,7 +302,7 @@ contains
       if (has_wells) has_wells = size(self%injections) > 0
    end function has_wells
 
-   !> Points of the body are held or loaded.
+   !> The scene has restraints or point loads.
    pure logical function has_points(self)
       class(scene_t), intent(in) :: self
 
@@ -302,6 +310,15 @@ contains
       if (has_points) has_points = size(self%restraints) + size(self%point_loads) > 0
    end function has_points
 
+   !> Number of parts of the boundary that the scene names; 0 for a rectangle.
+   pure integer function n_parts(self)
+      class(scene_t), intent(in) :: self
+
+      n_parts = 0
+      if (allocated(self%parts)) n_parts = size(self%parts)
+   end function n_parts
+
+   !> Number of stages, at least 1.
    pure integer(ik) function stage_count(self)
       class(injection_t), intent(in) :: self
 
@@ -309,7 +326,7 @@ contains
       if (allocated(self%time)) stage_count = size(self%time, kind=ik)
    end function stage_count
 
-   !> When a stage begins [s].
+   !> Start time of a stage [s].
    pure real(rk) function stage_start(self, stage)
       class(injection_t), intent(in) :: self
       integer(ik), intent(in) :: stage
@@ -318,7 +335,7 @@ contains
       if (allocated(self%time)) stage_start = self%time(stage)
    end function stage_start
 
-   !> The stage that a time belongs to; 0: the well is shut, before its start or after its end.
+   !> Number of the stage at a time; 0: the well is shut, before its start or after its end.
    pure integer(ik) function stage_at(self, time) result(stage)
       class(injection_t), intent(in) :: self
       real(rk), intent(in) :: time  !< [s]
@@ -330,14 +347,14 @@ contains
       end do
    end function stage_at
 
-   !> What flows depends on pressures: its rate is not simply what the scene says.
+   !> The flow depends on pressures, rather than being the rate of the scene.
    elemental logical function is_controlled(self)
       class(injection_t), intent(in) :: self
 
       is_controlled = allocated(self%pressure) .or. self%storage > 0.0_rk
    end function is_controlled
 
-   !> Along the polyline, as far as it has both coordinates [m].
+   !> Length of the polyline, as far as both lists of coordinates reach [m].
    pure real(rk) function fracture_length(self) result(length)
       class(fracture_t), intent(in) :: self
       integer :: k

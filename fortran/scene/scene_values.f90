@@ -17,15 +17,15 @@ module scene_values
 
    !> The value of a parameter in one group of a file.
    type :: value_t
-      logical :: is_set = .false.  !< by the file or by its default
-      integer(ik) :: line = 0  !< where the file gives it; 0: the file does not
+      logical :: is_set = .false.  !< by the file or by a default
+      integer(ik) :: line = 0  !< line of the file; 0: not in the file
       real(rk), allocatable :: reals(:)
       integer(ik) :: whole = 0
       logical :: flag = .false.
       character(len=:), allocatable :: text
    end type value_t
 
-   integer, parameter :: most_values = 100000  !< of one name: a guard against absurd repeat counts
+   integer, parameter :: most_values = 100000  !< values of one name, also by repeat counts
 
 contains
 
@@ -34,7 +34,7 @@ contains
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: source
       type(token_t), intent(in) :: tokens(:)  !< words, texts and commas
-      type(value_t), intent(inout) :: value  !< its line stays as it is
+      type(value_t), intent(inout) :: value  !< its line does not change
       character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       real(rk), allocatable :: numbers(:)
       character(len=:), allocatable :: word
@@ -128,7 +128,7 @@ contains
       end if
    end subroutine split_repeat
 
-   !> Read one item.
+   !> Read one item; a number goes to `number` too.
    pure subroutine read_item(parameter, word, is_text, value, number, reason)
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: word  !< a text still has its quotes
@@ -190,6 +190,7 @@ contains
       good = status == 0 .and. abs(number) <= huge(number)
    end subroutine read_real
 
+   !> A whole number.
    pure subroutine read_integer(word, whole, good)
       character(len=*), intent(in) :: word
       integer(ik), intent(inout) :: whole
@@ -204,6 +205,7 @@ contains
       good = status == 0
    end subroutine read_integer
 
+   !> A logical, in the forms of Fortran.
    pure subroutine read_logical(word, flag, good)
       character(len=*), intent(in) :: word
       logical, intent(inout) :: flag
@@ -224,25 +226,21 @@ contains
    pure subroutine check_text(parameter, text, reason)
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: text
-      character(len=:), allocatable, intent(out) :: reason
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
+      logical :: good
 
       select case (parameter%kind)
       case (kind_choice)
-         if (.not. is_choice(parameter, text)) then
-            reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
-         end if
+         good = is_choice(parameter, text)
       case (kind_name)
-         if (len(text) > name_length .or. .not. is_identifier(text)) then
-            reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
-         end if
+         good = len(text) <= name_length .and. is_identifier(text)
       case default
-         if (len(text) > text_length .or. .not. is_printable(text)) then
-            reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
-         end if
+         good = len(text) <= text_length .and. is_printable(text)
       end select
+      if (.not. good) reason = "is '"//shortened(text)//"' but must be "//wanted(parameter)
    end subroutine check_text
 
-   !> One of the parameter's words.
+   !> A text is one of the parameter's choices.
    pure logical function is_choice(parameter, text)
       type(parameter_t), intent(in) :: parameter
       character(len=*), intent(in) :: text
@@ -251,7 +249,7 @@ contains
                   index(text, "|") == 0 .and. parameter%choices /= ""
    end function is_choice
 
-   !> What a parameter takes, for messages.
+   !> Description of the values that a parameter takes, for messages.
    pure function wanted(parameter) result(words)
       type(parameter_t), intent(in) :: parameter
       character(len=:), allocatable :: words
@@ -279,6 +277,7 @@ contains
       end select
    end function wanted
 
+   !> Noun for one value of a parameter, for messages.
    pure function noun(parameter) result(word)
       type(parameter_t), intent(in) :: parameter
       character(len=:), allocatable :: word
@@ -309,7 +308,7 @@ contains
       end do
    end function with_or
 
-   !> Enough of a word to recognize it in a message, safe to print on a terminal.
+   !> The beginning of a word for a message, safe to print on a terminal.
    pure function shortened(word) result(short)
       character(len=*), intent(in) :: word
       character(len=:), allocatable :: short
@@ -324,7 +323,7 @@ contains
       end do
    end function shortened
 
-   !> Digits with at most one point, and a sign before them at most.
+   !> Digits with at most one point, with or without a sign.
    pure logical function is_decimal(word)
       character(len=*), intent(in) :: word
       integer :: first, point
@@ -340,7 +339,7 @@ contains
       end if
    end function is_decimal
 
-   !> Digits, and a sign before them at most.
+   !> Digits, with or without a sign.
    pure logical function is_whole(word)
       character(len=*), intent(in) :: word
       integer :: first
@@ -349,6 +348,7 @@ contains
       is_whole = first <= len(word) .and. verify(word(first:), "0123456789") == 0
    end function is_whole
 
+   !> Position of the first character after a sign, if there is one.
    pure integer function after_sign(word) result(first)
       character(len=*), intent(in) :: word
 

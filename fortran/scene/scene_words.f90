@@ -1,7 +1,5 @@
-!> Small operations on words: case, similarity, and numbers in the form of scene files, which are
-!! read back exactly.
-!!
-!! Ranges of allowed values, and their description in words.
+!> Operations on words: case, similarity, numbers in the form of scene files, which are read back
+!! exactly; and ranges of allowed values with their description in words.
 module scene_words
    use base_kinds, only: ik, rk
    use base_number, only: decimal_digits, integer_text, most_digits
@@ -13,9 +11,9 @@ module scene_words
    public :: newton_range, passes_range, poisson_range, porosity_range, positive, real_text
    public :: rosette_range, rounded_text, share, steps_range, tolerance_range
 
-   integer, parameter :: longest_compared = 60  !< characters of a word; no name is longer
+   integer, parameter :: longest_compared = 60  !< characters of a word that are compared
 
-   !> Values between two bounds; a bound at +-huge is none, for every value is finite.
+   !> Values between two bounds; a bound of +-huge is no bound.
    type :: interval_t
       real(rk) :: lowest = -huge(1.0_rk), highest = huge(1.0_rk)
       logical :: open_below = .false., open_above = .false.  !< the bound itself is not allowed
@@ -27,7 +25,7 @@ module scene_words
    type(interval_t), parameter :: below_one = interval_t(0.0_rk, 1.0_rk)
    type(interval_t), parameter :: share = interval_t(0.0_rk, 1.0_rk, .true., .false.)
 
-   !> Within it the drained bulk modulus is positive and finite.
+   !> Range in which the drained bulk modulus is positive and finite.
    type(interval_t), parameter :: poisson_range = interval_t(-1.0_rk, 0.5_rk, .true., .true.)
    type(interval_t), parameter :: biot_range = interval_t(0.0_rk, 1.0_rk)
    type(interval_t), parameter :: porosity_range = interval_t(0.0_rk, 1.0_rk, .false., .true.)
@@ -36,17 +34,17 @@ module scene_words
    !> With fewer than 6 sectors an element at the tip spans more than 60 degrees.
    type(interval_t), parameter :: rosette_range = interval_t(6.0_rk, 64.0_rk)
    type(interval_t), parameter :: steps_range = interval_t(1.0_rk, 100000.0_rk)
-   !> Of the viscosity: oils and brines are below 1e-7 1/Pa.
+   !> Exponent of the viscosity; that of oils and brines is below 1e-7 1/Pa.
    type(interval_t), parameter :: exponent_range = interval_t(-1.0e-6_rk, 1.0e-6_rk)  !< [1/Pa]
    type(interval_t), parameter :: passes_range = interval_t(1.0_rk, 20.0_rk)
    type(interval_t), parameter :: newton_range = interval_t(1.0_rk, 1000.0_rk)
 
-   !> Round-off ends below it; no step with a larger residual is ever accepted.
+   !> From round-off to the largest residual of an accepted step.
    type(interval_t), parameter :: tolerance_range = interval_t(1.0e-14_rk, 1.0e-8_rk)
 
 contains
 
-   !> ASCII letters in lower case, all else unchanged.
+   !> A word with its ASCII letters in lower case.
    pure function lower_case(word) result(lower)
       character(len=*), intent(in) :: word
       character(len=len(word)) :: lower
@@ -59,8 +57,8 @@ contains
       end do
    end function lower_case
 
-   !> Insertions, deletions, replacements and swaps of neighbours that turn a into b
-   !> (optimal string alignment; Damerau 1964).
+   !> Insertions, deletions, replacements and swaps of neighbours that turn a into b (optimal string
+   !! alignment; Damerau 1964).
    pure integer function edit_distance(a, b) result(distance)
       character(len=*), intent(in) :: a, b
       integer :: d(-1:len(a), -1:len(b))
@@ -83,10 +81,9 @@ contains
       distance = d(len(a), len(b))
    end function edit_distance
 
-   !> The candidate that a word was probably meant to be, empty if none is near. Cases are the same.
-   !!
-   !! Near is what few slips of the pen turn into the other, one to three by the word's length, and
-   !! what goes on where the other ends: `dilation` and `dilation_deg`. Fewest slips win.
+   !> The candidate nearest to a word, empty if none is near; upper and lower case are equal. Words
+   !! are near if their edit distance is at most one to three, by the length of the word, or if one
+   !! begins with the other, as `dilation` and `dilation_deg`.
    pure function nearest_word(word, candidates) result(best)
       character(len=*), intent(in) :: word
       character(len=*), intent(in) :: candidates(:)
@@ -106,14 +103,14 @@ contains
       end do
    end function nearest_word
 
-   !> So many slips leave a word of this length recognizable.
+   !> Largest edit distance of near words by the length of a word.
    pure integer function most_slips(length)
       integer, intent(in) :: length
 
       most_slips = min(max(1, length/3), 3, max(length - 1, 0))
    end function most_slips
 
-   !> One of two words is how the other begins, and long enough to tell them from others.
+   !> One of two words begins with the other, which has at least three letters.
    pure logical function is_beginning(a, b)
       character(len=*), intent(in) :: a, b
       integer, parameter :: shortest = 3
@@ -123,8 +120,8 @@ contains
       is_beginning = n >= shortest .and. a(:n) == b(:n)
    end function is_beginning
 
-   !> Letters, digits, `_`, `-` and `.`, beginning with a letter or a digit: safe as a file name and
-   !> as part of a column name.
+   !> A word consists of letters, digits, `_`, `-` and `.`, and begins with a letter or a digit:
+   !! safe as a file name and as part of a column name.
    pure logical function is_identifier(word)
       character(len=*), intent(in) :: word
       character(len=*), parameter :: alphanumeric = "abcdefghijklmnopqrstuvwxyz"// &
@@ -137,7 +134,7 @@ contains
    !> The shortest decimal text that reads back to the same bits, as `0.25`, `97200.0` or `4.0e-10`.
    pure function real_text(value, n_digits) result(text)
       real(rk), intent(in) :: value  !< finite
-      integer, intent(in), optional :: n_digits  !< rounded to so many significant digits
+      integer, intent(in), optional :: n_digits  !< significant digits; default: all
       character(len=:), allocatable :: text
       character(len=most_digits), parameter :: zeros = repeat("0", most_digits)
       character(len=most_digits) :: all_digits
@@ -158,7 +155,7 @@ contains
       if (sign(1.0_rk, value) < 0.0_rk) text = "-"//text
    end function real_text
 
-   !> A computed number for a message, to four digits.
+   !> A computed number for a message, rounded to four digits.
    pure function rounded_text(value) result(text)
       real(rk), intent(in) :: value  !< finite
       character(len=:), allocatable :: text
@@ -176,7 +173,7 @@ contains
       if (interval%open_above) holds = holds .and. value < interval%highest
    end function holds
 
-   !> For instance `at least 0.0 and less than 0.5`; empty for all finite numbers.
+   !> An interval in words, as `at least 0.0 and less than 0.5`; empty without bounds.
    pure function in_words(interval, whole) result(words)
       type(interval_t), intent(in) :: interval
       logical, intent(in) :: whole  !< the values are whole numbers
@@ -200,6 +197,7 @@ contains
       end if
    end function in_words
 
+   !> A bound as a real or whole number.
    pure function bound_text(bound, whole) result(text)
       real(rk), intent(in) :: bound  !< [any unit]
       logical, intent(in) :: whole

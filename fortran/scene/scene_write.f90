@@ -3,8 +3,9 @@ module scene_write
    use base_kinds, only: ik
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
-   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, &
-                               kind_reals, kind_wholes, parameter_t, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, kind_reals, &
+                               kind_wholes, parameter_t
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t
@@ -14,84 +15,96 @@ module scene_write
 
    public :: scene_text
 
+   !> The lines of a text.
+   type :: lines_t
+      character(len=:), allocatable :: text  !< with spare capacity
+      integer :: length = 0  !< characters in use
+   contains
+      procedure :: put
+   end type lines_t
+
 contains
 
-   !> The text of a scene file. Reading it gives the same scene, bit for bit.
+   !> The text of a scene file with all values of a scene. Reading it gives the same scene, bit for
+   !! bit.
    function scene_text(scene) result(text)
-      type(scene_t), intent(in) :: scene  !< as read_scene gives it
+      type(scene_t), intent(in) :: scene  !< from read_scene
       character(len=:), allocatable :: text
       type(sheet_t) :: sheet
-      integer :: i, item, length
+      type(lines_t) :: lines
+      integer :: i, item
 
       call scene_to_sheet(scene, sheet)
-      allocate (character(len=4096) :: text)
-      length = 0
-      call put("! The scene with all defaults; it reproduces the run.")
-      call put("! SI units; docs/input.md describes each name.")
+      call lines%put("! The scene with all defaults; it reproduces the run.")
+      call lines%put("! SI units; docs/input.md describes each name.")
       do i = 1, sheet%length
-         call put("")
-         call put("&"//trim(groups(sheet%records(i)%group)%name))
+         call lines%put("")
+         call lines%put("&"//trim(groups(sheet%records(i)%group)%name))
          do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
-            if (.not. applies(parameters(item)%scenes, scene%has_fluid())) cycle
-            if (sheet%records(i)%values(item)%is_set) then
-               call put_value(parameters(item), sheet%records(i)%values(item))
-            else if (parameters(item)%absent == "") then  ! it has a default, but not here
-               call put("  ! "//trim(parameters(item)%name)//": does not apply")
-            else
-               call put("  ! "//trim(parameters(item)%name)//": "//trim(parameters(item)%absent))
-            end if
-         end do
-         call put("/")
-      end do
-      text = text(:length)
-
-   contains
-
-      !> One line. The text grows by doubling: polylines may have 100,000 points.
-      subroutine put(line)
-         character(len=*), intent(in) :: line
-         character(len=:), allocatable :: longer
-
-         if (length + len(line) + 1 > len(text)) then
-            allocate (character(len=2*(length + len(line) + 1)) :: longer)
-            longer(:length) = text(:length)
-            call move_alloc(longer, text)
-         end if
-         text(length + 1:length + len(line) + 1) = line//new_line("a")
-         length = length + len(line) + 1
-      end subroutine put
-
-      !> `name = value`, with the unit as a comment.
-      subroutine put_value(parameter, value)
-         type(parameter_t), intent(in) :: parameter
-         type(value_t), intent(in) :: value
-         character(len=:), allocatable :: unit_comment, line
-         integer :: k
-
-         unit_comment = ""
-         if (parameter%unit /= "-") unit_comment = "  ! ["//trim(parameter%unit)//"]"
-         if (any(parameter%kind == [kind_reals, kind_wholes])) then
-            call put("  "//trim(parameter%name)//" ="//unit_comment)
-            line = "   "
-            do k = 1, size(value%reals)
-               if (parameter%kind == kind_reals) then
-                  line = line//" "//real_text(value%reals(k))
+            associate (parameter => parameters(item), value => sheet%records(i)%values(item))
+               if (.not. applies(parameter%scenes, scene%has_fluid())) cycle
+               if (value%is_set) then
+                  call put_value(lines, parameter, value)
+               else if (parameter%absent == "") then  ! a default that this group does not take
+                  call lines%put("  ! "//trim(parameter%name)//": does not apply")
                else
-                  line = line//" "//integer_text(nint(value%reals(k), ik))
+                  call lines%put("  ! "//trim(parameter%name)//": "//trim(parameter%absent))
                end if
-               if (k == size(value%reals) .or. len(line) > 70) then
-                  call put(line)
-                  line = "   "
-               end if
-            end do
-         else
-            call put("  "//trim(parameter%name)//" = "//value_text(parameter, value)//unit_comment)
-         end if
-      end subroutine put_value
-
+            end associate
+         end do
+         call lines%put("/")
+      end do
+      text = lines%text(:lines%length)
    end function scene_text
 
-   !> A single value as a scene file gives it.
+   !> Add a line. The text grows by doubling: polylines may have 100,000 points.
+   subroutine put(self, line)
+      class(lines_t), intent(inout) :: self
+      character(len=*), intent(in) :: line
+      character(len=:), allocatable :: longer
+      integer :: length  ! with the new line
+
+      length = self%length + len(line) + 1
+      if (.not. allocated(self%text)) allocate (character(len=4096) :: self%text)
+      if (length > len(self%text)) then
+         allocate (character(len=2*length) :: longer)
+         longer(:self%length) = self%text(:self%length)
+         call move_alloc(longer, self%text)
+      end if
+      self%text(self%length + 1:length) = line//new_line("a")
+      self%length = length
+   end subroutine put
+
+   !> Add `name = value`, with the unit as a comment; a list follows on separate lines.
+   subroutine put_value(lines, parameter, value)
+      type(lines_t), intent(inout) :: lines
+      type(parameter_t), intent(in) :: parameter
+      type(value_t), intent(in) :: value
+      character(len=:), allocatable :: line, unit
+      integer :: k
+
+      unit = ""
+      if (parameter%unit /= "-") unit = "  ! ["//trim(parameter%unit)//"]"
+      if (all(parameter%kind /= [kind_reals, kind_wholes])) then
+         call lines%put("  "//trim(parameter%name)//" = "//value_text(parameter, value)//unit)
+         return
+      end if
+      call lines%put("  "//trim(parameter%name)//" ="//unit)
+      line = "   "
+      do k = 1, size(value%reals)
+         if (parameter%kind == kind_reals) then
+            line = line//" "//real_text(value%reals(k))
+         else
+            line = line//" "//integer_text(nint(value%reals(k), ik))
+         end if
+         if (k == size(value%reals) .or. len(line) > 70) then
+            call lines%put(line)
+            line = "   "
+         end if
+      end do
+   end subroutine put_value
+
+   !> A single value in the form of a scene file.
    pure function value_text(parameter, value) result(text)
       type(parameter_t), intent(in) :: parameter
       type(value_t), intent(in) :: value
@@ -113,7 +126,7 @@ contains
       end select
    end function value_text
 
-   !> In single quotes, those within doubled.
+   !> A text in single quotes; quotes within it are doubled.
    pure function quoted(text) result(with_quotes)
       character(len=*), intent(in) :: text
       character(len=:), allocatable :: with_quotes

@@ -9,6 +9,7 @@ module twolevel_simulation
    use report_rows, only: history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t
    use report_simulation, only: snapshot_t
+   use report_slip, only: slip_step_t
    use twolevel_doubt, only: find_improvements, improve_windows, note_uncertain_tips
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_certainty, note_excess
@@ -170,8 +171,9 @@ contains
          if (self%is_initial) then
             call self%catalogue%remember(fracture, traction)
          else
-            call self%note_slip(self%dt, fracture, potency, shear, cell_states(self%now%coarse), &
-                                self%is_unstable, traction)
+            call self%note_slip(fracture, slip_step_t(self%dt, potency, shear, &
+                                                      cell_states(self%now%coarse), traction, &
+                                                      self%is_unstable))
          end if
       end associate
    end subroutine book_change

@@ -21,7 +21,7 @@ program wingcrack_solver
                                   "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
                                   "ranks SCENE.nml | "// &
                                   "--describe json | --version"
-   !> Kept to the program's end: gfortran 12 loses parts of what it deallocates by its dynamic type.
+   !> Kept to the program's end: gfortran 12 loses memory when it deallocates by the dynamic type.
    class(simulation_t), allocatable :: simulation
 
    select case (argument(1))
@@ -92,7 +92,7 @@ contains
       call describe_scene(scene, output_unit)
    end subroutine check
 
-   !> Read a scene that can be run; a faulty one ends the program.
+   !> Read and check a scene; a fault ends the program.
    subroutine read_judged(scene)
       type(scene_t), intent(out) :: scene
       type(sheet_t) :: sheet
@@ -109,7 +109,7 @@ contains
       if (allocated(error)) call leave(error%message, exit_usage)
    end subroutine read_judged
 
-   !> The scene's name, of which the default directory is made.
+   !> Name of the scene, the last part of the default directory.
    subroutine print_name()
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -119,7 +119,7 @@ contains
       write (output_unit, "(a)") trim(scene%name)
    end subroutine print_name
 
-   !> Whether ranks have anything to share: the matrix of a body with a fluid.
+   !> Several ranks can share the work: they solve with the matrix of a body with a fluid.
    subroutine check_ranks()
       type(scene_t) :: scene
       type(error_t), allocatable :: error
@@ -132,7 +132,7 @@ contains
       end if
    end subroutine check_ranks
 
-   !> A command-line argument; empty where there is none.
+   !> A command-line argument; empty if there is none.
    function argument(i) result(text)
       integer, intent(in) :: i
       character(len=:), allocatable :: text

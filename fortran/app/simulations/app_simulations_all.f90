@@ -31,7 +31,7 @@ contains
       type(twolevel_simulation_t), allocatable :: levels
       type(mechanics_simulation_t), allocatable :: body
 
-      ! Moved: where it allocates `simulation` itself, gfortran 12 copies what nobody has set.
+      ! Moved: in an allocation of `simulation` itself gfortran 12 copies unset components.
       if (scene%has_fluid()) then
          allocate (levels)
          call move_alloc(levels, simulation)

@@ -1,7 +1,7 @@
 !> Onsets on straight lines through two states, against closed forms.
 program test_mechanics_onset
    use base_kinds, only: rk
-   use mechanics_programme, only: foreseen_onset, reading_t
+   use mechanics_programme, only: predicted_onset, reading_t
    use testing_checks, only: checks_t
    implicit none(type, external)
    real(rk), parameter :: round_off = 4.0e-15_rk
@@ -28,9 +28,9 @@ contains
    subroutine opening()
       real(rk) :: found
 
-      found = foreseen_onset(state(1.0_rk, [1.0_rk, 0.5_rk], [0.0_rk, 0.0_rk]), &
-                             state(2.0_rk, [2.0_rk, 3.5_rk], [0.0_rk, 0.0_rk]), &
-                             1.0_rk, 10.0_rk, 5.0_rk)
+      found = predicted_onset(state(1.0_rk, [1.0_rk, 0.5_rk], [0.0_rk, 0.0_rk]), &
+                              state(2.0_rk, [2.0_rk, 3.5_rk], [0.0_rk, 0.0_rk]), &
+                              1.0_rk, 10.0_rk, 5.0_rk)
       call checks%is_close(found, 2.5_rk, 10.0_rk*round_off, "opening: 0.5 + 3 (f - 1) = 5")
    end subroutine opening
 
@@ -38,9 +38,9 @@ contains
    subroutine sliding()
       real(rk) :: found
 
-      found = foreseen_onset(state(0.0_rk, [0.0_rk, -9.0_rk], [0.0_rk, 0.0_rk]), &
-                             state(1.0_rk, [0.0_rk, -9.0_rk], [-1.0_rk, 0.0_rk]), &
-                             0.0_rk, 4.0_rk, 2.0_rk)
+      found = predicted_onset(state(0.0_rk, [0.0_rk, -9.0_rk], [0.0_rk, 0.0_rk]), &
+                              state(1.0_rk, [0.0_rk, -9.0_rk], [-1.0_rk, 0.0_rk]), &
+                              0.0_rk, 4.0_rk, 2.0_rk)
       call checks%is_close(found, sqrt(3.0_rk), 10.0_rk*round_off, "sliding")
    end subroutine sliding
 
@@ -50,9 +50,9 @@ contains
 
       a = state(1.0_rk, [1.0_rk, 0.0_rk], [0.0_rk, 0.0_rk])
       b = state(2.0_rk, [2.0_rk, 0.0_rk], [0.0_rk, 0.0_rk])
-      call checks%is_close(foreseen_onset(a, b, 1.0_rk, 3.0_rk, 5.0_rk), 2.0_rk, 0.0_rk, &
+      call checks%is_close(predicted_onset(a, b, 1.0_rk, 3.0_rk, 5.0_rk), 2.0_rk, 0.0_rk, &
                            "beyond the upper limit")
-      call checks%is_close(foreseen_onset(a, b, 6.0_rk, 8.0_rk, 5.0_rk), 7.0_rk, 0.0_rk, &
+      call checks%is_close(predicted_onset(a, b, 6.0_rk, 8.0_rk, 5.0_rk), 7.0_rk, 0.0_rk, &
                            "before the lower limit")
    end subroutine out_of_reach
 

@@ -24,17 +24,17 @@ contains
       call programme%begin(load_t(from=1.0_rk, to=3.0_rk, steps=4_ik))
       call at(programme, 1.5_rk, [1.0_rk, 3.0_rk], 0.0_rk, 1.0_rk, "first step")
       call checks%is_true(programme%not_reached() == "", "straight: no table, no words")
-      call programme%go_on(1.5_rk)
+      call programme%advance(1.5_rk)
       call at(programme, 2.0_rk, [1.0_rk, 3.0_rk], 0.25_rk, 1.5_rk, "second step")
-      call programme%go_on(2.7_rk)
+      call programme%advance(2.7_rk)
       call at(programme, 3.0_rk, [1.0_rk, 3.0_rk], 0.85_rk, 2.7_rk, "beyond the third one")
-      call programme%go_on(1.2_rk)
+      call programme%advance(1.2_rk)
       call at(programme, 1.5_rk, [1.0_rk, 3.0_rk], 0.1_rk, 1.2_rk, "it has fallen")
       call checks%is_true(.not. programme%is_over(), "straight: not over")
-      call programme%go_on(3.0_rk)
+      call programme%advance(3.0_rk)
       call checks%is_true(programme%is_over(), "straight: over")
       call checks%is_close(programme%share_done(3.0_rk), 1.0_rk, 0.0_rk, "straight: all is done")
-      call programme%go_on(3.0_rk)
+      call programme%advance(3.0_rk)
       call checks%is_true(programme%is_over(), "straight: over for good")
    end subroutine check_straight
 
@@ -44,19 +44,19 @@ contains
 
       call programme%begin(load_t(factors=[1.0_rk, 0.4_rk, 1.2_rk, -0.5_rk], steps=2_ik))
       call at(programme, 0.5_rk, [0.0_rk, 1.0_rk], 0.0_rk, 0.0_rk, "up")
-      call programme%go_on(0.5_rk)
+      call programme%advance(0.5_rk)
       call at(programme, 1.0_rk, [0.0_rk, 1.0_rk], 0.125_rk, 0.5_rk, "up, second step")
-      call programme%go_on(1.0_rk)
+      call programme%advance(1.0_rk)
       call at(programme, 0.7_rk, [1.0_rk, 0.4_rk], 0.25_rk, 1.0_rk, "down")
       call checks%is_true(programme%not_reached() == ", and 3 of the scene's load factors "// &
                           "were not reached", "cycle: what is left")
-      call programme%go_on(0.4_rk)
+      call programme%advance(0.4_rk)
       call at(programme, 0.8_rk, [0.0_rk, 1.2_rk], 0.5_rk, 0.4_rk, "up again")
-      call programme%go_on(1.2_rk)
+      call programme%advance(1.2_rk)
       call at(programme, 0.35_rk, [1.2_rk, -0.5_rk], 0.75_rk, 1.2_rk, "down again")
       call checks%is_true(programme%not_reached() == ", and the scene's last load factor was "// &
                           "not reached", "cycle: the last one is left")
-      call programme%go_on(-0.5_rk)
+      call programme%advance(-0.5_rk)
       call checks%is_true(programme%not_reached() == "", "cycle: nothing is left")
       call checks%is_true(programme%is_over(), "cycle: over")
    end subroutine check_cycle
@@ -67,7 +67,7 @@ contains
 
       call programme%begin(load_t(factors=[0.0_rk, 1.0_rk], steps=3_ik))
       call at(programme, 0.0_rk, [0.0_rk, 0.0_rk], 0.0_rk, 0.0_rk, "where it begins")
-      call programme%go_on(0.0_rk)
+      call programme%advance(0.0_rk)
       call at(programme, 1.0_rk/3.0_rk, [0.0_rk, 1.0_rk], 0.5_rk, 0.0_rk, "from there")
    end subroutine check_first_factor
 

@@ -48,7 +48,7 @@ program test_report_json
       & '  "none": [],'//nl//'  "words": ['//nl//'    "a",'//nl//'    "b"'//nl//"  ],"//nl// &
       & '  "silence": [],'//nl//'  "inner": {'//nl//'    "y": null'//nl//"  }"//nl//"}"//nl)
 
-   call line%keep_on_one_line()
+   line%one_line = .true.
    call line%begin_object("")
    call line%add("t", 1.0_rk)
    call line%begin_array("list")

@@ -6,8 +6,8 @@ program test_report_limits
    use base_kinds, only: rk
    use base_texts, only: text_t
    use growth_tip, only: tip_t
-   use report_limits, only: judge, limit_angle, limit_forward_error, limit_mass, limit_t, &
-                            limits, verdict_fine, verdict_stop, verdict_warning
+   use report_limits, only: judge, limit_angle, limit_forward_error, limit_mass, limit_t, limits, &
+                            verdict_fine, verdict_stop, verdict_warning
    use report_watch, only: doubtful, stop_on_doubt, uncertainty, watch_t, worst_place
    use testing_checks, only: checks_t
    implicit none(type, external)

@@ -1,11 +1,11 @@
 !> Tests of report_snapshots: times rise from file to file, whichever way the states go.
 program test_report_pvd
-   use testing_checks, only: checks_t
-   use testing_files, only: file_text
    use base_errors, only: error_t
    use base_kinds, only: rk
    use report_files, only: make_directory
    use report_snapshots, only: collection_t
+   use testing_checks, only: checks_t
+   use testing_files, only: file_text
    implicit none(type, external)
 
    character(len=*), parameter :: folder = "test_report_pvd.out"

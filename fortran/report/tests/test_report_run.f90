@@ -11,6 +11,7 @@ program test_report_run
    use report_rows, only: event_slip_onset, event_step_cut, fracture_fields_t, history_row_t, &
                           intersection_fields_t, matrix_fields_t, probe_row_t, tip_row_t
    use report_run, only: run_output_t
+   use report_simulation, only: snapshot_t
    use scene_types, only: injection_t, scene_t
    use testing_checks, only: checks_t
    use testing_files, only: file_exists, file_text
@@ -48,6 +49,7 @@ contains
       character(len=*), intent(in) :: folder
       type(run_output_t) :: output
       type(run_record_t) :: record
+      type(history_row_t) :: row
       integer :: i
 
       ! Leftovers of an earlier and longer run, and of one that died while it wrote.
@@ -70,27 +72,30 @@ contains
 
       call timers%start(phase_output)
       do i = 0, 1
-         call output%history_row(history_row_t(time=2.0_rk*i, dt=2.0_rk, newton_iterations=4_ik, &
-    & well_pressure=[6.8e6_rk, 2.0e6_rk], injected=1.0e-4_rk, leakoff=2.0e-5_rk, prefilled=0.0_rk, &
-            & fracture_volume=1.0e-3_rk, mass_error_relative=1.0e-14_rk, max_slip=1.0e-4_rk, &
-            & max_opening=2.0e-5_rk, n_stick=1_ik, n_slip=1_ik, n_open=1_ik, &
-            & fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
-            & seismic_moment=1.0e6_rk))
-         call output%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
+         row = history_row_t(time=2.0_rk*i, dt=2.0_rk, newton_iterations=4_ik, &
+            & well_pressure=[6.8e6_rk, 2.0e6_rk], injected=1.0e-4_rk, leakoff=2.0e-5_rk, &
+            & prefilled=0.0_rk, fracture_volume=1.0e-3_rk, mass_error_relative=1.0e-14_rk, &
+            & max_slip=1.0e-4_rk, max_opening=2.0e-5_rk, n_stick=1_ik, n_slip=1_ik, &
+            & n_open=1_ik, fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
+            & seismic_moment=1.0e6_rk)
+         call output%tables%history_row(row)
+         call output%tables%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
             & xy=[1.0_rk, 0.5_rk], k1=1.0e6_rk, k2=2.0e5_rk, k1_dc=1.1e6_rk, k2_dc=2.1e5_rk, &
             & keq=1.05e6_rk, g=30.0_rk, angle=pi/4.0_rk, advance=0.0_rk, &
             & k1_error=1.0e3_rk, k2_error=2.0e3_rk, g_domain=28.0_rk, g_error=1.5_rk, &
             & k1_dc_error=3.0e3_rk, k2_dc_error=4.0e3_rk, k1_corrected=1.0005e6_rk, &
             & k2_corrected=2.005e5_rk))
-         call output%probe_row(2.0_rk*i, probes)
+         call output%tables%probe_row(2.0_rk*i, probes)
          call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
-         call output%write_fields(2.0_rk*i, mesh, matrix, fracture, intersections, error)
+        call output%write_fields(snapshot_t(2.0_rk*i, mesh, matrix, fracture, intersections), error)
          call checks%no_error(error, "fields")
          call checks%is_true(.not. output%fields_due(2.0_rk*i + 0.02_rk), "not at the short steps")
          call output%network_step(2.0_rk*i, network, mesh)
       end do
-      call output%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])
-      call output%event_row(2.0_rk, event_step_cut, "from 2 s to 1 s, as Newton did not converge")
+      associate (tables => output%tables)
+         call tables%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])
+        call tables%event_row(2.0_rk, event_step_cut, "from 2 s to 1 s, as Newton did not converge")
+      end associate
       call output%log("two steps, ""quoted""")
       call output%tick(error)
       call checks%is_true(.not. file_exists(folder//"/history.csv"), "tables wait for their time")
@@ -169,16 +174,16 @@ contains
       call output%open(folder, "", refused, error)
       if (.not. allocated(error)) call output%begin(dry_scene, error)
       call checks%no_error(error, "open without fluid")
-      call output%history_row(history_row_t(time=1.0_rk, strain_energy=0.25_rk))
-      call output%tip_row(tip_row_t(time=1.0_rk))
+      call output%tables%history_row(history_row_t(time=1.0_rk, strain_energy=0.25_rk))
+      call output%tables%tip_row(tip_row_t(time=1.0_rk))
       dry_probes = probes
       deallocate (dry_probes%pressure)
-      call output%probe_row(1.0_rk, dry_probes)
-      call output%write_fields(1.0_rk, mesh, dry_matrix, dry_fracture, none, error)
+      call output%tables%probe_row(1.0_rk, dry_probes)
+      call output%write_fields(snapshot_t(1.0_rk, mesh, dry_matrix, dry_fracture, none), error)
       call checks%no_error(error, "fields without fluid")
       call checks%is_true(.not. output%fields_due(9.99_rk), "fields follow the interval")
       call checks%is_true(output%fields_due(10.0_rk), "fields are due when it has passed")
-      call output%write_fields(25.0_rk, mesh, dry_matrix, dry_fracture, none, error)
+      call output%write_fields(snapshot_t(25.0_rk, mesh, dry_matrix, dry_fracture, none), error)
       call checks%is_true(.not. output%fields_due(29.9_rk), "missed times are not made up for")
       call output%close(record, timers, error)
       call checks%no_error(error, "close without fluid")

@@ -4,7 +4,7 @@ program test_report_slip
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_slip, state_stick
    use mesh_types, only: fracture_mesh_t
-   use report_slip, only: magnitude, slip_catalogue_t
+   use report_slip, only: magnitude, slip_catalogue_t, slip_step_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -62,7 +62,7 @@ contains
       if (present(faster)) potency = faster*potency
       after = 0.0_rk
       if (present(traction)) after = traction
-      call catalogue%follow(time, dt, fracture, potency, modulus, state, sudden, after)
+      call catalogue%follow(time, fracture, slip_step_t(dt, potency, modulus, state, after, sudden))
    end subroutine step
 
    !> Two steps on a patch that moves, then rest.
@@ -166,10 +166,11 @@ contains
       finer%cell_points = reshape([(i, i + 1, i=1, 10)], [2, 10])
       finer%cell_s = reshape([(0.5_rk*(i - 1), 0.5_rk*i, i=1, 10)], [2, 10])
       finer%point_xy = reshape([(0.5_rk*i, 0.0_rk, i=0, 10)], [2, 11])
-      call catalogue%follow(1.0_rk, dt, finer, [(merge(0.5_rk*slip, 0.0_rk, i == 6), i=1, 10)], &
-                            spread(shear, 1, 10), &
-                            [(merge(state_slip, state_stick, i == 6), i=1, 10)], .false., &
-                            spread(0.0_rk, 1, 10))
+      call catalogue%follow(1.0_rk, finer, &
+                            slip_step_t(dt, [(merge(0.5_rk*slip, 0.0_rk, i == 6), i=1, 10)], &
+                                        spread(shear, 1, 10), &
+                                        [(merge(state_slip, state_stick, i == 6), i=1, 10)], &
+                                        spread(0.0_rk, 1, 10)))
       call catalogue%end_all()
       call checks%is_true(size(catalogue%news) == 1, "one event on two meshes")
       call checks%is_close(catalogue%news(1)%moment, 1.5_rk*slip*shear*breadth, 1.0e-6_rk, &

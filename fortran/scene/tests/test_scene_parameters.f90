@@ -2,9 +2,10 @@
 program test_scene_parameters
    use base_kinds, only: ik
    use scene_expression, only: token_list_t, tokenize
+   use scene_parameter_table, only: parameters
    use scene_parameters, only: choice_name, choice_value, groups, kind_choice, kind_logical, &
                                kind_name, kind_real, kind_text, need_always, need_choice, &
-                               need_never, parameter_t, parameters
+                               need_never, parameter_t
    use scene_values, only: default_value, read_value, value_t
    use scene_words, only: in_words
    use testing_checks, only: checks_t

@@ -3,7 +3,8 @@ program test_scene_write
    use base_errors, only: error_t
    use base_kinds, only: rk
    use scene_namelist, only: read_scene
-   use scene_parameters, only: groups, in_mechanics, parameters
+   use scene_parameter_table, only: parameters
+   use scene_parameters, only: groups, in_mechanics
    use scene_test_files, only: delete_file, put_bytes, put_lines, same_scene, source_path
    use scene_types, only: point_load_t, restraint_t, scene_t
    use scene_write, only: scene_text
