@@ -55,6 +55,7 @@ module growth_tip
       integer(ik) :: heads_for = target_none  !< what the last piece of its path ends on
       logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
       logical :: is_shut = .false.  !< the faces behind it stick: K = 0, without evaluation
+      logical :: is_carried = .false.  !< its intensities are those of an earlier state
       ! Before the last increment of any tip.
       logical, private :: was_arrested = .false., was_free = .true.
       real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
@@ -76,6 +77,7 @@ module growth_tip
       procedure :: has_state
       procedure :: is_loaded
       procedure :: shut
+      procedure :: carry
    end type tip_t
 
    !> By how much a kink by the criterion's angle changes that angle, where nothing is known yet: as
@@ -156,7 +158,7 @@ contains
    elemental logical function is_loaded(self)
       class(tip_t), intent(in) :: self
 
-      is_loaded = self%is_free .and. .not. self%is_shut
+      is_loaded = self%is_free .and. .not. (self%is_shut .or. self%is_carried)
    end function is_loaded
 
    !> The faces behind the tip stick, and have never moved: nothing drives it.
@@ -169,6 +171,20 @@ contains
       resistance = self%drive%resistance
       self%drive = growth_drive_t(resistance=resistance, crack_modulus=self%drive%crack_modulus)
    end subroutine shut
+
+   !> The intensities of an earlier state, whose errors grow by what they have changed since.
+   elemental subroutine carry(self, intensity, change)
+      class(tip_t), intent(inout) :: self
+      type(intensity_t), intent(in) :: intensity  !< as evaluated then
+      real(rk), intent(in) :: change  !< of both intensities since, relative [-]
+      real(rk) :: added
+
+      self%is_carried = .true.
+      self%intensity = intensity
+      added = change*hypot(intensity%k1, intensity%k2)
+      self%intensity%k1_error = intensity%k1_error + added
+      self%intensity%k2_error = intensity%k2_error + added
+   end subroutine carry
 
    !> There is a tip to speak of: now, or before the last increment.
    elemental logical function has_state(self, is_before)

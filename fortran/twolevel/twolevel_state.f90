@@ -20,7 +20,7 @@ module twolevel_state
    use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
-   use twolevel_places, only: shut_tips
+   use twolevel_places, only: end_cell, shut_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
@@ -421,10 +421,12 @@ contains
          call follow_sides(self%scene, now%coarse%time, now%coarse%time)
          call timers%start(phase_tips)
          self%tip%is_shut = .false.
+         self%tip%is_carried = .false.
          if (self%problem%mesh%fracture%n_cells > 0) then
             self%tip%is_shut = shut_tips(self%tip, now%segment, self%problem%mesh%fracture, &
                                          now%coarse%jump)
          end if
+         call carry_intensities(self)
          asked = asked .and. self%tip%is_loaded()
          call self%problem%find_values(now%coarse)
          call self%windows%evaluate(self%scene, self%network, self%tip, asked, &
@@ -437,8 +439,50 @@ contains
             now%windows%tip(i)%found = self%tip(i)%intensity
             call now%windows%tip(i)%forget_coarse_error()
          end do
+         do i = 1, size(self%tip, kind=ik)
+            if (.not. asked(i)) cycle
+            now%windows%tip(i)%jump_then = tip_jump(self, i)
+            now%windows%tip(i)%place_then = self%tip(i)%xy
+         end do
       end associate
    end subroutine evaluate
+
+   !> In a network, tips far below their toughness keep their intensities as long as the jump of the
+   !! coarse cell behind them is nearly constant: K is proportional to the jump. The change of the
+   !! jump since the last evaluation is part of their error.
+   subroutine carry_intensities(self)
+      class(two_levels_t), intent(inout) :: self
+      integer, parameter :: few = 8  ! tips are all evaluated
+      real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
+      real(rk), parameter :: far = 0.5_rk  ! what such a tip lacks of its toughness, with its error [-]
+      real(rk) :: change
+      integer(ik) :: i
+
+      if (.not. self%scene%growth%enabled .or. count(self%tip%is_loaded()) <= few) return
+      associate (toughness => self%rules%toughness)
+         do i = 1, size(self%tip, kind=ik)
+            associate (tip => self%tip(i), seen => self%now%windows%tip(i))
+               if (.not. tip%is_loaded() .or. norm2(tip%xy - seen%place_then) > 0.0_rk) cycle
+               if (.not. self%windows%has_mesh(i)) cycle
+               if (tip%excess(toughness) + tip%relative_error(toughness) > -far) cycle
+               change = norm2(tip_jump(self, i) - seen%jump_then)
+               if (change > constant*norm2(seen%jump_then)) cycle
+               change = change/max(norm2(seen%jump_then), tiny(1.0_rk))
+               call tip%carry(self%windows%intensity_of(i, seen), change)
+            end associate
+         end do
+      end associate
+   end subroutine carry_intensities
+
+   !> Mean opening and slip of the coarse cell behind a tip [m].
+   pure function tip_jump(self, i) result(jump)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: i
+      real(rk) :: jump(2)
+
+      jump = 0.5_rk*sum(self%now%coarse%jump(:, :, end_cell(self%problem%mesh%fracture, &
+                                                            self%tip(i))), dim=2)
+   end function tip_jump
 
    !> The windows are held against the whole body as one window.
    pure logical function has_reference(self)

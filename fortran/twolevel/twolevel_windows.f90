@@ -56,6 +56,7 @@ module twolevel_windows
       procedure :: coarse_changed
       procedure :: intensity_of
       procedure :: is_asked
+      procedure :: has_mesh
       procedure :: has_to_mesh
       procedure :: make_anew
       procedure :: take_body
@@ -329,6 +330,14 @@ contains
                                                                        window%serves, tip, dim=1))))
       end associate
    end function intensity_of
+
+   !> The window of a tip has been meshed, and is not to be meshed again from the beginning.
+   pure logical function has_mesh(self, tip)
+      class(windows_t), intent(in) :: self
+      integer(ik), intent(in) :: tip
+
+      has_mesh = allocated(self%slot(self%window_of(tip))%window%made)
+   end function has_mesh
 
    !> A window serves a tip with intensities to be evaluated.
    pure logical function is_asked(self, window, tips)

@@ -6,6 +6,7 @@ the tips are compared with the toughness and with the events, and stated errors 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -16,12 +17,14 @@ import numpy as np
 import numpy.typing as npt
 
 from wingcrack.figures.text_files import read_json
-from wingcrack_verify.recompute import Findings, Table, read_table
+from wingcrack_verify import recompute
+from wingcrack_verify.recompute import Findings, Table, groups, load_of, read_table
 
 Points: TypeAlias = npt.NDArray[np.float64]
 
 # What fluid and growth, which take turns, may leave (docs/limits.md).
 K_EXCESS = 1.02
+LEAST_SCALE = 0.01  # of K_eq, over the intensity that the loads may bring about (docs/theory.md)
 K_LIMIT = "K_eq over K_IC after growth"
 # Places are equal, and a piece has a length, within this share of the body.
 PLACE = 1e-9
@@ -170,11 +173,16 @@ def check_tips(files: GrowthFiles, findings: Findings) -> None:
         if values.dtype.kind != "f" or not np.isfinite(values).all():
             findings.wrong.append(f"{name} of tips.csv is no number")
     share = tips["keq_pa_sqrtm"] / toughness
+    load = max(load_of(files.scene), abs(files.scene["initial"]["pressure"]))
+    lengths = np.array([recompute.length_of(drawn) for drawn in groups(files.scene, "fracture")])
+    by_load = LEAST_SCALE * load * np.sqrt(math.pi * lengths / 2.0)
+    scale = np.maximum(1.0, by_load[tips["fracture"].astype(int) - 1] / toughness)
+    excess = (share - 1.0) / scale
     named = times_of(files.events, "unstable_growth")
     told = any(str(text).startswith(K_LIMIT) for text in files.record["warnings"])
     stopped = files.record["status"] == "failed"
     last = float(files.history["time_s"][-1])
-    for k in np.flatnonzero(share > K_EXCESS):
+    for k in np.flatnonzero(excess > K_EXCESS - 1.0):
         time = float(tips["time_s"][k])
         later = files.history["time_s"][files.history["time_s"] > time]
         until = float(later[0]) if len(later) else time
