@@ -61,7 +61,7 @@ module growth_tip
       real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
       type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
-      !> K that the loads may bring about at the tip, times a small share: a toughness below it is no
+      !> A small share of the K that the loads may bring about at the tip: a toughness below it is no
       !! scale for K_eq [Pa m^1/2]
       real(rk) :: least_scale = 0.0_rk
       type(intensity_t) :: intensity_before  !< before the last increment of any tip

@@ -83,7 +83,8 @@ module report_limits
          "levels, and over a hundredth of the K of its loads where that is larger", &
          "growth in this state is uncertain: use smaller cells around the tip, or with a fluid "// &
          "a larger window"), &
-      limit_t("error of K over K_IC where a tip would grow", "%", "without a fluid", 5.0_rk, 5.0_rk, &
+      limit_t("error of K over K_IC where a tip would grow", "%", "without a fluid", 5.0_rk, &
+         5.0_rk, &
          "Estimated error of K, over K_IC or K_eq if that is larger, of a tip whose K_eq "// &
          "equals K_IC within it, when tips may grow: the relative error of the load factor of "// &
          "growth; not with law = 'paris'", &

@@ -45,8 +45,8 @@ module twolevel_equilibrium
    !! this share of the time since the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
-   !> A tip whose excess in the first try of a step is below the negative of this is evaluated in the
-   !! last try only [-].
+   !> A tip whose excess in the first try of a step is below the negative of this is evaluated again
+   !! in the last try only [-].
    real(rk), parameter :: lack_of_far = 0.3_rk
 
    !> A step that is being tried.

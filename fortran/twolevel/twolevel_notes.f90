@@ -123,8 +123,8 @@ contains
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
 
-   !> Tips that have grown in one group, but whose gains differ by more than their errors now: nothing
-   !! but these errors has separated them, and it is chance which one is ahead.
+   !> Tips that have grown in one group, but whose gains differ by more than their errors: only
+   !! errors have separated them, and it is chance which one is ahead.
    subroutine note_separation(self, tips, now, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -132,6 +132,7 @@ contains
       real(rk), intent(in) :: increment  !< [m]
       type(chronicle_t), intent(inout) :: chronicle
       real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the increment
+      character(len=:), allocatable :: what
       integer(ik) :: ahead, behind, i, j
 
       if (.not. (allocated(now%company%kind) .and. allocated(now%certainty%tip))) return
@@ -144,12 +145,13 @@ contains
                if (.not. abs(gain(1) - gain(2)) > max(least*increment, error(i) + error(j))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
-               call chronicle%add_event(now%coarse%time, event_bifurcation, "this tip is ahead of "// &
-                                        "an equal one at ("//brief_text(tips(behind)%xy(1), 4)// &
-                                        ", "//brief_text(tips(behind)%xy(2), 4)//") m by "// &
-                                        brief_text(abs(gain(1) - gain(2)), 3)// &
-                                        " m, more than their errors: which one is ahead is "// &
-                                        "chance", tips(ahead)%fracture, tips(ahead)%xy)
+               what = "this tip is ahead of an equal one at ("// &
+                      brief_text(tips(behind)%xy(1), 4)//", "// &
+                      brief_text(tips(behind)%xy(2), 4)//") m by "// &
+                      brief_text(abs(gain(1) - gain(2)), 3)// &
+                      " m, more than their errors: which one is ahead is chance"
+               call chronicle%add_event(now%coarse%time, event_bifurcation, what, &
+                                        tips(ahead)%fracture, tips(ahead)%xy)
                self%has_separated([i, j]) = .true.
             end associate
          end do

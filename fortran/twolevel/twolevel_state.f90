@@ -454,7 +454,7 @@ contains
       class(two_levels_t), intent(inout) :: self
       integer, parameter :: few = 8  ! tips are all evaluated
       real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
-      real(rk), parameter :: far = 0.5_rk  ! what such a tip lacks of its toughness, with its error [-]
+      real(rk), parameter :: far = 0.5_rk  ! lack of toughness, error included [-]
       real(rk) :: change
       integer(ik) :: i
 
