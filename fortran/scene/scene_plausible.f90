@@ -2,13 +2,6 @@
 !! range, as wrong units give, and values that are inconsistent. Scenes that cannot be simulated are
 !! refused (scene_check).
 !!
-!! The regime of growth of a fracture that a well supplies: dominated by the toughness of the rock
-!! or by the viscosity of the fluid.
-!!
-!! In plane strain, at a constant rate Q and without leak-off, it is given by the dimensionless
-!! toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' = sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12
-!! mu (Detournay 2004, International Journal of Geomechanics 4, 35). It does not change with time.
-!!
 !! Ends of fractures that almost touch another fracture or a side of the body, or that lie just
 !! beyond a fracture that they cross: probably not intended where fractures grow.
 module scene_plausible
@@ -19,13 +12,14 @@ module scene_plausible
    use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
    use scene_fluid_law, only: skempton
+   use scene_regime, only: find_regime
    use scene_region_outline, only: body_part
    use scene_types, only: domain_t, fracture_t, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
    private
 
-   public :: doubt_t, doubts, doubts_of_scene, find_regime, regime_words
+   public :: doubt_t, doubts, doubts_of_scene
 
    !> A value that is doubted, and why.
    type :: doubt_t
@@ -227,10 +221,10 @@ contains
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
       real(rk), parameter :: nearly = 0.99_rk
-      real(rk) :: value
+      real(rk) :: leakoff, value
       integer :: well
 
-      call find_regime(scene, value, well)
+      call find_regime(scene, value, leakoff, well)
       if (well == 0) return
       call add(list, value < nearly*least_verified, of_viscous, value, &
                " '"//trim(scene%injections(well)%name)//"'")
@@ -388,48 +382,6 @@ contains
       call add_text(list, place//": "//trim(d%name)//" is "//rounded_text(value)//unit//": "// &
                     trim(d%usual))
    end subroutine add
-
-   !> The smallest K_m of the wells with a rate in a fracture, if the scene grows.
-   pure subroutine find_regime(scene, dimensionless_toughness, well)
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(out) :: dimensionless_toughness  !< [-]
-      integer, intent(out) :: well  !< which one has it; 0: there is none
-      real(rk) :: modulus, rate, toughness, value
-      integer :: i
-
-      dimensionless_toughness = huge(1.0_rk)
-      well = 0
-      if (.not. (scene%growth%enabled .and. scene%has_fluid() .and. &
-                 allocated(scene%injections))) return
-      modulus = scene%material%young
-      if (.not. scene%material%plane_stress) modulus = modulus/(1.0_rk - scene%material%poisson**2)
-      do i = 1, size(scene%injections)
-         if (scene%injections(i)%fracture == 0 .or. .not. allocated(scene%injections(i)%rate)) cycle
-         rate = maxval(scene%injections(i)%rate)
-         if (.not. rate > 0.0_rk) cycle
-         toughness = min(scene%material%toughness, &
-                         scene%fractures(scene%injections(i)%fracture)%toughness)
-         value = sqrt(32.0_rk/pi)*toughness &
-                 /(modulus**3*12.0_rk*scene%fluid%viscosity*rate)**0.25_rk
-         if (value >= dimensionless_toughness) cycle
-         dimensionless_toughness = value
-         well = i
-      end do
-   end subroutine find_regime
-
-   !> What decides: viscosity up to a K_m of 1, toughness from 4 on.
-   pure function regime_words(dimensionless_toughness) result(words)
-      real(rk), intent(in) :: dimensionless_toughness  !< [-]
-      character(len=:), allocatable :: words
-
-      if (dimensionless_toughness > 3.99_rk) then
-         words = "toughness-dominated growth"
-      else if (dimensionless_toughness > 1.01_rk) then
-         words = "growth depends on toughness and viscosity"
-      else
-         words = "viscosity-dominated growth"
-      end if
-   end function regime_words
 
    !> All ends that are nearer than that to something that they do not touch. Two ends that are near
    !! to each other are told once.
