@@ -131,7 +131,7 @@ contains
             d = abs(fine%face_s(:, i) - tip(end))
             if (0.5_rk*sum(d) > abs(middle(merge(2_ik, n - 1, end == 1)) - tip(end))) cycle
             call checks%is_close(found(i), 1.0e7_rk + 1.0e6_rk*mean_pressure_shape(b, d), &
-                                 1.0e-6_rk, "viscous")
+                                 10.0_rk, "viscous")
          end do
       end do
    end subroutine test_viscous
