@@ -10,6 +10,12 @@
 !!   integral of dd/(d y^2) = 6 integral of dy/(y^3 - 1),
 !! which is ln d near the tip and varies with d^(-1/3) far from it.
 !!
+!! With leak-off after Carter, the flow is V w + 2 C' sqrt(V d). Where the second part dominates,
+!! the opening without toughness is w = B d^(5/8) with B^4 = 256/15 (sqrt(2) + 1) 2 C' mu' sqrt(V)/E'
+!! (Lenoach 1995). The form above is kept, with the b that has this limit at one distance as well:
+!! with d there, y^3 = 1 + b_0 sqrt(d) (1 + r/y), b_0 without leak-off and r = 2 C' E'/(K' sqrt(V))
+!! times the ratio of the factors of both limits.
+!!
 !! b is the parameter of a tip, 0 where viscosity has no effect: then the procedures must not be
 !! called, since their pressures are relative to that far from the tip.
 module coarse_tip_layer
@@ -17,8 +23,8 @@ module coarse_tip_layer
    implicit none(type, external)
    private
 
-   public :: apparent_toughness, mean_pressure_shape, opening_shape, pressure_shape
-   public :: viscous_parameter, volume_shape
+   public :: apparent_toughness, leaking_parameter, mean_pressure_shape, opening_shape
+   public :: pressure_shape, viscous_parameter, volume_shape
 
    real(rk), parameter :: pi = acos(-1.0_rk)
 
@@ -40,6 +46,32 @@ contains
       b = 18.0_rk*sqrt(3.0_rk)*modulus**2*12.0_rk*viscosity*max(0.0_rk, speed) &
           /(sqrt(32.0_rk/pi)*toughness)**3
    end function viscous_parameter
+
+   !> b of a tip whose fluid leaks off [1/m^(1/2)].
+   elemental real(rk) function leaking_parameter(without, coefficient, speed, modulus, toughness, &
+                                                 d) result(b)
+      real(rk), intent(in) :: without  !< b without leak-off [1/m^(1/2)]
+      real(rk), intent(in) :: coefficient  !< C' [m/s^(1/2)]
+      real(rk), intent(in) :: speed  !< V > 0 [m/s]
+      real(rk), intent(in) :: modulus  !< E' [Pa]
+      real(rk), intent(in) :: toughness  !< K_IC > 0 [Pa m^(1/2)]
+      real(rk), intent(in) :: d  !< distance from the tip at which it has the limit [m]
+      integer, parameter :: iterations = 20
+      real(rk) :: flow, leaked, y
+      integer :: i
+
+      b = without
+      if (.not. (without > 0.0_rk .and. coefficient > 0.0_rk)) return
+      flow = without*sqrt(d)
+      leaked = flow*2.0_rk*coefficient*modulus/(sqrt(32.0_rk/pi)*toughness*sqrt(speed)) &
+               *256.0_rk/15.0_rk*(sqrt(2.0_rk) + 1.0_rk)/(18.0_rk*sqrt(3.0_rk))
+      ! Newton for y^4 - (1 + flow) y - leaked = 0, convex, from above.
+      y = (1.0_rk + flow)**(1.0_rk/3.0_rk) + leaked**0.25_rk
+      do i = 1, iterations
+         y = y - (y*(y**3 - 1.0_rk - flow) - leaked)/(4.0_rk*y**3 - 1.0_rk - flow)
+      end do
+      b = without*(1.0_rk + leaked/(flow*y))
+   end function leaking_parameter
 
    !> Opening at a distance over K'/E' [m^(1/2)].
    elemental real(rk) function opening_shape(b, d)

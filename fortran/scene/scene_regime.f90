@@ -17,7 +17,8 @@ module scene_regime
    implicit none(type, external)
    private
 
-   public :: dimensionless_leakoff, dimensionless_toughness, find_regime, regime_words
+   public :: carter_coefficient, dimensionless_leakoff, dimensionless_toughness, find_regime
+   public :: regime_words
 
 contains
 
@@ -39,10 +40,21 @@ contains
       real(rk), intent(in) :: rise  !< dp, of the pressure above that of the rock [Pa]
       real(rk), intent(in) :: rate  !< Q [m2/s]
       real(rk), intent(in) :: time  !< t, since the rate began [s]
-      real(rk) :: coefficient, modulus, permeability, stored
 
       value = 0.0_rk
-      if (.not. (rate > 0.0_rk .and. rise > 0.0_rk .and. time > 0.0_rk)) return
+      if (.not. (rate > 0.0_rk .and. time > 0.0_rk)) return
+      value = carter_coefficient(scene, rise) &
+              *(crack_modulus(scene)*time/(12.0_rk*scene%fluid%viscosity*rate**3))**(1.0_rk/6.0_rk)
+   end function dimensionless_leakoff
+
+   !> C' of the scene's rock; 0 where fluid does not flow into it [m/s^(1/2)].
+   pure real(rk) function carter_coefficient(scene, rise) result(coefficient)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: rise  !< dp, of the pressure above that of the rock [Pa]
+      real(rk) :: modulus, permeability, stored
+
+      coefficient = 0.0_rk
+      if (.not. rise > 0.0_rk) return
       associate (m => scene%material, viscosity => scene%fluid%viscosity)
          permeability = sqrt(max(0.0_rk, m%permeability_xx*m%permeability_yy &
                                  - m%permeability_xy**2))
@@ -50,10 +62,8 @@ contains
          modulus = m%young*(1.0_rk - m%poisson)/((1.0_rk + m%poisson)*(1.0_rk - 2.0_rk*m%poisson))
          stored = storage(m, scene%fluid) + m%biot**2/modulus
          coefficient = 2.0_rk*rise*sqrt(permeability*stored/(pi*viscosity))
-         value = coefficient*(crack_modulus(scene)*time/(12.0_rk*viscosity*rate**3)) &
-                 **(1.0_rk/6.0_rk)
       end associate
-   end function dimensionless_leakoff
+   end function carter_coefficient
 
    !> E' [Pa].
    pure real(rk) function crack_modulus(scene)

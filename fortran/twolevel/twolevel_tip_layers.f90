@@ -1,11 +1,13 @@
 !> What the viscosity of the fluid does at the tips that grow in a tried step (coarse_tip_layer): the
-!! parameter b of each tip follows from its speed in the step, which the try determines.
+!! parameter b of each tip follows from its speed in the step, which the try determines, and from
+!! the pressure in its cell before the step, at which fluid leaks off.
 module twolevel_tip_layers
    use base_kinds, only: ik, rk
    use coarse_regions, only: rock_t
    use coarse_solid, only: mean_solid, solid_t
-   use coarse_tip_layer, only: apparent_toughness, viscous_parameter
+   use coarse_tip_layer, only: apparent_toughness, leaking_parameter, viscous_parameter
    use mesh_types, only: mesh_t
+   use scene_regime, only: carter_coefficient
    use twolevel_places, only: advances, end_cell
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
@@ -25,13 +27,16 @@ contains
       real(rk), intent(in) :: dt  !< of the step [s]
       logical, intent(in) :: may_jump
       integer(ik), allocatable :: free(:)
-      real(rk) :: gain(size(self%tip)), length, toughness, viscous(size(self%tip))
+      real(rk) :: gain(size(self%tip)), length, pressure(size(self%before%pressure)), toughness
+      real(rk) :: viscous(size(self%tip))
       type(solid_t) :: solid
       integer(ik) :: cell, i
 
       viscous = 0.0_rk
-      self%tip%viscous_rise = 1.0_rk
+      ! A tip that pauses, as it does where a segment begins, is probably about to go on.
+      self%tip%viscous_rise = sqrt(self%last%front%tip%viscous_rise)
       gain = advances(self%front_state_t, self%start, self%now%segment, self%rules%increment)
+      pressure = self%problem%fracture_pressure(self%before) - self%scene%initial%pressure
       do i = 1, size(self%tip, kind=ik)
          if (may_jump .or. .not. (self%tip(i)%is_free .and. gain(i) > 0.0_rk)) cycle
          cell = end_cell(self%problem%mesh%fracture, self%tip(i))
@@ -41,8 +46,14 @@ contains
          toughness = self%rules%toughness*self%tip(i)%drive%resistance
          viscous(i) = viscous_parameter(self%scene%fluid%viscosity, gain(i)/dt, &
                                         solid%crack_modulus(), toughness)
+         if (cell <= size(pressure)) then
+            viscous(i) = leaking_parameter(viscous(i), carter_coefficient(self%scene, &
+                                                                          pressure(cell)), &
+                                           gain(i)/dt, solid%crack_modulus(), toughness, length)
+         end if
          viscous(i) = max(0.0_rk, viscous(i) - negligible/sqrt(length))
-         self%tip(i)%viscous_rise = apparent_toughness(viscous(i), length)
+         self%tip(i)%viscous_rise = max(self%tip(i)%viscous_rise, &
+                                        apparent_toughness(viscous(i), length))
       end do
       free = pack([(i, i=1, size(self%tip, kind=ik))], self%tip%is_free)
       associate (ends => self%problem%model%ends)

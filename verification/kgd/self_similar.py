@@ -103,9 +103,13 @@ class Crack:
         x = np.exp(0.5 * steps[:, None] * (1.0 + POINTS[None, :]))
         s = self.s[:-1, None] * x
         w = opening[:-1, None] * x ** power[:, None]
-        v = volume[:-1, None] + opening[:-1, None] * self.s[:-1, None] * (
-            x ** (power + 1.0)[:, None] - 1.0
-        ) / (power + 1.0)[:, None]
+        v = (
+            volume[:-1, None]
+            + opening[:-1, None]
+            * self.s[:-1, None]
+            * (x ** (power + 1.0)[:, None] - 1.0)
+            / (power + 1.0)[:, None]
+        )
         slope = gamma**2 * (v + 2.0 / 3.0 * (1.0 - s) * w) / w**3
         rise = 0.5 * steps * ((slope * s) @ WEIGHTS)
         return np.concatenate(

@@ -4,7 +4,7 @@
 !! = E'/4 (2/3) cot(2 pi/3) B d^(-1/3) and lubrication dp/dd = mu' V/w^2.
 program test_coarse_tip_layer
    use base_kinds, only: pi, rk
-   use coarse_tip_layer, only: apparent_toughness, mean_pressure_shape, opening_shape, &
+   use coarse_tip_layer, only: apparent_toughness, leaking_parameter, mean_pressure_shape, opening_shape, &
                                pressure_shape, viscous_parameter, volume_shape
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -16,6 +16,7 @@ program test_coarse_tip_layer
 
    call test_toughness()
    call test_viscosity()
+   call test_leakoff()
    call test_lubrication()
    call test_integrals()
    call checks%finish()
@@ -67,6 +68,30 @@ contains
                               1.0e-14_rk, "apparent toughness")
       end do
    end subroutine test_viscosity
+
+   !> All fluid leaks off: w = B d^(5/8), for which elasticity gives p = E'/4 (5/8) cot(5 pi/8) B
+   !! d^(-3/8), and lubrication dp/dd = mu' 2 C' sqrt(V d)/w^3; and none leaks off.
+   subroutine test_leakoff()
+      real(rk), parameter :: coefficient = 1.0e9_rk, modulus = 3.2e10_rk, speed = 0.02_rk, &
+                             toughness = 1.0e-3_rk, viscosity = 0.4_rk
+      real(rk) :: opening, slope, without
+      integer :: i
+
+      without = viscous_parameter(viscosity, speed, modulus, toughness)
+      do i = 1, size(d)
+         opening = sqrt(32.0_rk/pi)*toughness/modulus &
+                   *opening_shape(leaking_parameter(without, coefficient, speed, modulus, &
+                                                    toughness, d(i)), d(i))
+         slope = modulus/4.0_rk*(5.0_rk/8.0_rk)/tan(5.0_rk*pi/8.0_rk)*(-3.0_rk/8.0_rk)*opening &
+                 /d(i)**2
+         call checks%is_close(slope/(12.0_rk*viscosity*2.0_rk*coefficient*sqrt(speed*d(i)) &
+                                     /opening**3), 1.0_rk, 1.0e-6_rk, "all leaks off")
+         call checks%is_close(leaking_parameter(b(i), 0.0_rk, speed, modulus, toughness, d(i)), &
+                              b(i), 0.0_rk, "none leaks off")
+         call checks%is_close(leaking_parameter(b(i), 1.0e-12_rk, speed, modulus, 1.0e6_rk, d(i)) &
+                              /b(i), 1.0_rk, 1.0e-5_rk, "hardly any")
+      end do
+   end subroutine test_leakoff
 
    !> dp/dd = mu' V/w^2 in between: the slope of the pressure by central differences.
    subroutine test_lubrication()

@@ -41,7 +41,7 @@ contains
    !> K_m = K'/(E'^3 mu' Q)^(1/4), and without a rate none.
    subroutine test_toughness()
       real(rk), parameter :: expected = 4.0_rk*sqrt(2.0_rk/pi)*1.0e6_rk &
-                                        /((32.0e9_rk)**3*12.0e-3_rk*rate)**0.25_rk
+                             /((32.0e9_rk)**3*12.0e-3_rk*rate)**0.25_rk
 
       call checks%is_close(dimensionless_toughness(scene, 1.0e6_rk, rate), expected, 1.0e-12_rk, &
                            "K_m")
