@@ -114,9 +114,9 @@ module scene_plausible
               "above the smallest compression in situ somewhere", &
               "fractures across that compression are open from the start"), &
       doubt_t("injection", "K_m", "-", &
-              "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
-              "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, "// &
-              "and below it the run may end early"), &
+              "below 0.5, of a rate in a fracture, with growth (docs/theory.md)", &
+              "growth is then viscosity-dominated; growth is verified for K_m of 0.5 and "// &
+              "more, and below it the run may end early"), &
       doubt_t("restraint", "surplus", "-", &
               "above 0: more components than fix the rigid motions", &
               "they are then point loads, around which results depend on the cell size; use "// &
@@ -132,7 +132,7 @@ module scene_plausible
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
-   real(rk), parameter, public :: least_verified = 1.0_rk  !< K_m, verification/kgd
+   real(rk), parameter, public :: least_verified = 0.5_rk  !< K_m, verification/kgd
 
    !> An end, and what it is near to.
    type :: near_end_t
