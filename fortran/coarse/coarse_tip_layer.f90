@@ -2,7 +2,7 @@
 !!
 !! At the distance d behind the tip all fluid moves at the speed of the tip, so dp/dd = mu' V/w^2
 !! with mu' = 12 mu. With the stress intensity factor at the toughness, K' = sqrt(32/pi) K_IC, the
-!! opening is (Garagash and Detournay 2000; closed form of Dontsov and Peirce 2015, without leak-off)
+!! opening without leak-off is (Garagash and Detournay 2000; closed form of Dontsov and Peirce 2015)
 !!   w = (K'/E') sqrt(d) (1 + b sqrt(d))^(1/3),   b = 18 sqrt(3) E'^2 mu' V/K'^3
 !! Near the tip this is the opening of a crack in a toughness-dominated state, far from it that of
 !! one without toughness, w = 2^(1/3) 3^(5/6) (mu' V/E')^(1/3) d^(2/3). Both limits are exact. The
@@ -10,11 +10,11 @@
 !!   integral of dd/(d y^2) = 6 integral of dy/(y^3 - 1),
 !! which is ln d near the tip and varies with d^(-1/3) far from it.
 !!
-!! With leak-off after Carter, the flow is V w + 2 C' sqrt(V d). Where the second part dominates,
-!! the opening without toughness is w = B d^(5/8) with B^4 = 256/15 (sqrt(2) + 1) 2 C' mu' sqrt(V)/E'
-!! (Lenoach 1995). The form above is kept, with the b that has this limit at one distance as well:
-!! with d there, y^3 = 1 + b_0 sqrt(d) (1 + r/y), b_0 without leak-off and r = 2 C' E'/(K' sqrt(V))
-!! times the ratio of the factors of both limits.
+!! With leak-off after Carter the flow is V w + 2 C' sqrt(V d). Where the second part dominates,
+!! the opening without toughness is w = B d^(5/8) with B^4 = 256/15 (sqrt(2) + 1) 2 C' mu'
+!! sqrt(V)/E' (Lenoach 1995). The form above is kept, with the b that has this limit at one
+!! distance as well: with d there, y^3 = 1 + b_0 sqrt(d) (1 + r/y), b_0 without leak-off and r =
+!! 2 C' E'/(K' sqrt(V)) times the ratio of the factors of both limits.
 !!
 !! b is the parameter of a tip, 0 where viscosity has no effect: then the procedures must not be
 !! called, since their pressures are relative to that far from the tip.

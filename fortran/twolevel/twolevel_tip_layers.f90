@@ -1,6 +1,6 @@
-!> What the viscosity of the fluid does at the tips that grow in a tried step (coarse_tip_layer): the
-!! parameter b of each tip follows from its speed in the step, which the try determines, and from
-!! the pressure in its cell before the step, at which fluid leaks off.
+!> What the viscosity of the fluid does at the tips that grow in a tried step (coarse_tip_layer):
+!! the parameter b of each tip follows from its speed in the step, which the try determines, and
+!! from the pressure in its cell before the step, at which fluid leaks off.
 module twolevel_tip_layers
    use base_kinds, only: ik, rk
    use coarse_regions, only: rock_t

@@ -10,9 +10,9 @@ x/l and one for E', mu', Q and t,
     -Omega^3 dPi/dxi = gamma^2 (int_xi^1 Omega d eta + 2/3 xi Omega)
     2 gamma int_0^1 Omega d eta = 1,   K_m = 8 sqrt(2 gamma)/pi int_0^1 Pi/sqrt(1 - eta^2) d eta
 
-with G = ln |(a + b)/(a - b)|, a = sqrt(1 - xi^2), b = sqrt(1 - eta^2). The pressure is linear in eta
-between nodes that are dense toward the tip, which makes all integrals of it exact, and beyond the
-last one it is linear in the logarithm of the distance. The values of two meshes are extrapolated.
+with G = ln |(a + b)/(a - b)|, a = sqrt(1 - xi^2), b = sqrt(1 - eta^2). The pressure is linear in
+eta between nodes that are dense toward the tip, which makes all integrals of it exact, and beyond
+the last one it is linear in the logarithm of the distance. The values of two meshes are extrapolated.
 They are compared with those of the catalogue (5.1, 5.2) and with the closed form for toughness
 alone.
 """

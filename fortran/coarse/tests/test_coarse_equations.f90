@@ -349,7 +349,7 @@ contains
    !> Fluid that follows a tip: with the opening k sqrt(d) in both cells at the tip, and the flow V
    !! w through each section, the pressure falls by 12 mu V/k^2 per unit of ln d.
    subroutine test_moving_tip(b)
-      real(rk), intent(in) :: b  !< of coarse_tip_layer; 0: without an effect of viscosity [1/m^(1/2)]
+      real(rk), intent(in) :: b  !< of coarse_tip_layer; 0: viscosity has no effect [1/m^(1/2)]
       real(rk), parameter :: k = 1.0e-3_rk  ! [m^1/2]
       real(rk), parameter :: speed = 1.0e-9_rk  ! [m/s]
       type(equations_t) :: eq

@@ -4,8 +4,8 @@
 !! = E'/4 (2/3) cot(2 pi/3) B d^(-1/3) and lubrication dp/dd = mu' V/w^2.
 program test_coarse_tip_layer
    use base_kinds, only: pi, rk
-   use coarse_tip_layer, only: apparent_toughness, leaking_parameter, mean_pressure_shape, opening_shape, &
-                               pressure_shape, viscous_parameter, volume_shape
+   use coarse_tip_layer, only: apparent_toughness, leaking_parameter, mean_pressure_shape, &
+                               opening_shape, pressure_shape, viscous_parameter, volume_shape
    use testing_checks, only: checks_t
    implicit none(type, external)
 

@@ -49,7 +49,7 @@ contains
                                   rate=[0.0_rk, 16.0_rk*k**4/(32.0e9_rk**3*12.0e-3_rk)])]
       call expect(s, "", "K_m = 0.5")
       s%injections(1)%rate = s%injections(1)%rate/0.9_rk**4
-      call expect(s, "&injection 'w': K_m is 0.45: growth is then viscosity-dominated", "K_m = 0.45")
+      call expect(s, "&injection 'w': K_m is 0.45: growth is then viscosity-dominated", "0.45")
       s%injections(1)%rate = -s%injections(1)%rate
       call expect(s, "", "a well that draws")
       s%injections(1)%rate = -s%injections(1)%rate
