@@ -12,7 +12,8 @@ x/l and one for E', mu', Q and t,
 
 with G = ln |(a + b)/(a - b)|, a = sqrt(1 - xi^2), b = sqrt(1 - eta^2). The pressure is linear in
 eta between nodes that are dense toward the tip, which makes all integrals of it exact, and beyond
-the last one it is linear in the logarithm of the distance. The values of two meshes are extrapolated.
+the last one it is linear in the logarithm of the distance. The values of two meshes are
+extrapolated.
 They are compared with those of the catalogue (5.1, 5.2) and with the closed form for toughness
 alone.
 """
