@@ -31,6 +31,7 @@ ANY_FLUID = {
     "with tips and a toughness",
 }
 FLUID = ANY_FLUID | {"with a fluid and one well", "with a fluid and at most one well"}
+GROWING = FLUID | {"with a fluid and growth", "with a fluid, wells and growth"}
 SEVERAL = ANY_FLUID | {"with a fluid and several wells"}
 JOINTS = FLUID | {"with a fluid and joints"}
 MECHANICS = {
@@ -106,7 +107,7 @@ def out_and_runs(
     """Files of a run, and the words of the table that hold for it."""
     which: str = request.param
     if which == "fluid":
-        return request.getfixturevalue("growing"), FLUID
+        return request.getfixturevalue("growing"), GROWING
     scene, words = {
         "joints": (CROSSING, JOINTS),
         "wells": (SEVERAL_WELLS, SEVERAL),
@@ -139,7 +140,7 @@ def keys(content: object, above: str = "") -> list[str]:
 
 def test_every_run_that_the_table_names_is_tested(described: dict[str, list[Entry]]) -> None:
     assert {entry.runs for entries in described.values() for entry in entries} == (
-        JOINTS | SEVERAL | MECHANICS
+        GROWING | JOINTS | SEVERAL | MECHANICS
     )
 
 

@@ -10,7 +10,8 @@ module app_size
    use growth_network, only: network_of_scene, total_length
    use mechanics_results, only: touches
    use scene_outline, only: outline_of_scene, outline_t
-   use scene_plausible, only: doubts_of_scene, find_regime, regime_words
+   use scene_plausible, only: doubts_of_scene
+   use scene_regime, only: find_regime, regime_words
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: scene_t, time_t
    implicit none(type, external)
@@ -219,7 +220,7 @@ contains
       integer, intent(in) :: unit
 
       type(estimate_t) :: estimate
-      real(rk) :: length, toughness
+      real(rk) :: leakoff, length, toughness
       integer :: well
 
       associate (body => scene%domain)
@@ -254,10 +255,12 @@ contains
                                                            merge("intensities", "left out   ", &
                                                                  scene%growth%intensities), &
                                                            scene%growth%enabled))
-         call find_regime(scene, toughness, well)
+         call find_regime(scene, toughness, leakoff, well)
          if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
             regime_words(toughness), ", K_m = ", toughness, " (well '", &
             trim(scene%injections(well)%name), "')"
+         if (well > 0 .and. leakoff > 0.0_rk) write (unit, "(a,es9.3,a)") &
+            "leak-off:     C_m = ", leakoff, " at the end, by the least compression"
          write (unit, "(2a)") "VTU files:    ", trim(merge("yes     ", "left out", &
                                                            scene%output%vtu))
          write (unit, "(a,i0,a,i0,a)") "about:        ", int(estimate%cells, lk), " cells, ", &

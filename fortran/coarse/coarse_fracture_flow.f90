@@ -26,6 +26,7 @@
 module coarse_fracture_flow
    use base_kinds, only: ik, rk
    use coarse_fractures, only: cell_fluid_t, conducting_aperture, fracture_system_t, most_of_rock
+   use coarse_tip_layer, only: opening_shape, pressure_shape, volume_shape
    implicit none(type, external)
    private
 
@@ -185,7 +186,8 @@ contains
    !! from the tip. Their volumes give k, 2/3 k d^(3/2) behind d. The tip advances at the speed V,
    !! and the flow through each section is V w, with the pressure gradient 12 mu V/(k^2 d): this is
    !! the flow V w at d_0, where the cells meet, through a length d_0 ln(d/d_0) with the opening at
-   !! d_0.
+   !! d_0. Where viscosity has an effect at the scale of the cells, the opening is that of
+   !! coarse_tip_layer.
    pure subroutine find_way(cells, eq, length, weight)
       integer(ik), intent(in) :: cells(2)
       class(fracture_system_t), intent(in) :: eq
@@ -204,6 +206,14 @@ contains
          length(tip) = reach(tip)*log(2.0_rk)
          length(3 - tip) = reach(tip)*log(1.0_rk + 0.5_rk*behind/reach(tip))
          weight = 1.5_rk*eq%condensed%length(cells)*sqrt(reach(tip))/sum(reach)**1.5_rk
+         associate (b => eq%cells%viscous(cells(tip)), d => reach(tip))
+            if (b > 0.0_rk) then
+               length(tip) = pressure_shape(b, d) - pressure_shape(b, 0.5_rk*d)
+               length(3 - tip) = pressure_shape(b, d + 0.5_rk*behind) - pressure_shape(b, d)
+               length = length*opening_shape(b, d)**2
+               weight = eq%condensed%length(cells)*opening_shape(b, d)/volume_shape(b, sum(reach))
+            end if
+         end associate
       end if
    end subroutine find_way
 

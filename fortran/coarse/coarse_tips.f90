@@ -45,6 +45,8 @@ module coarse_tips
       integer(ik), allocatable :: cell(:)  !< fracture cell that the fracture ends with
       integer(ik), allocatable :: inwards(:)  !< 1 or -1: from a cell to the next one behind it
       real(rk), allocatable :: ahead(:)  !< closed length of the mesh beyond each [m]
+      !> Of coarse_tip_layer; unallocated: viscosity has no effect at any tip [1/m^(1/2)]
+      real(rk), allocatable :: viscous(:)
    end type crack_ends_t
 
    real(rk), parameter :: least = 1.0e-3_rk  !< least share of the tip cell behind the tip [-]
@@ -178,6 +180,7 @@ contains
 
       cells%share = spread(1.0_rk, 1, size(length))
       cells%has_tip = spread(.false., 1, size(length))
+      cells%viscous = spread(0.0_rk, 1, size(length))
       cells%leak_resistance = spread(0.0_rk, 1, size(length))
       do tip = 1, size(ends%cell, kind=ik)
          cell = ends%cell(tip)
@@ -191,6 +194,7 @@ contains
          end do
          cells%share(cell) = 1.0_rk - left/length(cell)
          cells%has_tip(cell) = .true.
+         if (allocated(ends%viscous)) cells%viscous(cell) = ends%viscous(tip)
          associate (share => cells%share(cell), leak => cells%leak_resistance)
             leak(cell) = leak_at_end + (1.0_rk/share - 1.0_rk)*leak_within
             if (share < 1.0_rk) leak(cell + step) = leak(cell + step) + (1.0_rk - share)*leak_at_end

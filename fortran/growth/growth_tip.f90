@@ -59,9 +59,12 @@ module growth_tip
       ! Before the last increment of any tip.
       logical, private :: was_arrested = .false., was_free = .true.
       real(rk) :: rosette_radius = 0.0_rk  !< of the mesh around it [m]
+      !> With viscous fluid: what K would have to be without viscosity for the same opening at a
+      !! distance of a coarse cell, over the toughness [-]
+      real(rk) :: viscous_rise = 1.0_rk
       type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
-      !> A small share of the K that the loads may bring about at the tip: a toughness below it is no
+      !> A small share of the K that the loads may bring about at the tip: a toughness below is no
       !! scale for K_eq [Pa m^1/2]
       real(rk) :: least_scale = 0.0_rk
       type(intensity_t) :: intensity_before  !< before the last increment of any tip

@@ -26,6 +26,8 @@ module report_columns
    character(len=*), parameter :: with_toughness = "with tips and a toughness"
    character(len=*), parameter :: with_joints = "with a fluid and joints"
    character(len=*), parameter :: with_wells = "with a fluid and wells"
+   character(len=*), parameter :: with_fluid_and_growth = "with a fluid and growth"
+   character(len=*), parameter :: with_wells_and_growth = "with a fluid, wells and growth"
    character(len=*), parameter :: with_one_well = "with a fluid and one well"
    character(len=*), parameter :: at_most_one = "with a fluid and at most one well"
    character(len=*), parameter :: with_several = "with a fluid and several wells"
@@ -110,7 +112,13 @@ module report_columns
       column_t("max_slip_rate_m_s", "m/s", with_fluid, "Largest slip rate, mean over the step"), &
       column_t("connections_per_branch", "-", with_fractures, &
          "Mean number of connected ends of a branch of the network: 0 to 2 (Sanderson and "// &
-         "Nixon 2015)")]
+         "Nixon 2015)"), &
+      column_t("dimensionless_toughness", "-", with_wells_and_growth, &
+               "K_m of injection_rate_m2_s and the toughness of &material: viscosity "// &
+               "dominates below 1, toughness above 4; 0 without injection"), &
+      column_t("dimensionless_leakoff", "-", with_wells_and_growth, &
+               "C_m, likewise, of the largest well pressure above the initial one: leak-off "// &
+               "dominates where it is large")]
 
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv"), &
@@ -146,6 +154,9 @@ module report_columns
          "k1_pa_sqrtm corrected for the error of the mesh, where that is known; else the same"), &
       column_t("k2_corrected_pa_sqrtm", "Pa m^1/2", always, &
          "k2_pa_sqrtm corrected for the error of the mesh, where that is known; else the same"), &
+      column_t("apparent_toughness_pa_sqrtm", "Pa m^1/2", with_fluid_and_growth, &
+               "Toughness that would give, without viscosity, the opening a coarse cell's "// &
+               "length behind the tip; the toughness where viscosity has no effect"), &
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1")]
 
    type(column_t), parameter :: fracture_columns(*) = [ &
@@ -437,6 +448,10 @@ contains
          applies = scene%has_fluid() .and. scene%has_fractures()
       case (with_wells)
          applies = scene%has_fluid() .and. scene%has_wells()
+      case (with_fluid_and_growth)
+         applies = scene%has_fluid() .and. scene%growth%enabled
+      case (with_wells_and_growth)
+         applies = scene%has_fluid() .and. scene%has_wells() .and. scene%growth%enabled
       case (with_one_well)
          applies = scene%has_fluid() .and. well_count(scene) == 1
       case (at_most_one)

@@ -55,6 +55,8 @@ module report_rows
       real(rk) :: connected_stimulated = 0.0_rk  !< length that is both [m]
       integer(ik) :: n_clusters = 0  !< clusters of connected fractures
       real(rk) :: connections_per_branch = 0.0_rk  !< [-]
+      real(rk) :: dimensionless_toughness = 0.0_rk  !< K_m of growth [-]
+      real(rk) :: dimensionless_leakoff = 0.0_rk  !< C_m of growth [-]
    end type history_row_t
 
    !> A slip event of a fracture, a row of slip_events.csv.
@@ -120,6 +122,7 @@ module report_rows
       real(rk) :: g_error = 0.0_rk  !< estimated error of g_domain [J/m2]
       real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< errors of k1_dc, k2_dc [Pa m^1/2]
       real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< k1, k2 less mesh error [Pa m^1/2]
+      real(rk) :: apparent_toughness = 0.0_rk  !< with the viscosity of the fluid [Pa m^1/2]
    end type tip_row_t
 
    !> State of the matrix cells.

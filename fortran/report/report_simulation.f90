@@ -240,6 +240,8 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%has_state(is_before=any_grew)) cycle
          row = row_of_tip(self%time(), i, self%tip(i), any_grew)
+         row%apparent_toughness = self%tip(i)%viscous_rise*resistance_of(self%tip(i), any_grew) &
+                                  *self%rules%toughness
          call self%chronicle%add_tip(row)
          self%summary%keq_over_kic = max(self%summary%keq_over_kic, &
                                          over_toughness(self%scene, &

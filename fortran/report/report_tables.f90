@@ -115,6 +115,8 @@ contains
          call table%put("n_clusters", row%n_clusters)
          call table%put("max_slip_rate_m_s", row%max_slip_rate)
          call table%put("connections_per_branch", row%connections_per_branch)
+         call table%put("dimensionless_toughness", row%dimensionless_toughness)
+         call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
          call table%end_row()
       end associate
    end subroutine history_row
@@ -148,6 +150,7 @@ contains
          call table%put("k2_dc_error_pa_sqrtm", row%k2_dc_error)
          call table%put("k1_corrected_pa_sqrtm", row%k1_corrected)
          call table%put("k2_corrected_pa_sqrtm", row%k2_corrected)
+         call table%put("apparent_toughness_pa_sqrtm", row%apparent_toughness)
          call table%put("history_row", int(self%history%n_rows, ik))
          call table%end_row()
       end associate

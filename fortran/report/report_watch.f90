@@ -178,7 +178,7 @@ contains
       type(tip_t), intent(in) :: tip
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
 
-      uncertainty = 100.0_rk*error_of_k(tip)/max(toughness, tip%drive%intensity)
+      uncertainty = 100.0_rk*error_of_k(tip)/max(toughness*tip%viscous_rise, tip%drive%intensity)
    end function uncertainty
 
    !> Estimated error of the intensities without the part that decreases in the following steps [Pa

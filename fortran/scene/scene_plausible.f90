@@ -1,11 +1,6 @@
 !> Warnings for scenes that can be simulated but are probably not intended: values out of the usual
 !! range, as from wrong units, inconsistent values, and ends of fractures that almost touch
 !! something or just pass it. Scenes that cannot be simulated are refused (scene_check).
-!!
-!! The growth regime of a fracture with a well: in plane strain, at a constant rate Q and without
-!! leak-off, it is given by the dimensionless toughness K_m = K'/(E'^3 mu' Q)^(1/4), with K' =
-!! sqrt(32/pi) K_IC, E' = E/(1 - nu^2) and mu' = 12 mu (Detournay 2004, International Journal of
-!! Geomechanics 4, 35), which is constant in time.
 module scene_plausible
    use base_kinds, only: degrees, ik, pi, rk
    use base_plane, only: polygon_area
@@ -15,6 +10,7 @@ module scene_plausible
    use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
    use scene_fluid_law, only: skempton
+   use scene_regime, only: find_regime
    use scene_region_outline, only: body_part
    use scene_sides, only: normal_tractions
    use scene_types, only: fracture_t, scene_t
@@ -22,7 +18,7 @@ module scene_plausible
    implicit none(type, external)
    private
 
-   public :: doubts, doubts_of_scene, find_regime, regime_words
+   public :: doubt_t, doubts, doubts_of_scene
 
    !> A plausibility check.
    type :: doubt_t
@@ -111,9 +107,8 @@ module scene_plausible
       doubt_t("initial", "pressure", "Pa", "above the smallest compression in situ somewhere", &
          "fractures across that compression are open from the start"), &
       doubt_t("injection", "K_m", "-", &
-         "below 1, of a rate in a fracture, with growth (docs/theory.md)", &
-         "growth is then viscosity-dominated; growth is verified for K_m of 1 and more, and "// &
-         "below it the run may end early"), &
+         "below 0.5, of a rate in a fracture, with growth (docs/theory.md)", &
+         "growth is then viscosity-dominated; growth is verified for K_m of 0.5 and more"), &
       doubt_t("restraint", "surplus", "-", "above 0: more components than fix the rigid motions", &
          "they are then point loads, around which results depend on the cell size; use "// &
          "displacements or springs on sides instead"), &
@@ -128,7 +123,7 @@ module scene_plausible
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
-   real(rk), parameter :: least_verified = 1.0_rk  !< smallest verified K_m, verification/kgd [-]
+   real(rk), parameter, public :: least_verified = 0.5_rk  !< smallest K_m of verification/kgd [-]
 
 contains
 
@@ -210,10 +205,10 @@ contains
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
       real(rk), parameter :: nearly = 0.99_rk
-      real(rk) :: value
+      real(rk) :: leakoff, value
       integer :: well
 
-      call find_regime(scene, value, well)
+      call find_regime(scene, value, leakoff, well)
       if (well == 0) return
       call add(list, value < nearly*least_verified, of_viscous, value, &
                " '"//trim(scene%injections(well)%name)//"'")
@@ -369,46 +364,5 @@ contains
                     trim(d%usual))
    end subroutine add
 
-   !> Find the smallest K_m of the wells with a rate in a fracture, in a scene with growth.
-   pure subroutine find_regime(scene, dimensionless_toughness, well)
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(out) :: dimensionless_toughness  !< [-]
-      integer, intent(out) :: well  !< its well; 0: none
-      real(rk) :: modulus, rate, toughness, value
-      integer :: i
-
-      dimensionless_toughness = huge(1.0_rk)
-      well = 0
-      if (.not. (scene%growth%enabled .and. scene%has_fluid() .and. &
-                 allocated(scene%injections))) return
-      modulus = scene%material%young
-      if (.not. scene%material%plane_stress) modulus = modulus/(1.0_rk - scene%material%poisson**2)
-      do i = 1, size(scene%injections)
-         if (scene%injections(i)%fracture == 0 .or. .not. allocated(scene%injections(i)%rate)) cycle
-         rate = maxval(scene%injections(i)%rate)
-         if (.not. rate > 0.0_rk) cycle
-         toughness = min(scene%material%toughness, &
-                         scene%fractures(scene%injections(i)%fracture)%toughness)
-         value = sqrt(32.0_rk/pi)*toughness &
-                 /(modulus**3*12.0_rk*scene%fluid%viscosity*rate)**0.25_rk
-         if (value >= dimensionless_toughness) cycle
-         dimensionless_toughness = value
-         well = i
-      end do
-   end subroutine find_regime
-
-   !> Growth regime: dominated by viscosity up to a K_m of 1, by toughness from 4 on.
-   pure function regime_words(dimensionless_toughness) result(words)
-      real(rk), intent(in) :: dimensionless_toughness  !< [-]
-      character(len=:), allocatable :: words
-
-      if (dimensionless_toughness > 3.99_rk) then
-         words = "toughness-dominated growth"
-      else if (dimensionless_toughness > 1.01_rk) then
-         words = "growth depends on toughness and viscosity"
-      else
-         words = "viscosity-dominated growth"
-      end if
-   end function regime_words
 
 end module scene_plausible

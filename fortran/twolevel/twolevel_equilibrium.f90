@@ -25,6 +25,7 @@ module twolevel_equilibrium
    use twolevel_probe, only: lesson_t, measure_rivals
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
+   use twolevel_tip_layers, only: find_tip_layers
    use twolevel_trust, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
@@ -135,6 +136,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call place_tips(self%front_state_t, self%now%segment, self%problem)
+      call find_tip_layers(self, search%dt, search%may_jump)
       call self%try_step(search%dt, timers, report, error)
       if (allocated(error)) return
       trial%converged = report%converged

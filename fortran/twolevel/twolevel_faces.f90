@@ -95,7 +95,7 @@ contains
    end function conditions
 
    !> Fluid pressure, and what the condition gives, from the state of the coarse level.
-   pure subroutine load(self, fine, name, state, lowest, loads, in_situ)
+   pure subroutine load(self, fine, name, state, lowest, loads, in_situ, viscous)
       class(face_map_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
       character(len=*), intent(in) :: name  !< "contact", "jump" or "traction"
@@ -103,9 +103,10 @@ contains
       real(rk), intent(in) :: lowest  !< pressure that the fluid bears [Pa]
       type(fine_loads_t), intent(inout) :: loads
       real(rk), intent(in), optional :: in_situ(:)  !< (faces) what pressures add to [Pa]
+      real(rk), intent(in), optional :: viscous(:)  !< (coarse fracture cells) as on_faces has it
       integer(ik) :: i, k
 
-      loads%fluid_pressure = self%pressure%on_faces(state%pressure, lowest, in_situ)
+      loads%fluid_pressure = self%pressure%on_faces(state%pressure, lowest, in_situ, viscous)
       do i = 1, fine%fracture%n_cells
          associate (j => self%coarse_cell(i))
             if (.not. self%is_inside(i)) cycle

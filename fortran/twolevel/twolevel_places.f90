@@ -59,6 +59,9 @@ contains
          ends%ahead = [(norm2(fracture%point_xy(:, fracture%cell_points(tips(k)%end, &
                                                                         ends%cell(k))) &
                               - tips(k)%xy), k=1, size(free))]
+         if (allocated(ends%viscous)) then
+            if (size(ends%viscous) /= size(free)) deallocate (ends%viscous)
+         end if
          call problem%model%joints%shut_only(ends%cell, tips%end)
       end associate
    end subroutine place_tips

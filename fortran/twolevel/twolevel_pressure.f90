@@ -6,10 +6,12 @@
 !! so that the pressure is linear in ln d, from the last two middles on. This holds in cells that
 !! have grown. At the tips of other cells, and beyond the coarse fracture, the pressure is that of
 !! the last cell. A face takes the mean pressure with the weight 1/sqrt(d) with which it enters the
-!! stress intensity factor. Of the cell of the tip, only the part behind the tip counts.
+!! stress intensity factor. Of the cell of the tip, only the part behind the tip counts. Where
+!! viscosity has an effect at the scale of the cells, the pressure is that of coarse_tip_layer.
 module twolevel_pressure
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
+   use coarse_tip_layer, only: mean_pressure_shape, pressure_shape
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -21,6 +23,8 @@ module twolevel_pressure
    type :: pressure_map_t
       integer(ik), allocatable :: cell(:, :)  !< (2, fracture cells) coarse fracture cells
       real(rk), allocatable :: weight(:)  !< of the second; negative beyond the first [-]
+      real(rk), allocatable :: face(:, :)  !< (2, fracture cells) ends, from the tip; 0: none [m]
+      real(rk), allocatable :: middle(:, :)  !< (2, fracture cells) of the cells, from the tip [m]
    contains
       procedure :: on_faces
    end type pressure_map_t
@@ -40,6 +44,7 @@ contains
       associate (n => fine%fracture%n_cells)
          allocate (map%cell(2, n), source=0_ik)
          allocate (map%weight(n), source=0.0_rk)
+         allocate (map%face(2, n), map%middle(2, n), source=0.0_rk)
       end associate
       do f = 1, maxval([0_ik, fine%fracture%cell_fracture])
          call find_ends(fine, f, ends, is_tip)
@@ -50,7 +55,7 @@ contains
          do i = 1, fine%fracture%n_cells
             if (fine%fracture%cell_fracture(i) /= f) cycle
             call match_face(fine%face_s(:2, i), ends, is_tip, middle, is_wet, map%cell(:, i), &
-                            map%weight(i))
+                            map%weight(i), map%face(:, i), map%middle(:, i))
          end do
       end do
    end function match_pressure
@@ -113,7 +118,7 @@ contains
    end subroutine find_middles
 
    !> The two middles that the pressure on a face follows from.
-   pure subroutine match_face(s, ends, is_tip, middle, is_wet, cell, weight)
+   pure subroutine match_face(s, ends, is_tip, middle, is_wet, cell, weight, face, d)
       real(rk), intent(in) :: s(2)  !< its ends [m]
       real(rk), intent(in) :: ends(2)  !< of the fracture [m]
       logical, intent(in) :: is_tip(2)
@@ -121,12 +126,16 @@ contains
       logical, intent(in) :: is_wet(:)
       integer(ik), intent(out) :: cell(2)
       real(rk), intent(out) :: weight  !< of the second [-]
-      real(rk) :: at, d(2)
+      real(rk), intent(out) :: face(2)  !< the ends' distances from the tip; 0: there is none [m]
+      real(rk), intent(out) :: d(2)  !< the middles' distances from the tip [m]
+      real(rk) :: at
       integer(ik) :: end
 
       at = 0.5_rk*sum(s)
       cell = 0
       weight = 0.0_rk
+      face = 0.0_rk
+      d = 0.0_rk
       do end = 1, 2
          if (.not. is_tip(end)) cycle
          cell(1) = minloc(abs(middle - ends(end)), dim=1, mask=is_wet)
@@ -136,7 +145,10 @@ contains
          if (cell(2) == 0) cell(2) = cell(1)
          d = abs(middle(cell) - ends(end))
          if (abs(at - ends(end)) > d(2)) cycle
-         if (d(2) > d(1)) weight = (mean_logarithm(abs(s - ends(end))) - log(d(1)))/log(d(2)/d(1))
+         if (d(2) > d(1)) then
+            face = abs(s - ends(end))
+            weight = (mean_logarithm(face) - log(d(1)))/log(d(2)/d(1))
+         end if
          return
       end do
       cell(1) = maxloc(middle, dim=1, mask=is_wet .and. middle <= at)
@@ -161,24 +173,45 @@ contains
 
    !> Pressure on the faces. It does not rise beyond the last middle, and is not below what the
    !! fluid bears. Where pressures count beyond those in situ, what is found is the whole one.
-   pure function on_faces(self, pressure, lowest, in_situ) result(found)
+   pure function on_faces(self, pressure, lowest, in_situ, viscous) result(found)
       class(pressure_map_t), intent(in) :: self
       real(rk), intent(in) :: pressure(:)  !< of the coarse fracture cells [Pa]
       real(rk), intent(in) :: lowest  !< [Pa]
       real(rk), intent(in), optional :: in_situ(:)  !< (faces) [Pa]
+      !> (coarse fracture cells) of coarse_tip_layer where a tip lies in one, else 0 [1/m^(1/2)]
+      real(rk), intent(in), optional :: viscous(:)
       real(rk) :: found(size(self%weight))  !< [Pa]
       real(rk) :: least(size(self%weight))  ! [Pa]
+      real(rk) :: weight
       integer(ik) :: i
 
       least = lowest
       if (present(in_situ)) least = lowest - in_situ
       do i = 1, size(found, kind=ik)
-         associate (p => pressure(self%cell(:, i)), weight => self%weight(i))
+         weight = self%weight(i)
+         if (present(viscous)) then
+            if (viscous(self%cell(1, i)) > 0.0_rk) weight = viscous_weight(self, i, viscous)
+         end if
+         associate (p => pressure(self%cell(:, i)))
             found(i) = p(1) + weight*(p(2) - p(1))
             if (weight < 0.0_rk) found(i) = max(least(i), min(p(1), found(i)))
          end associate
       end do
       if (present(in_situ)) found = found + in_situ
    end function on_faces
+
+   !> The weight of the second middle where viscosity has an effect at the scale of the cells.
+   pure real(rk) function viscous_weight(self, face, viscous) result(weight)
+      class(pressure_map_t), intent(in) :: self
+      integer(ik), intent(in) :: face
+      real(rk), intent(in) :: viscous(:)  !< (coarse fracture cells) [1/m^(1/2)]
+
+      weight = self%weight(face)
+      if (.not. maxval(self%face(:, face)) > 0.0_rk) return
+      associate (b => viscous(self%cell(1, face)), d => self%middle(:, face))
+         weight = (mean_pressure_shape(b, self%face(:, face)) - pressure_shape(b, d(1))) &
+                  /(pressure_shape(b, d(2)) - pressure_shape(b, d(1)))
+      end associate
+   end function viscous_weight
 
 end module twolevel_pressure

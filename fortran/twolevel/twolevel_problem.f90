@@ -33,6 +33,8 @@ module twolevel_problem
       real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
       type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
       logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
+      !> (coarse fracture cells) of coarse_tip_layer where a tip lies in one, else 0 [1/m^(1/2)]
+      real(rk), allocatable :: viscous(:)
    end type coarse_values_t
 
    !> What belongs to one mesh.
@@ -214,10 +216,14 @@ contains
       type(state_t), intent(in) :: state
 
       if (allocated(self%values%of)) then
-         if (all(abs(self%values%of - state%unknowns) <= 0.0_rk)) return
+         if (all(abs(self%values%of - state%unknowns) <= 0.0_rk)) then
+            call take_viscous(self)
+            return
+         end if
       end if
       self%values = coarse_values_t(of=state%unknowns, law=self%model%cells%law, &
                                     is_grown=self%model%cells%roughness > 0.0_rk)
+      call take_viscous(self)
       associate (values => self%values, model => self%model, mesh => self%mesh, &
                  n => self%mesh%n_nodes)
          allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
@@ -227,6 +233,16 @@ contains
                                            values%nodal(3, :), state%pressure)
       end associate
    end subroutine find_values
+
+   !> The parameters of the tips, which the model has once it has solved a step.
+   subroutine take_viscous(self)
+      class(coarse_problem_t), intent(inout) :: self
+
+      self%values%viscous = spread(0.0_rk, 1, self%mesh%fracture%n_cells)
+      if (.not. allocated(self%model%cells%viscous)) return
+      if (size(self%model%cells%viscous) /= size(self%values%viscous)) return
+      self%values%viscous = self%model%cells%viscous
+   end subroutine take_viscous
 
    !> Wells in the rock.
    pure subroutine feed_rock(self, rates)

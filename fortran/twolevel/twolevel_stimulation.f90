@@ -15,6 +15,7 @@ module twolevel_stimulation
    use growth_network, only: fracture_length, total_length
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: history_row_t
+   use scene_regime, only: dimensionless_leakoff, dimensionless_toughness
    use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: end_at_tips, fracture_volume
@@ -118,6 +119,15 @@ contains
       row%rock_outflow = self%rock_outflow
       row%injection_rate = sum(well_flows(levels%scene, levels%problem, levels%before%time, &
                                           levels%now%coarse))
+      if (size(row%well_pressure) > 0) then
+         associate (scene => levels%scene, rate => row%injection_rate)
+            row%dimensionless_toughness = &
+               dimensionless_toughness(scene, levels%rules%toughness, rate)
+            row%dimensionless_leakoff = &
+               dimensionless_leakoff(scene, maxval(row%well_pressure) - scene%initial%pressure, &
+                                     rate, row%time)
+         end associate
+      end if
       fracture = levels%problem%mesh%fracture
       if (fracture%n_cells == 0) return
       row%fracture_fluid = row%fracture_volume - self%fracture_volume + self%compressed

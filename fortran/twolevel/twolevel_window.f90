@@ -339,7 +339,8 @@ contains
       associate (face_condition => scene%discretization%face_condition)
          conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
          call self%faces%load(self%model%mesh, face_condition, state, &
-                              scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ)
+                              scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ, &
+                              values%viscous)
       end associate
       if (.not. same_conditions(self%model, conditions)) then
          call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))

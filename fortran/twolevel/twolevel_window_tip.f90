@@ -25,8 +25,8 @@ module twolevel_window_tip
       real(rk) :: compared_at(2) = 0.0_rk  !< where the tip was then [m]
       real(rk) :: of_elements = 0.0_rk  !< the part that smaller elements would mend [Pa m^1/2]
       real(rk) :: of_edge = 0.0_rk  !< the part that a larger window would mend [Pa m^1/2]
-      !> At the last evaluation: mean opening and slip of the coarse cell behind the tip [m], and the
-      !! position of the tip [m]
+      !> At the last evaluation: mean opening and slip of the coarse cell behind the tip [m], and
+      !! the position of the tip [m]
       real(rk) :: jump_then(2) = 0.0_rk, place_then(2) = huge(1.0_rk)
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
    contains

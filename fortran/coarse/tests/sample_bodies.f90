@@ -215,6 +215,7 @@ contains
          allocate (cells%roughness(n), source=0.0_rk)
          allocate (cells%share(n), source=1.0_rk)
          allocate (cells%has_tip(n), source=.false.)
+         allocate (cells%viscous(n), source=0.0_rk)
          allocate (cells%leak_resistance(n), source=0.0_rk)
          allocate (cells%injection(n), source=0.0_rk)
       end associate

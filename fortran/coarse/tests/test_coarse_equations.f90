@@ -9,6 +9,7 @@ program test_coarse_equations
    use coarse_layout, only: fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_newton, only: equations_t
+   use coarse_tip_layer, only: opening_shape, pressure_shape, volume_shape
    use coarse_state, only: state_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    use contact_law, only: contact_law_t, state_open, state_stick
@@ -39,7 +40,11 @@ program test_coarse_equations
    call checks%is_true(all(has_occurred), "cells stick, slip and are open")
    call test_fluid_laws()
    call test_exchange_along_fractures()
-   call test_moving_tip()
+   call test_moving_tip(0.0_rk)
+   call test_moving_tip(7.0_rk)
+   model%cells%viscous(mesh%fracture%n_cells) = 7.0_rk
+   call compare_slopes(.false., 1)
+   model%cells%viscous = 0.0_rk
    call add_laws()
    call compare_slopes(.false., 1)
    call compare_slopes(.true., 3)
@@ -344,12 +349,13 @@ contains
 
    !> Fluid that follows a tip: with the opening k sqrt(d) in both cells at the tip, and the flow V
    !! w through each section, the pressure falls by 12 mu V/k^2 per unit of ln d.
-   subroutine test_moving_tip()
+   subroutine test_moving_tip(b)
+      real(rk), intent(in) :: b  !< of coarse_tip_layer; 0: viscosity has no effect [1/m^(1/2)]
       real(rk), parameter :: k = 1.0e-3_rk  ! [m^1/2]
       real(rk), parameter :: speed = 1.0e-9_rk  ! [m/s]
       type(equations_t) :: eq
       real(rk), allocatable :: x(:)
-      real(rk) :: d(3), opening(2), reach(2)
+      real(rk) :: between(2), d(3), fall, opening(2), reach(2)
       integer(ik), allocatable :: contact(:, :)
       integer(ik) :: cells(2), end, i, pair
 
@@ -362,7 +368,7 @@ contains
       associate (length => model%condensed%length(cells), share => model%cells%share(cells))
          reach = share*length
          d = [sum(reach), reach(2), 0.0_rk]
-         opening = 2.0_rk/3.0_rk*k*(d(:2)**1.5_rk - d(2:)**1.5_rk)/length
+         opening = k*(volume_shape(b, d(:2)) - volume_shape(b, d(2:)))/length
       end associate
       call equations_at(x, .false., eq, contact)
       do i = 1, 2
@@ -370,10 +376,17 @@ contains
             x(eq%layout%at_jump(cells(i), end)) = eq%stiffness*opening(i)
          end do
       end do
-      x(eq%layout%at_flow(pair)) = speed*k*sqrt(d(2))*dt/eq%unit
+      model%cells%viscous(cells(2)) = b
+      x(eq%layout%at_flow(pair)) = speed*k*opening_shape(b, d(2))*dt/eq%unit
+      between = [0.5_rk*reach(2), d(2) + 0.5_rk*reach(1)]
+      if (b > 0.0_rk) then
+         fall = pressure_shape(b, between(2)) - pressure_shape(b, between(1))
+      else
+         fall = log(between(2)/between(1))
+      end if
       x(eq%layout%at_pressure(cells(1))) = 9.0e6_rk
-      x(eq%layout%at_pressure(cells(2))) = 9.0e6_rk - 12.0_rk*model%settings%viscosity*speed/k**2 &
-                                           *log((d(2) + 0.5_rk*reach(1))/(0.5_rk*reach(2)))
+      x(eq%layout%at_pressure(cells(2))) = 9.0e6_rk &
+                                           - 12.0_rk*model%settings%viscosity*speed/k**2*fall
       call equations_at(x, .false., eq, contact)
       call checks%is_true(minval(x(eq%layout%at_pressure(cells))) > vapour_pressure + 1.0e6_rk, &
                           "above the vapour pressure")

@@ -2,6 +2,7 @@
 !! the logarithm of the distance near a tip that lies within its cell.
 program test_twolevel_pressure
    use base_kinds, only: ik, rk
+   use coarse_tip_layer, only: mean_pressure_shape, pressure_shape
    use fine_mesh, only: fine_mesh_t
    use mesh_types, only: mesh_t
    use testing_checks, only: checks_t
@@ -17,6 +18,7 @@ program test_twolevel_pressure
    call make_meshes()
    call test_linear()
    call test_logarithm()
+   call test_viscous()
    call test_limits()
    call test_other_tips()
    call test_reached_cell()
@@ -111,6 +113,28 @@ contains
          end do
       end do
    end subroutine test_logarithm
+
+   !> Near a tip where viscosity has an effect at the scale of the cells: that pressure.
+   subroutine test_viscous()
+      real(rk), parameter :: b = 60.0_rk  ! [1/m^(1/2)]
+      type(pressure_map_t) :: map
+      real(rk) :: d(2), found(fine%fracture%n_cells), viscous(n)
+      integer(ik) :: end, i, j
+
+      map = match_pressure(fine, coarse, spread(.true., 1, n))
+      do end = 1, 2
+         viscous = 0.0_rk
+         viscous(merge(1_ik, n, end == 1)) = b
+         found = map%on_faces([(1.0e7_rk + 1.0e6_rk*pressure_shape(b, abs(middle(j) - tip(end))), &
+                                j=1, n)], 0.0_rk, viscous=viscous)
+         do i = 1, fine%fracture%n_cells
+            d = abs(fine%face_s(:, i) - tip(end))
+            if (0.5_rk*sum(d) > abs(middle(merge(2_ik, n - 1, end == 1)) - tip(end))) cycle
+            call checks%is_close(found(i), 1.0e7_rk + 1.0e6_rk*mean_pressure_shape(b, d), &
+                                 10.0_rk, "viscous")
+         end do
+      end do
+   end subroutine test_viscous
 
    !> No pressure below what the fluid bears, and none that rises toward the tip beyond the last
    !! middle.
