@@ -53,7 +53,7 @@ contains
 
       length = total_length(network_of_scene(scene))
       if (length > 0.0_rk) then
-         estimate%fracture_cells = anint(length/scene%discretization%size_fracture)
+         estimate%fracture_cells = anint(length/usual_cell(scene))
       end if
       estimate%cells = anint(number_of_cells(scene, length))
       estimate%steps = real(scene%load%steps, rk)
@@ -84,6 +84,23 @@ contains
       values = values + values_per_fracture_cell*estimate%fracture_cells*written
       estimate%bytes_of_tables = byte_per_value*values
    end function size_of_scene
+
+   !> Mean size of the cells along fractures [m].
+   pure real(rk) function usual_cell(scene) result(size)
+      type(scene_t), intent(in) :: scene
+      real(rk) :: length, cells
+      integer(ik) :: i
+
+      size = scene%discretization%size_fracture
+      if (.not. any(scene%fractures%cell_size > 0.0_rk)) return
+      length = 0.0_rk
+      cells = 0.0_rk
+      do i = 1, ubound(scene%fractures, 1)
+         length = length + scene%fractures(i)%length()
+         cells = cells + scene%fractures(i)%length()/scene%cell_size_of(i)
+      end do
+      size = length/cells
+   end function usual_cell
 
    !> Steps of a given length, or as many as it usually takes where they are chosen.
    pure real(rk) function number_of_steps(time)
@@ -125,7 +142,7 @@ contains
          area = abs(polygon_area(outline%corners))
       end if
       associate (body => scene%domain, far => scene%discretization%size_boundary, &
-                 near => scene%discretization%size_fracture)
+                 near => usual_cell(scene))
          n = cells_per_square*area/far**2
          if (.not. (length > 0.0_rk .and. near < far .and. area > 0.0_rk)) return
          n_fractures = real(size(scene%fractures), rk)
@@ -254,6 +271,7 @@ contains
                                                            merge("intensities", "left out   ", &
                                                                  scene%growth%intensities), &
                                                            scene%growth%enabled))
+         if (scene%discretization%chosen) call describe_sizes(scene, unit)
          call find_regime(scene, toughness, well)
          if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
             regime_words(toughness), ", K_m = ", toughness, " (well '", &
@@ -265,5 +283,36 @@ contains
       end associate
       call show_warnings(doubts_of_scene(scene), unit)
    end subroutine describe_scene
+
+   !> Sizes that the scene leaves open: the smallest and the largest of those of its fractures.
+   subroutine describe_sizes(scene, unit)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: unit
+      integer(ik) :: i, n
+
+      n = size(scene%fractures, kind=ik)
+      if (n > 0) write (unit, "(2a)") "cells:        ", &
+         range_text([(scene%cell_size_of(i), i=1, n)])//" along fractures, up to "// &
+         number(scene%discretization%size_boundary)//" m"
+      if (n == 0 .or. .not. scene%growth%intensities) return
+      if (scene%growth%enabled) write (unit, "(2a)") "increments:   ", &
+         range_text([(scene%increment_of(i), i=1, n)])
+      if (.not. scene%has_fluid()) return
+      if (scene%discretization%window_is_body) then
+         write (unit, "(a)") "windows:      the body"
+      else
+         write (unit, "(2a)") "windows:      ", range_text([(scene%window_of(i), i=1, n)])
+      end if
+   end subroutine describe_sizes
+
+   !> From the smallest to the largest, or the one that all are.
+   pure function range_text(sizes) result(text)
+      real(rk), intent(in) :: sizes(:)  !< [m]
+      character(len=:), allocatable :: text
+
+      text = number(minval(sizes))//" m"
+      if (maxval(sizes) > minval(sizes)) text = number(minval(sizes))//" to "// &
+                                                number(maxval(sizes))//" m"
+   end function range_text
 
 end module app_size

@@ -13,7 +13,7 @@ module report_describe
    use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, &
                                in_mechanics, kind_choice, kind_integer, kind_logical, kind_name, &
                                kind_real, kind_reals, kind_wholes, need_always, need_choice, &
-                               need_fluid, need_fracture, need_growth, need_tips, parameter_t, &
+                               need_fluid, need_growth, parameter_t, &
                                parameters
    use scene_plausible, only: doubts
    implicit none(type, external)
@@ -161,10 +161,6 @@ contains
          words = "always"
       case (need_fluid)
          words = "with &fluid"
-      case (need_fracture)
-         words = "with &fracture"
-      case (need_tips)
-         words = "with growth or intensities"
       case (need_growth)
          words = "with growth"
       case (need_choice)

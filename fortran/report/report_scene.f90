@@ -161,7 +161,7 @@ contains
       end associate
       along = network%xy(:, at) - network%xy(:, before)
       ratio = toughness_ahead(places, scene, network%xy(:, at), along/norm2(along), &
-                              share*scene%growth%increment)/scene%material%toughness
+                              share*scene%increment_of(fracture))/scene%material%toughness
    end function relative_toughness
 
    !> The law where the faces touch; what the scene holds closed is bilateral besides.

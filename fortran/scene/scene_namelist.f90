@@ -13,6 +13,7 @@ module scene_namelist
    use scene_parse, only: parse_scene
    use scene_schedule, only: load_schedules
    use scene_sheet, only: sheet_t
+   use scene_sizes, only: choose_sizes
    use scene_types, only: injection_t, material_t, region_t, scene_t
    implicit none(type, external)
    private
@@ -64,11 +65,9 @@ contains
             if (.not. reference > -huge(1.0_rk)) reference = scene%initial%pressure
          end associate
       end if
+      call choose_sizes(scene)
       associate (d => scene%discretization)
-         if (scene%has_fluid()) then
-            call default(scene%growth%increment, d%fine_ratio*d%size_fracture)
-         else
-            call default(scene%growth%increment, d%size_fracture)
+         if (.not. scene%has_fluid()) then
             call default(d%rosette_radius, d%size_fracture)
             call default(d%rosette_radius, d%size_boundary)  ! without fractures
          end if

@@ -19,8 +19,8 @@ module scene_parameter_table
 
    public :: body_parameters, fracture_parameters, group_t, in_all, in_fluid, in_mechanics
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
-   public :: kind_wholes, need_always, need_choice, need_fluid, need_fracture, need_growth
-   public :: need_never, need_tips, numerics_parameters, parameter_t, process_parameters
+   public :: kind_wholes, need_always, need_choice, need_fluid, need_growth
+   public :: need_never, numerics_parameters, parameter_t, process_parameters
    public :: rock_parameters, text_length
 
    integer, parameter :: kind_real = 1
@@ -35,10 +35,8 @@ module scene_parameter_table
    integer, parameter :: need_never = 0
    integer, parameter :: need_always = 1  !< in every such group
    integer, parameter :: need_fluid = 2  !< where there is a fluid
-   integer, parameter :: need_fracture = 3  !< where there is a fracture
-   integer, parameter :: need_tips = 4  !< where growth or stress intensity factors are computed
-   integer, parameter :: need_growth = 5  !< where fractures grow
-   integer, parameter :: need_choice = 6  !< with the choice that it belongs to
+   integer, parameter :: need_growth = 3  !< where fractures grow
+   integer, parameter :: need_choice = 4  !< with the choice that it belongs to
 
    ! Scenes that may give a group or a parameter.
    integer, parameter :: in_all = 0
@@ -377,7 +375,17 @@ module scene_parameter_table
                   meaning="Pressure on the faces, also on those of its wings, times the load "// &
                           "factor, in addition to contact"), &
       parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
-                  meaning="Residual hydraulic aperture a_0 of the closed fracture")]
+                  meaning="Residual hydraulic aperture a_0 of the closed fracture"), &
+      parameter_t("fracture", "cell_size", unit="m", absent="size_fracture", &
+                  range=positive, derived=.true., &
+                  meaning="Size of cells or elements along the fracture, at most its length; "// &
+                          "where size_fracture is omitted a share of its length"), &
+      parameter_t("fracture", "window", unit="m", absent="window of &fine", &
+                  range=positive, derived=.true., scenes=in_fluid, &
+                  meaning="Edge of the windows of its tips"), &
+      parameter_t("fracture", "increment", unit="m", absent="increment of &growth", &
+                  range=positive, derived=.true., &
+                  meaning="Largest advance of its tips, as increment of &growth")]
    !&>
 
    ! The table keeps its own layout.
@@ -477,11 +485,13 @@ module scene_parameter_table
    ! The table keeps its own layout.
    !&<
    type(parameter_t), parameter :: numerics_parameters(*) = [ &
-      parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &
-                  absent="no fracture", &
+      parameter_t("fe", "size_fracture", unit="m", range=positive, &
+                  absent="a 20th of each fracture's length", derived=.true., &
                   at_most="size_boundary", &
-                  meaning="Element size at the fractures, at most the length of each fracture"), &
-      parameter_t("fe", "size_boundary", unit="m", need=need_always, range=positive, &
+                  meaning="Element size at the fractures, at most the length of each. By "// &
+                          "default each fracture has its own cell_size (docs/theory.md)"), &
+      parameter_t("fe", "size_boundary", unit="m", range=positive, derived=.true., &
+                  absent="a 20th of the domain's shorter edge", &
                   meaning="Element size far from the fractures, at most the shorter edge of "// &
                   "the domain"), &
       parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
@@ -499,11 +509,13 @@ module scene_parameter_table
                   meaning="Target relative error of the stresses in the energy norm"), &
       parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
                   meaning="Maximum number of adapted meshes"), &
-      parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
-                  absent="no fracture", &
+      parameter_t("coarse", "size_fracture", unit="m", range=positive, &
+                  absent="a 20th of each fracture's length", derived=.true., &
                   at_most="size_boundary", &
-                  meaning="Cell size dH at the fractures, at most the length of each fracture"), &
-      parameter_t("coarse", "size_boundary", unit="m", need=need_always, range=positive, &
+                  meaning="Cell size dH at the fractures, at most the length of each. By "// &
+                          "default each fracture has its own cell_size (docs/theory.md)"), &
+      parameter_t("coarse", "size_boundary", unit="m", range=positive, derived=.true., &
+                  absent="a 20th of the domain's shorter edge", &
                   meaning="Cell size far from the fractures, at most the shorter edge of the "// &
                   "domain"), &
       parameter_t("coarse", "newton_max", kind_integer, default="30", range=newton_range, &
@@ -514,8 +526,8 @@ module scene_parameter_table
                   choices="auto|full|sparse", &
                  meaning="Solution of the fracture equations: condensation of the rock onto a "// &
                          "full matrix, or one sparse system; `auto` selects the cheaper one"), &
-      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, &
-                  choices="body", absent="no fine level", &
+      parameter_t("fine", "window", unit="m", range=positive, derived=.true., &
+                  choices="body", absent="5 fracture lengths, or 'body'", &
                  meaning="Edge l of the square window around a tip, more than 2 size_ratio "// &
                          "dH; or the whole body as one window for all tips"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &

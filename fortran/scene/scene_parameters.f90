@@ -9,9 +9,8 @@ module scene_parameters
                                     in_fluid, in_mechanics, kind_choice, kind_integer, &
                                     kind_logical, kind_name, kind_real, kind_reals, kind_text, &
                                     kind_wholes, need_always, need_choice, need_fluid, &
-                                    need_fracture, need_growth, need_never, need_tips, &
-                                    numerics_parameters, parameter_t, process_parameters, &
-                                    rock_parameters, text_length
+                                    need_growth, need_never, numerics_parameters, &
+                                    parameter_t, process_parameters, rock_parameters, text_length
    implicit none(type, external)
    private
 
@@ -19,8 +18,7 @@ module scene_parameters
    public :: groups, parameters, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
    public :: kind_wholes
-   public :: need_always, need_choice, need_fluid, need_fracture, need_growth, need_never
-   public :: need_tips
+   public :: need_always, need_choice, need_fluid, need_growth, need_never
    public :: applies, choice_name, choice_value, in_all, in_fluid, in_mechanics
 
    !> Sides of the body in the order of scene_t%sides.

@@ -11,8 +11,7 @@ module scene_parse
                                token_word, tokenize, unquoted
    use scene_parameter_table, only: kind_real, kind_reals, parameter_t
    use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
-                               need_choice, need_fluid, need_fracture, need_growth, need_tips, &
-                               parameters
+                               need_choice, need_fluid, need_growth, parameters
    use scene_schedule, only: load_file
    use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
                           path_beside, place, record_t, refuse, sheet_t
@@ -186,7 +185,7 @@ contains
          else if (earlier > 0) then
             call refuse(error, sheet, sheet%length, "", "is given twice, first on "// &
                         line_text(sheet, earlier, sheet%records(earlier)%line, sheet%length)// &
-                        ", but must be given once")
+                        ", but must be given once: put all its names there")
             return
          end if
          next = next + 1
@@ -296,7 +295,7 @@ contains
    pure subroutine complete(sheet, error)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: enabled, intensities
+      type(value_t) :: enabled
       logical :: has_fluid
       integer :: i, item, growth
 
@@ -318,9 +317,8 @@ contains
       if (allocated(error)) return
       growth = sheet%find("growth")
       enabled = sheet%records(growth)%value("enabled")
-      intensities = sheet%records(growth)%value("intensities")
       do i = 1, sheet%length
-         call refuse_missing(sheet, i, enabled%flag, enabled%flag .or. intensities%flag, error)
+         call refuse_missing(sheet, i, enabled%flag, error)
          if (allocated(error)) return
       end do
    end subroutine complete
@@ -378,11 +376,12 @@ contains
    end subroutine refuse_foreign
 
    !> Refuse a group that lacks a value which this scene needs.
-   pure subroutine refuse_missing(sheet, record, has_growth, has_tips, error)
+   pure subroutine refuse_missing(sheet, record, has_growth, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: record
-      logical, intent(in) :: has_growth, has_tips
+      logical, intent(in) :: has_growth
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: advice
       logical :: needed
       integer :: item
 
@@ -395,10 +394,6 @@ contains
                needed = .true.
             case (need_fluid)
                needed = sheet%has("fluid")
-            case (need_fracture)
-               needed = sheet%has("fracture")
-            case (need_tips)
-               needed = has_tips
             case (need_growth)
                needed = has_growth
             case (need_choice)
@@ -407,17 +402,32 @@ contains
                needed = .false.
             end select
             if (.not. needed) cycle
+            advice = ""
+            if (parameters(item)%need == need_growth) advice = "; "//advice_on_growth(sheet)
             if (sheet%records(record)%line == 0) then
                call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
-                                " is missing, and with it "//described(item)// &
+                                " is missing, and with it "//described(item)//advice// &
                                 " (see docs/input.md)")
             else
-               call refuse(error, sheet, record, "", trim(described(item))//", is missing")
+               call refuse(error, sheet, record, "", described(item)//", is missing"//advice)
             end if
             return
          end do
       end associate
    end subroutine refuse_missing
+
+   !> What a scene without a toughness may begin with, and what else its growth lacks.
+   pure function advice_on_growth(sheet) result(advice)
+      type(sheet_t), intent(in) :: sheet
+      character(len=:), allocatable :: advice
+      type(value_t) :: damping
+
+      advice = "rock has 0.5e6 to 2.5e6, so begin with toughness = 1.5e6"
+      if (.not. sheet%has("fracture")) advice = advice//"; growth needs a &fracture too"
+      damping = sheet%records(sheet%find("material"))%value("radiation_damping")
+      if (.not. damping%line > 0) return
+      if (damping%reals(1) > 0.0_rk) advice = advice//"; radiation_damping must be omitted with it"
+   end function advice_on_growth
 
    !> Name, unit and reason of a needed parameter.
    pure function described(item) result(words)
@@ -429,10 +439,6 @@ contains
       select case (parameters(item)%need)
       case (need_fluid)
          words = words//", which a scene with &fluid needs"
-      case (need_fracture)
-         words = words//", which a scene with a fracture needs"
-      case (need_tips)
-         words = words//", which growth and stress intensity factors need"
       case (need_growth)
          words = words//", which growth needs"
       case (need_choice)

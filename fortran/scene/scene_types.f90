@@ -92,6 +92,10 @@ module scene_types
       logical :: held_closed = .false.  !< the faces slide but do not part; mechanics only
       real(rk) :: face_pressure = 0.0_rk  !< on the faces, at load factor 1; mechanics only [Pa]
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
+      ! 0: those of the scene (cell_size_of, window_of, increment_of)
+      real(rk) :: cell_size = 0.0_rk  !< of coarse cells, or elements, along it [m]
+      real(rk) :: window = 0.0_rk  !< edge of the windows of its tips [m]
+      real(rk) :: increment = 0.0_rk  !< longest advance of its tips [m]
    contains
       procedure :: length => fracture_length
    end type fracture_t
@@ -188,7 +192,7 @@ module scene_types
 
    !> Meshes and solvers of both levels.
    type :: discretization_t
-      real(rk) :: size_fracture = 0.0_rk  !< dH: coarse cells at the fractures [m]
+      real(rk) :: size_fracture = 0.0_rk  !< dH: cells at fractures without an own size [m]
       real(rk) :: size_boundary = 0.0_rk  !< coarse cells far from them [m]
       real(rk) :: window = 0.0_rk  !< l: edge of the fine-level window; 0 if it is the body [m]
       logical :: window_is_body = .false.  !< all tips are in one window, the whole body
@@ -200,6 +204,7 @@ module scene_types
       integer(ik) :: newton_max = 30  !< iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
       character(len=name_length) :: condensation = "auto"  !< or "full", "sparse"
+      logical :: chosen = .false.  !< the scene leaves some of the sizes open (scene_sizes)
    end type discretization_t
 
    !> Fracture growth.
@@ -262,6 +267,10 @@ module scene_types
       procedure :: has_fractures
       procedure :: has_wells
       procedure :: has_points
+      procedure :: cell_size_of
+      procedure :: smallest_cell
+      procedure :: window_of
+      procedure :: increment_of
    end type scene_t
 
 contains
@@ -301,6 +310,44 @@ contains
       has_points = allocated(self%restraints) .and. allocated(self%point_loads)
       if (has_points) has_points = size(self%restraints) + size(self%point_loads) > 0
    end function has_points
+
+   !> Of coarse cells, or elements, along a fracture [m].
+   pure real(rk) function cell_size_of(self, fracture) result(size)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      size = self%fractures(fracture)%cell_size
+      if (.not. size > 0.0_rk) size = self%discretization%size_fracture
+   end function cell_size_of
+
+   !> The smallest of these [m].
+   pure real(rk) function smallest_cell(self) result(size)
+      class(scene_t), intent(in) :: self
+      integer(ik) :: i
+
+      size = huge(1.0_rk)
+      do i = 1, ubound(self%fractures, 1)
+         size = min(size, self%cell_size_of(i))
+      end do
+   end function smallest_cell
+
+   !> Edge of the windows of a fracture's tips [m].
+   pure real(rk) function window_of(self, fracture) result(edge)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      edge = self%fractures(fracture)%window
+      if (.not. edge > 0.0_rk) edge = self%discretization%window
+   end function window_of
+
+   !> Longest advance of a fracture's tips [m].
+   pure real(rk) function increment_of(self, fracture) result(increment)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      increment = self%fractures(fracture)%increment
+      if (.not. increment > 0.0_rk) increment = self%growth%increment
+   end function increment_of
 
    pure integer(ik) function stage_count(self)
       class(injection_t), intent(in) :: self
