@@ -26,6 +26,13 @@ struct Specification {
     SizeFoci foci;                         // away from which sizes grow along fractures
     bool is_rough = false;                 // triangles are smoothed here, not by gmsh
     double ring_slope = 0.3; // growth of sizes per distance beyond three radii of rosettes
+    std::vector<double> own_size; // along each fracture, 0: the usual one; empty: of all
+
+    double size_along(int fracture) const { return size_along(fracture, size_fracture); }
+    double size_along(int fracture, double usual) const {
+        const bool has_own = !own_size.empty() && own_size[fracture] > 0.0;
+        return has_own ? own_size[fracture] : usual;
+    }
 };
 
 // How a remeshed mesh covers the one before.

@@ -57,7 +57,7 @@ contains
             at = merge(network%first(f), network%first(f + 1) - 1, end == 1)
             if (.not. is_tip(network%xy(:, at))) cycle
             associate (choice => scene%discretization)
-               radius = choice%rosette_radius
+               radius = scene%rosette_radius_of(f)
                if (scene%has_fluid()) radius = min(choice%fine_ratio*scene%cell_size_of(f), &
                                                    0.5_rk*pieces(end, f))
             end associate

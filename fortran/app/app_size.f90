@@ -13,6 +13,7 @@ module app_size
    use scene_outline, only: outline_of_scene, outline_t
    use scene_plausible, only: doubts_of_scene, find_regime, regime_words
    use scene_sheet, only: refuse, sheet_t
+   use scene_sizes, only: sizes_text
    use scene_types, only: scene_t, time_t
    implicit none(type, external)
    private
@@ -271,7 +272,7 @@ contains
                                                            merge("intensities", "left out   ", &
                                                                  scene%growth%intensities), &
                                                            scene%growth%enabled))
-         if (scene%discretization%chosen) call describe_sizes(scene, unit)
+         if (scene%discretization%chosen) write (unit, "(2a)") "sizes:        ", sizes_text(scene)
          call find_regime(scene, toughness, well)
          if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
             regime_words(toughness), ", K_m = ", toughness, " (well '", &
@@ -283,36 +284,5 @@ contains
       end associate
       call show_warnings(doubts_of_scene(scene), unit)
    end subroutine describe_scene
-
-   !> Sizes that the scene leaves open: the smallest and the largest of those of its fractures.
-   subroutine describe_sizes(scene, unit)
-      type(scene_t), intent(in) :: scene
-      integer, intent(in) :: unit
-      integer(ik) :: i, n
-
-      n = size(scene%fractures, kind=ik)
-      if (n > 0) write (unit, "(2a)") "cells:        ", &
-         range_text([(scene%cell_size_of(i), i=1, n)])//" along fractures, up to "// &
-         number(scene%discretization%size_boundary)//" m"
-      if (n == 0 .or. .not. scene%growth%intensities) return
-      if (scene%growth%enabled) write (unit, "(2a)") "increments:   ", &
-         range_text([(scene%increment_of(i), i=1, n)])
-      if (.not. scene%has_fluid()) return
-      if (scene%discretization%window_is_body) then
-         write (unit, "(a)") "windows:      the body"
-      else
-         write (unit, "(2a)") "windows:      ", range_text([(scene%window_of(i), i=1, n)])
-      end if
-   end subroutine describe_sizes
-
-   !> From the smallest to the largest, or the one that all are.
-   pure function range_text(sizes) result(text)
-      real(rk), intent(in) :: sizes(:)  !< [m]
-      character(len=:), allocatable :: text
-
-      text = number(minval(sizes))//" m"
-      if (maxval(sizes) > minval(sizes)) text = number(minval(sizes))//" to "// &
-                                                number(maxval(sizes))//" m"
-   end function range_text
 
 end module app_size

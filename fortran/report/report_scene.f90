@@ -21,7 +21,7 @@ module report_scene
    private
 
    public :: follow_outlines, has_other_toughness, interface_distance, keep_off, law_of_fracture
-   public :: place_rocks, regions_of_other_rock, relative_toughness, shape_body
+   public :: place_rocks, regions_of_other_rock, relative_toughness, set_own_sizes, shape_body
 
    !> Of a rosette beside an interface, over the usual one.
    real(rk), parameter :: least_rosette = 1.0_rk/32.0_rk
@@ -48,6 +48,18 @@ contains
                                                     /3.0_rk)
       end do
    end function place_rocks
+
+   !> Sizes along the fractures that have one of their own.
+   pure subroutine set_own_sizes(scene, spec)
+      type(scene_t), intent(in) :: scene
+      type(mesh_spec_t), intent(inout) :: spec
+
+      if (.not. allocated(scene%fractures)) return
+      if (.not. any(scene%fractures%cell_size > 0.0_rk)) return
+      spec%own_size = scene%fractures%cell_size
+      spec%size_fracture = scene%smallest_cell()
+      where (.not. spec%own_size > 0.0_rk) spec%own_size = scene%discretization%size_fracture
+   end subroutine set_own_sizes
 
    !> Regions whose elastic or poroelastic constants are not those of the scene's rock.
    pure function regions_of_other_rock(scene) result(is_other)

@@ -496,7 +496,8 @@ module scene_parameter_table
                   "the domain"), &
       parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
                   derived=.true., &
-                  meaning="Size of the elements around a tip, smaller if another object is near"), &
+                  meaning="Size of the elements around a tip, smaller if another object is "// &
+                          "near, in proportion where a fracture has its own cell_size"), &
       parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
                   meaning="Quarter-point elements around a tip"), &
       parameter_t("fe", "element", kind_choice, default="'quarter_point'", &

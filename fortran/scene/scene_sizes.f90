@@ -2,11 +2,12 @@
 !! length and the tolerance of the run (docs/theory.md, "Default sizes").
 module scene_sizes
    use base_kinds, only: ik, rk
-   use scene_types, only: domain_t, fracture_t, scene_t
+   use base_number, only: brief_text
+   use scene_types, only: scene_t
    implicit none(type, external)
    private
 
-   public :: choose_sizes
+   public :: choose_sizes, sizes_text
 
    !> Cells along a fracture at the usual tolerance, and in any case. Errors are of first order in
    !! their size.
@@ -124,5 +125,43 @@ contains
       common = minval(own)
       where (own <= common) own = 0.0_rk
    end subroutine share_value
+
+   !> The sizes of a scene in words, from the smallest to the largest of its fractures.
+   pure function sizes_text(scene) result(text)
+      type(scene_t), intent(in) :: scene
+      character(len=:), allocatable :: text
+      integer(ik) :: i, n
+
+      n = size(scene%fractures, kind=ik)
+      text = "cells up to "//metres(scene%discretization%size_boundary)
+      if (n == 0) return
+      text = "cells "//range_text([(scene%cell_size_of(i), i=1, n)])//" along fractures, up to "// &
+             metres(scene%discretization%size_boundary)//" elsewhere"
+      if (.not. scene%growth%intensities) return
+      if (scene%growth%enabled) text = text//"; increments "// &
+                                       range_text([(scene%increment_of(i), i=1, n)])
+      if (.not. scene%has_fluid()) return
+      if (scene%discretization%window_is_body) then
+         text = text//"; one window, the body"
+      else
+         text = text//"; windows "//range_text([(scene%window_of(i), i=1, n)])
+      end if
+   end function sizes_text
+
+   !> From the smallest to the largest, or the one that all are.
+   pure function range_text(sizes) result(text)
+      real(rk), intent(in) :: sizes(:)  !< [m]
+      character(len=:), allocatable :: text
+
+      text = metres(maxval(sizes))
+      if (maxval(sizes) > minval(sizes)) text = brief_text(minval(sizes), 3)//" to "//text
+   end function range_text
+
+   pure function metres(x) result(text)
+      real(rk), intent(in) :: x  !< [m]
+      character(len=:), allocatable :: text
+
+      text = brief_text(x, 3)//" m"
+   end function metres
 
 end module scene_sizes

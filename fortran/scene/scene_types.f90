@@ -269,6 +269,7 @@ module scene_types
       procedure :: has_points
       procedure :: cell_size_of
       procedure :: smallest_cell
+      procedure :: rosette_radius_of
       procedure :: window_of
       procedure :: increment_of
    end type scene_t
@@ -319,6 +320,19 @@ contains
       size = self%fractures(fracture)%cell_size
       if (.not. size > 0.0_rk) size = self%discretization%size_fracture
    end function cell_size_of
+
+   !> Of elements around the tips of a fracture, in proportion to those along it; mechanics only [m].
+   pure real(rk) function rosette_radius_of(self, fracture) result(radius)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      radius = self%discretization%rosette_radius
+      associate (usual => self%discretization%size_fracture)
+         if (self%fractures(fracture)%cell_size > 0.0_rk) then
+            radius = radius*(self%fractures(fracture)%cell_size/usual)
+         end if
+      end associate
+   end function rosette_radius_of
 
    !> The smallest of these [m].
    pure real(rk) function smallest_cell(self) result(size)

@@ -7,6 +7,7 @@ module twolevel_simulation
    use coarse_solid, only: shear_beside
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use report_rows, only: history_row_t, probe_row_t, well_row_t
+   use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
    use report_simulation, only: snapshot_t
    use twolevel_doubt, only: find_improvements, improve_windows
@@ -91,6 +92,9 @@ contains
             call summary%use_feature("stress in situ, hydrostatic")
          end if
          if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
+         if (scene%discretization%chosen) then
+            call summary%use_feature("default sizes: "//sizes_text(scene))
+         end if
       end associate
    end subroutine note_features
 

@@ -15,7 +15,7 @@ module twolevel_state
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
-   use report_scene, only: follow_outlines, law_of_fracture, shape_body
+   use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
    use report_simulation, only: simulation_t
    use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
@@ -226,6 +226,7 @@ contains
                          size_fracture=scene%discretization%size_fracture, &
                          size_boundary=scene%discretization%size_boundary)
       if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
+      call set_own_sizes(scene, spec)
       call shape_body(scene, spec)
       if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
    end function coarse_spec
