@@ -24,7 +24,7 @@ void check_specification(const Specification& spec) {
                         " m) must not be smaller than at the fractures (" +
                         number_text(spec.size_fracture) + " m)");
     for (const double size : spec.own_size)
-        if (!(size >= 0.0 && size <= spec.size_boundary))
+        if (!(size >= 0.0 && (size <= spec.size_boundary || !spec.foci.places.empty())))
             throw MeshError("the own size of a fracture must be at most that at the boundary");
     if (spec.rosette_sectors != 0 && spec.rosette_sectors < 6)
         throw MeshError("a rosette needs at least 6 sectors, not " +

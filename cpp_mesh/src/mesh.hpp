@@ -8,6 +8,7 @@
 #include "size_field.hpp"
 #include "split_mesh.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -30,8 +31,13 @@ struct Specification {
 
     double size_along(int fracture) const { return size_along(fracture, size_fracture); }
     double size_along(int fracture, double usual) const {
-        const bool has_own = !own_size.empty() && own_size[fracture] > 0.0;
-        return has_own ? own_size[fracture] : usual;
+        if (own_size.empty() || !(own_size[fracture] > 0.0))
+            return usual;
+        return foci.places.empty() ? own_size[fracture] : std::min(own_size[fracture], usual);
+    }
+    // Where foci let sizes grow along a fracture that has one of its own.
+    double largest_along(int fracture) const {
+        return foci.places.empty() || own_size.empty() ? 0.0 : own_size[fracture];
     }
 };
 

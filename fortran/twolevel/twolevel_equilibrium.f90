@@ -115,7 +115,7 @@ contains
          call self%now%company%find_kinds(self%tip%drive%intensity/toughness, &
                                           max(k%k1_error, k%k2_error) &
                                           /(toughness*self%tip%drive%resistance), segment%gain, &
-                                          self%tip%arrested, self%rules%increment, &
+                                          self%tip%arrested, self%increments(), &
                                           self%now%rivals, search%kind)
          call segment%restart()
          if (.not. may_jump) then
@@ -333,7 +333,7 @@ contains
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
-                                               self%rules%increment)])/self%rules%increment
+                                               self%rules%increment)/self%increments()])
       if (.not. search%is_last) then
          if (self%errs(trial%time_error)) return
          call share_before_switch(self, search%dt, punctual, trial%switch, timers, error)
@@ -386,7 +386,7 @@ contains
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%company%accept(self%tip%drive%intensity/self%rules%toughness, &
-                                   self%tip%advance, self%rules%increment)
+                                   self%tip%advance, self%increments())
       call self%now%segment%accept()
    end subroutine accept_equilibrium
 

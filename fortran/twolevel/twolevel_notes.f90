@@ -97,7 +97,7 @@ contains
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       type(rivals_t), intent(in) :: rivals
-      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: increment(:)  !< (tips) [m]
       real(rk), intent(in) :: time  !< [s]
       type(chronicle_t), intent(inout) :: chronicle
       real(rk) :: lead
@@ -107,7 +107,7 @@ contains
 
       group = pack([(i, i=1, size(tips, kind=ik))], tips%advance > 0.0_rk)
       if (size(group) < 2) return
-      lead = rivals%preference_of(group)*increment
+      lead = rivals%preference_of(group)*minval(increment(group))
       is_bifurcation = lead > could_part
       if (is_bifurcation .and. .not. self%was_bifurcation) then
          call chronicle%add_event(time, event_bifurcation, integer_text(size(group, kind=ik))// &

@@ -71,6 +71,9 @@ contains
 
       spec%focus_slope = along
       spec%focus_size = max(spec%size_fracture, scene%discretization%size_fracture)
+      if (any(scene%fractures%cell_size > 0.0_rk)) then
+         spec%own_size = [(scene%cell_size_of(i), i=1, size(scene%fractures, kind=ik))]
+      end if
       allocate (spec%foci(2, size(serves)))
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))

@@ -59,9 +59,10 @@ typedef struct {
     int32_t is_rough;   /* gmsh's faster triangles, which are smoothed here only: half the time */
     double ring_slope;  /* growth of sizes per distance beyond three radii of rosettes; 0: as
                            nearer to them, 0.3 */
-    const double* own_size; /* [n_fractures] size along each fracture, no larger than size_boundary;
-                               0: size_fracture, which should be the smallest of all, for tolerances
-                               follow from it; NULL: all have size_fracture */
+    const double* own_size; /* [n_fractures] size along each fracture, no larger than size_boundary,
+                               or with foci the largest one that these lead to; 0: size_fracture
+                               and focus_size; NULL: so have all. Tolerances follow from
+                               size_fracture, which is then the smallest of all */
 } cm_spec;
 
 typedef struct {
