@@ -72,7 +72,8 @@ contains
       call share_value(scene%fractures%cell_size, scene%discretization%size_fracture)
    end subroutine choose_cells
 
-   !> The fine mesh size, or without a fluid the size of elements.
+   !> The fine mesh size, or without a fluid the size of elements; there all tips in equilibrium
+   !! have the smallest one (mechanics_state).
    pure subroutine choose_increments(scene)
       type(scene_t), intent(inout) :: scene
       real(rk) :: ratio
@@ -84,6 +85,7 @@ contains
       scene%growth%increment = ratio*scene%discretization%size_fracture
       if (size(scene%fractures) == 0) return
       if (.not. any(scene%fractures%cell_size > 0.0_rk)) return
+      if (.not. scene%has_fluid() .and. scene%growth%law == "equilibrium") return
       do i = 1, size(scene%fractures, kind=ik)
          associate (fracture => scene%fractures(i))
             if (.not. fracture%increment > 0.0_rk) fracture%increment = ratio*scene%cell_size_of(i)
