@@ -32,8 +32,7 @@ void set_sizes(const std::vector<Segment>& grown, PatchTask& task) {
     SizeField& size = task.made.size;
     if (!size.follows_other_mesh())
         for (const Segment& segment : grown)
-            size.add(SizeSource{segment.end[0], segment.end[1],
-                                spec.size_along(segment.fracture),
+            size.add(SizeSource{segment.end[0], segment.end[1], spec.size_along(segment.fracture),
                                 spec.largest_along(segment.fracture)});
     if (spec.rosette_sectors > 0)
         task.plans = plan_rosettes(task.graph, spec.domain, spec.rosette_radii);

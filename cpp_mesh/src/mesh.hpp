@@ -26,7 +26,7 @@ struct Specification {
     double joint_size = 0.0;               // where fractures meet; 0: as along them
     SizeFoci foci;                         // away from which sizes grow along fractures
     bool is_rough = false;                 // triangles are smoothed here, not by gmsh
-    double ring_slope = 0.3; // growth of sizes per distance beyond three radii of rosettes
+    double ring_slope = 0.3;      // growth of sizes per distance beyond three radii of rosettes
     std::vector<double> own_size; // along each fracture, 0: the usual one; empty: of all
 
     double size_along(int fracture) const { return size_along(fracture, size_fracture); }

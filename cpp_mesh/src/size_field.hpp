@@ -11,8 +11,8 @@
 
 namespace cpp_mesh {
 
-// Cells have `size` on the segment and grow linearly away from it; where foci let them grow along it,
-// up to `largest`, if that is not 0.
+// Cells have `size` on the segment and grow linearly away from it; where foci let them grow along
+// it, up to `largest`, if that is not 0.
 struct SizeSource {
     Vec2 a, b;
     double size = 0.0;

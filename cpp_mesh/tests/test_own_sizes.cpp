@@ -69,15 +69,16 @@ void growth(Checks& checks) {
     grown.fractures[0].insert(grown.fractures[0].begin(), {3.75, 5.0});
     grown.s_start[0] = -0.25;
     checks.is_true(after.remesh(before, grown, {{3.75, 5.0}}, 0.75, fine), after.error);
-    checks.is_equal(lengths_of(after, 0).n, lengths_of(before, 0).n + 1, "one cell of the long one");
+    checks.is_equal(lengths_of(after, 0).n, lengths_of(before, 0).n + 1,
+                    "one cell of the long one");
     grown.fractures[1].push_back({6.2025, 5.02});
     ApiMesh last;
     checks.is_true(last.remesh(after, grown, {{6.2025, 5.02}}, 0.015, fine), last.error);
     checks.is_equal(lengths_of(last, 1).n, 21, "one cell of the short one");
 }
 
-// In a window for the long one's tip the short one keeps its cells, and the long one reaches its own
-// size away from the tip.
+// In a window for the long one's tip the short one keeps its cells, and the long one reaches its
+// own size away from the tip.
 void window(Checks& checks) {
     const std::vector<double> own = {coarse, fine}, foci = {4.0, 5.0},
                               radii = {0.125, 0.125, 0.5 * fine, 0.5 * fine};

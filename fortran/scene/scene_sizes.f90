@@ -85,7 +85,10 @@ contains
       scene%growth%increment = ratio*scene%discretization%size_fracture
       if (size(scene%fractures) == 0) return
       if (.not. any(scene%fractures%cell_size > 0.0_rk)) return
-      if (.not. scene%has_fluid() .and. scene%growth%law == "equilibrium") return
+      if (.not. scene%has_fluid() .and. scene%growth%law == "equilibrium") then
+         scene%growth%increment = scene%smallest_cell()
+         return
+      end if
       do i = 1, size(scene%fractures, kind=ik)
          associate (fracture => scene%fractures(i))
             if (.not. fracture%increment > 0.0_rk) fracture%increment = ratio*scene%cell_size_of(i)

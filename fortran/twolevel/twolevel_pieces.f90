@@ -54,7 +54,7 @@ contains
          is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
       end do
       tip = self%tip
-      call self%grow_by(merge(self%increments(), 0.0_rk, is_new .and. .not. is_near), any_grew, timers, &
+ call self%grow_by(merge(self%increments(), 0.0_rk, is_new .and. .not. is_near), any_grew, timers, &
                         error)
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)

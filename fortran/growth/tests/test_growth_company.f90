@@ -42,7 +42,7 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do i = 1, 100
-         call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+ call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
          drive = [1.0_rk, 0.94_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
@@ -50,8 +50,8 @@ contains
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-      call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
-      call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+     call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+ call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
 
@@ -92,12 +92,12 @@ contains
 
       call rivals%begin(3)
       same = 1.0_rk
-     call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
                               spread(increment, 1, size(same)), rivals, kind)
       call checks%is_true(all(kind == 1), "all alike")
       call company%part(2_ik)
       call company%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
-     call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
                               spread(increment, 1, size(same)), rivals, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
@@ -138,7 +138,7 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do steps = 0, 100
-         call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+ call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
          if (kind(1) /= kind(2)) return
          drive = [1.0_rk, 1.0_rk - lack]
          call company%accept(drive, [moved, moved], spread(increment, 1, 2))

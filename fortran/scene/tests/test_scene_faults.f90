@@ -204,6 +204,16 @@ contains
       call refuse(24, "&fine window=0.01 /", ":24: &fine: window is 0.01 but must be larger "// &
                   "than twice the fine mesh size, 0.005; omit it for the default, 5 lengths of "// &
                   "the fracture"//doc)
+      call refuse(12, "  friction=0.5 cell_size=0.3", ":12: &fracture: cell_size of fracture"// &
+                  " 'f1' is 0.3 but must be at most size_boundary, 0.1"//doc)
+      call refuse_two(12, "  friction=0.5 cell_size=0.3", 22, "&coarse size_boundary=0.5", &
+                      ":12: &fracture: cell_size of fracture 'f1' is 0.3 but must be at most "// &
+                      "the length of the fracture, 0.2236"//doc)
+      call refuse(12, "  friction=0.5 window=0.001", ":12: &fracture: window is 0.001 but must "// &
+                  "be larger than twice the fine mesh size, 0.005; omit it for the default, 5 "// &
+                  "lengths of the fracture"//doc)
+      call refuse(12, "  friction=0.5 increment=-1.0", ":12: &fracture: increment is -1.0 but "// &
+                  "must be a finite number greater than 0.0 [m]"//doc)
       call refuse(25, "&growth enabled=.true. increment=0.15 /", &
                   ":25: &growth: increment is 0.15 but must be at most half the window, 0.1; "// &
                   "omit it for the default, the fine mesh size"//doc)
