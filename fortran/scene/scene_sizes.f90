@@ -97,8 +97,8 @@ contains
       call share_value(scene%fractures%increment, scene%growth%increment)
    end subroutine choose_increments
 
-   !> Squares of some lengths of the fracture, or the body where they would not fit into it, or where
-   !! all of them together would be larger than it.
+   !> Squares of some lengths of the fracture, or the body where they would not fit into it, or
+   !! where all of them together would be larger than it.
    pure subroutine choose_windows(scene, edge)
       type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: edge  !< shorter one of the body [m]
@@ -123,12 +123,12 @@ contains
    end subroutine choose_windows
 
    !> The smallest is that of all, and of the others what they have themselves.
-   pure subroutine share_value(own, common)
+   pure subroutine share_value(own, of_scene)
       real(rk), intent(inout) :: own(:)  !< (fractures) [m]
-      real(rk), intent(out) :: common  !< [m]
+      real(rk), intent(out) :: of_scene  !< [m]
 
-      common = minval(own)
-      where (own <= common) own = 0.0_rk
+      of_scene = minval(own)
+      where (own <= of_scene) own = 0.0_rk
    end subroutine share_value
 
    !> The sizes of a scene in words, from the smallest to the largest of its fractures.

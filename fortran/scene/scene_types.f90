@@ -321,7 +321,8 @@ contains
       if (.not. size > 0.0_rk) size = self%discretization%size_fracture
    end function cell_size_of
 
-   !> Of elements around the tips of a fracture, in proportion to those along it; mechanics only [m].
+   !> Of elements around the tips of a fracture, in proportion to those along it; mechanics only
+   !! [m].
    pure real(rk) function rosette_radius_of(self, fracture) result(radius)
       class(scene_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
@@ -359,7 +360,8 @@ contains
       class(scene_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
 
-      increment = self%fractures(fracture)%increment
+      increment = 0.0_rk
+      if (allocated(self%fractures)) increment = self%fractures(fracture)%increment
       if (.not. increment > 0.0_rk) increment = self%growth%increment
    end function increment_of
 

@@ -43,7 +43,7 @@ _POLYGON = "&side name = 'held', edges = 1, x_displacement = 0.0, y_displacement
 _TIME = "&time end = 3600.0 /\n"
 
 _TIME_WITH_GROWTH = """\
-! With this tolerance a fracture has 10 cells, with 0.01 20 cells, and errors of first order in these.
+! With this tolerance a fracture has 10 cells, with 0.01 it has 20.
 &time end = 3600.0, tolerance = 0.02 /
 """
 
@@ -59,8 +59,8 @@ _GROWTH = """\
 """
 
 _WELL = """\
-! A well in the fractures that hang together over the largest length. Its pressure limit is 3 MPa above
-! the smallest compression: fractures across that open.
+! A well in the fractures that hang together over the largest length. Its pressure limit is 3 MPa
+! above the smallest compression: fractures across that open.
 """
 
 

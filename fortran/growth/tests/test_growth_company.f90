@@ -114,7 +114,8 @@ contains
       call rivals%begin(2)
       come = 0.0_rk
       if (present(gain)) come = gain
-      call company%find_kinds([one, other], [off, off], come, neither, spread(increment, 1, 2), rivals, kind)
+      call company%find_kinds([one, other], [off, off], come, neither, &
+                              spread(increment, 1, 2), rivals, kind)
       are_one = kind(1) == kind(2)
    end function are_one
 
