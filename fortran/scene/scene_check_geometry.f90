@@ -57,9 +57,14 @@ contains
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: least
+      integer :: i
 
       associate (body => scene%domain, sizes => scene%discretization)
          least = least_size*norm2([body%x_max - body%x_min, body%y_max - body%y_min])
+         do i = 1, merge(size(scene%fractures), 0, sizes%chosen)  ! then cells are no cause
+            call check_length(sheet, scene, i, least, error)
+            if (allocated(error)) return
+         end do
          if (size(scene%fractures) > 0 .and. scene%smallest_cell() < least) then
             call refuse(error, sheet, mesh_record(sheet), "size_fracture", &
                         blurred(scene%smallest_cell(), least))
@@ -73,6 +78,26 @@ contains
          end if
       end associate
    end subroutine check_least_size
+
+   !> A fracture is long enough for any cells.
+   pure subroutine check_length(sheet, scene, i, least, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< index of the fracture
+      real(rk), intent(in) :: least  !< [m]
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_vertices(sheet, i, scene%fractures(i), error)
+      if (allocated(error)) return
+      associate (length => scene%fractures(i)%length())
+         if (length >= least) return
+         call refuse(error, sheet, sheet%find("fracture", i), "x", "and y of fracture '"// &
+                     trim(scene%fractures(i)%name)//"' give it a length of "// &
+                     rounded_text(length)//" but it must have at least "//rounded_text(least)// &
+                     ": elements of less than "//real_text(least_size)//" of the body's "// &
+                     "diagonal cannot be meshed")
+      end associate
+   end subroutine check_length
 
    pure function blurred(given, least) result(reason)
       real(rk), intent(in) :: given, least  !< [m], or shares of another size
@@ -141,7 +166,8 @@ contains
                         real_text(scene%discretization%size_fracture)// &
                         " but must be at most the length of fracture '"// &
                         trim(scene%fractures(i)%name)//"', "// &
-                        rounded_text(scene%fractures(i)%length()))
+                        rounded_text(scene%fractures(i)%length())//"; omit it, so that "// &
+                        "cells follow from the length of each fracture")
             return
          end if
       end do

@@ -229,7 +229,8 @@ contains
                   ":22: &coarse: size_fracture is 0.2 but must be at most size_boundary, 0.1"//doc)
       call refuse(22, "&coarse size_fracture=0.25 size_boundary=0.5", &
                   ":22: &coarse: size_fracture is 0.25 but must be at most the length of "// &
-                  "fracture 'f1', 0.2236"//doc)
+                  "fracture 'f1', 0.2236; omit it, "// &
+                  "so that cells follow from the length of each fracture"//doc)
       call refuse(10, "  x=0.9, 1.0, 1.1", ":11: &fracture: y of fracture 'f1' has 2 values "// &
                   "but must have as many as x, 3"//doc)
       call refuse_two(10, "  x=0.9", 11, "  y=0.5", ":10: &fracture: x of fracture 'f1' has "// &

@@ -60,6 +60,13 @@ contains
       call round_trip(path)
       call read_scene(path, scene, error)
       call checks%is_true(scene%fractures(1)%cell_size > 0.0_rk, "one has a size of its own")
+      call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=10 y_min=0 y_max=10 /", &
+                            "&material young=1e10 poisson=0.1 /", &
+                            "&fracture name='f' x=5 5 y=5 5 law='open' /", &
+                            "&side name='left' x_displacement=0 y_displacement=0 /"])
+      call read_scene(path, scene, error)
+      call checks%fails_with(error, ":3: &fracture: x and y of fracture 'f' give it a length "// &
+                             "of 0.0 but it must have at least 1.4", "no length")
    end subroutine check_sizes
 
    !> Numbers that no short decimal holds, quotes in texts, long polylines, a scene without fluid.
