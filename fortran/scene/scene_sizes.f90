@@ -38,7 +38,7 @@ contains
             sizes%chosen = .true.
          end if
          if (.not. sizes%size_boundary > 0.0_rk) then
-            sizes%size_boundary = share_of_body*edge
+            sizes%size_boundary = decimal(share_of_body*edge)
             if (size(f) > 0) sizes%size_boundary = &
                max(sizes%size_boundary, sizes%size_fracture, maxval(f%cell_size))
             sizes%chosen = .true.
@@ -66,7 +66,7 @@ contains
       do i = 1, size(scene%fractures)
          associate (fracture => scene%fractures(i))
             if (fracture%cell_size > 0.0_rk) cycle
-            fracture%cell_size = min(fracture%length()/cells, largest)
+            fracture%cell_size = min(decimal(fracture%length()/cells), largest)
          end associate
       end do
       call share_value(scene%fractures%cell_size, scene%discretization%size_fracture)
@@ -108,7 +108,7 @@ contains
 
       length = [(scene%fractures(i)%length(), i=1, size(scene%fractures))]
       window = scene%fractures%window
-      where (.not. window > 0.0_rk) window = min(usual_window*length, largest_window*edge)
+      where (.not. window > 0.0_rk) window = decimal(min(usual_window*length, largest_window*edge))
       associate (body => scene%domain)
          if (body%shape /= "rectangle" .or. scene%has_points() .or. &
              any(window < least_window*length .and. .not. scene%fractures%window > 0.0_rk) .or. &
@@ -121,6 +121,17 @@ contains
       scene%fractures%window = window
       call share_value(scene%fractures%window, scene%discretization%window)
    end subroutine choose_windows
+
+   !> A number to nine digits: the rounding of coordinates is to change no mesh.
+   elemental real(rk) function decimal(x)
+      real(rk), intent(in) :: x  !< [m]
+      character(len=16) :: digits
+
+      decimal = x
+      if (.not. (x > 0.0_rk .and. x < huge(1.0_rk))) return
+      write (digits, "(es16.8e3)") x
+      read (digits, "(es16.8e3)") decimal
+   end function decimal
 
    !> The smallest is that of all, and of the others what they have themselves.
    pure subroutine share_value(own, of_scene)
