@@ -138,6 +138,8 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.is_rough = given->is_rough != 0;
     if (given->ring_slope > 0.0)
         spec.ring_slope = given->ring_slope;
+    if (given->own_size != nullptr)
+        spec.own_size.assign(given->own_size, given->own_size + n_fractures);
     return spec;
 }
 

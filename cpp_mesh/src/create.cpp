@@ -58,7 +58,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         std::vector<SizeSource> sources;
         for (const GraphEdge& edge : graph.edges)
             sources.push_back({graph.points[edge.point[0]].xy, graph.points[edge.point[1]].xy,
-                               specification.size_fracture});
+                               specification.size_along(edge.fracture),
+                               specification.largest_along(edge.fracture)});
         mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
         mesh.size.set_foci(specification.foci);
     }

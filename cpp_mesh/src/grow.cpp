@@ -32,7 +32,8 @@ void set_sizes(const std::vector<Segment>& grown, PatchTask& task) {
     SizeField& size = task.made.size;
     if (!size.follows_other_mesh())
         for (const Segment& segment : grown)
-            size.add(SizeSource{segment.end[0], segment.end[1], spec.size_fracture});
+            size.add(SizeSource{segment.end[0], segment.end[1], spec.size_along(segment.fracture),
+                                spec.largest_along(segment.fracture)});
     if (spec.rosette_sectors > 0)
         task.plans = plan_rosettes(task.graph, spec.domain, spec.rosette_radii);
     size.set_discs(rosette_discs(task.graph, task.plans, spec.rosette_sectors, spec.ring_slope));

@@ -23,6 +23,9 @@ void check_specification(const Specification& spec) {
         throw MeshError("cells at the boundary (" + number_text(spec.size_boundary) +
                         " m) must not be smaller than at the fractures (" +
                         number_text(spec.size_fracture) + " m)");
+    for (const double size : spec.own_size)
+        if (!(size >= 0.0 && (size <= spec.size_boundary || !spec.foci.places.empty())))
+            throw MeshError("the own size of a fracture must be at most that at the boundary");
     if (spec.rosette_sectors != 0 && spec.rosette_sectors < 6)
         throw MeshError("a rosette needs at least 6 sectors, not " +
                         std::to_string(spec.rosette_sectors));

@@ -8,6 +8,7 @@
 #include "size_field.hpp"
 #include "split_mesh.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,19 @@ struct Specification {
     double joint_size = 0.0;               // where fractures meet; 0: as along them
     SizeFoci foci;                         // away from which sizes grow along fractures
     bool is_rough = false;                 // triangles are smoothed here, not by gmsh
-    double ring_slope = 0.3; // growth of sizes per distance beyond three radii of rosettes
+    double ring_slope = 0.3;      // growth of sizes per distance beyond three radii of rosettes
+    std::vector<double> own_size; // along each fracture, 0: the usual one; empty: of all
+
+    double size_along(int fracture) const { return size_along(fracture, size_fracture); }
+    double size_along(int fracture, double usual) const {
+        if (own_size.empty() || !(own_size[fracture] > 0.0))
+            return usual;
+        return foci.places.empty() ? own_size[fracture] : std::min(own_size[fracture], usual);
+    }
+    // Where foci let sizes grow along a fracture that has one of its own.
+    double largest_along(int fracture) const {
+        return foci.places.empty() || own_size.empty() ? 0.0 : own_size[fracture];
+    }
 };
 
 // How a remeshed mesh covers the one before.

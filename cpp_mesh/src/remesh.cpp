@@ -113,7 +113,8 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
         if (edge.old_cell >= 0)
             continue;
         const Vec2 a = task.graph.points[edge.point[0]].xy, b = task.graph.points[edge.point[1]].xy;
-        task.made.size.add(SizeSource{a, b, size});
+        task.made.size.add(
+            SizeSource{a, b, old_mesh.specification.size_along(edge.fracture, size)});
         request.new_segments.push_back({a, b});
     }
     // As in a new mesh: a joint leaves parts of cells of any length, and narrow sectors.

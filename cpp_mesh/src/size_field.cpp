@@ -65,13 +65,13 @@ SizeField SizeField::less(const SizeField& other) const {
     return rest;
 }
 
-double SizeFoci::operator()(Vec2 p) const {
+double SizeFoci::up_to(double most, Vec2 p) const {
     if (places.empty())
         return 0.0;
     double nearest = std::numeric_limits<double>::max();
     for (const Vec2& place : places)
         nearest = std::min(nearest, distance(p, place));
-    return std::min(size + slope * nearest, largest);
+    return std::min(size + slope * nearest, most);
 }
 
 double SizeDisc::operator()(Vec2 p) const {
@@ -81,9 +81,17 @@ double SizeDisc::operator()(Vec2 p) const {
 
 double SizeField::operator()(Vec2 p) const {
     double size = wanted_ != nullptr ? (*wanted_)(p) : largest_;
-    for (const SizeSource& source : sources_)
-        size = std::min(size, source.size + slope_ * distance_to_segment(p, source.a, source.b));
-    size = std::max(size, foci_(p));
+    bool have_own = false;
+    for (const SizeSource& source : sources_) {
+        const double here = source.size + slope_ * distance_to_segment(p, source.a, source.b);
+        if (source.largest > 0.0 && here < size)
+            size = std::min(size, std::max(here, foci_.up_to(source.largest, p)));
+        else
+            size = std::min(size, here);
+        have_own = have_own || source.largest > 0.0;
+    }
+    if (!have_own)
+        size = std::max(size, foci_(p));
     for (const SizeDisc& disc : discs_)
         size = std::min(size, disc(p));
     return size;

@@ -11,10 +11,12 @@
 
 namespace cpp_mesh {
 
-// Cells have `size` on the segment and grow linearly away from it.
+// Cells have `size` on the segment and grow linearly away from it; where foci let them grow along
+// it, up to `largest`, if that is not 0.
 struct SizeSource {
     Vec2 a, b;
     double size = 0.0;
+    double largest = 0.0;
 };
 
 // Cells have `size` within `radius` of the centre and grow away from it by `slope` per distance,
@@ -35,7 +37,8 @@ struct SizeFoci {
     std::vector<Vec2> places;
     double size = 0.0, slope = 0.0, largest = 0.0;
 
-    double operator()(Vec2 p) const;
+    double operator()(Vec2 p) const { return up_to(largest, p); }
+    double up_to(double most, Vec2 p) const;
 };
 
 class SizeField {

@@ -57,8 +57,8 @@ contains
             at = merge(network%first(f), network%first(f + 1) - 1, end == 1)
             if (.not. is_tip(network%xy(:, at))) cycle
             associate (choice => scene%discretization)
-               radius = choice%rosette_radius
-               if (scene%has_fluid()) radius = min(choice%fine_ratio*choice%size_fracture, &
+               radius = scene%rosette_radius_of(f)
+               if (scene%has_fluid()) radius = min(choice%fine_ratio*scene%cell_size_of(f), &
                                                    0.5_rk*pieces(end, f))
             end associate
             call keep_off(network%xy(:, at), scene, radius, too_near)
@@ -79,7 +79,7 @@ contains
          integer(ik) :: k, next
 
          is_tip = .false.
-         associate (reach => same*scene%discretization%size_fracture, corners => outline%corners)
+         associate (reach => same*scene%smallest_cell(), corners => outline%corners)
             do k = 1, size(joints, kind=ik)
                if (norm2(joints(k)%xy - xy) <= reach) return
             end do

@@ -13,6 +13,7 @@ module app_size
    use scene_plausible, only: doubts_of_scene
    use scene_regime, only: find_regime, regime_words
    use scene_sheet, only: refuse, sheet_t
+   use scene_sizes, only: sizes_text
    use scene_types, only: scene_t, time_t
    implicit none(type, external)
    private
@@ -53,7 +54,7 @@ contains
 
       length = total_length(network_of_scene(scene))
       if (length > 0.0_rk) then
-         estimate%fracture_cells = anint(length/scene%discretization%size_fracture)
+         estimate%fracture_cells = anint(length/usual_cell(scene))
       end if
       estimate%cells = anint(number_of_cells(scene, length))
       estimate%steps = real(scene%load%steps, rk)
@@ -84,6 +85,23 @@ contains
       values = values + values_per_fracture_cell*estimate%fracture_cells*written
       estimate%bytes_of_tables = byte_per_value*values
    end function size_of_scene
+
+   !> Mean size of the cells along fractures [m].
+   pure real(rk) function usual_cell(scene) result(size)
+      type(scene_t), intent(in) :: scene
+      real(rk) :: length, cells
+      integer(ik) :: i
+
+      size = scene%discretization%size_fracture
+      if (.not. any(scene%fractures%cell_size > 0.0_rk)) return
+      length = 0.0_rk
+      cells = 0.0_rk
+      do i = 1, ubound(scene%fractures, 1)
+         length = length + scene%fractures(i)%length()
+         cells = cells + scene%fractures(i)%length()/scene%cell_size_of(i)
+      end do
+      size = length/cells
+   end function usual_cell
 
    !> Number of steps of the given length, or the usual number of adaptive steps.
    pure real(rk) function number_of_steps(time)
@@ -126,7 +144,7 @@ contains
          area = abs(polygon_area(outline%corners))
       end if
       associate (body => scene%domain, far => scene%discretization%size_boundary, &
-                 near => scene%discretization%size_fracture)
+                 near => usual_cell(scene))
          n = cells_per_square*area/far**2
          if (.not. (length > 0.0_rk .and. near < far .and. area > 0.0_rk)) return
          n_fractures = real(size(scene%fractures), rk)
@@ -255,6 +273,7 @@ contains
                                                            merge("intensities", "left out   ", &
                                                                  scene%growth%intensities), &
                                                            scene%growth%enabled))
+         if (scene%discretization%chosen) write (unit, "(2a)") "sizes:        ", sizes_text(scene)
          call find_regime(scene, toughness, leakoff, well)
          if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
             regime_words(toughness), ", K_m = ", toughness, " (well '", &

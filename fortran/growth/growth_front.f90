@@ -23,7 +23,8 @@ module growth_front
    !> How tips grow.
    type :: growth_rules_t
       real(rk) :: toughness = 0.0_rk  !< K_IC [Pa m^1/2]
-      real(rk) :: increment = 0.0_rk  !< l_max [m]
+      real(rk) :: increment = 0.0_rk  !< l_max, the smallest of all fractures [m]
+      real(rk), allocatable :: own_increment(:)  !< (fractures) [m]; unallocated: all the same
       real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which nothing goes on [m]
       real(rk) :: exponent = 0.0_rk  !< of the energy release rate in the law of advances [-]
       !> share of the toughness that a tip may lack to grow along with one at its onset [-]
@@ -35,7 +36,11 @@ module growth_front
       !! left to the caller how.
       logical :: heads = .false.
       real(rk) :: near = 0.0_rk  !< ends and kinks that near to its way lie on it [m]
+      real(rk), allocatable :: own_near(:)  !< (fractures) [m]; unallocated: all the same
       real(rk), allocatable :: outline(:, :)  !< (2, n) corners of the body, in order [m]
+   contains
+      procedure :: increment_of
+      procedure :: near_of
    end type growth_rules_t
 
    !> Tips, and the network whose ends they are: what growth changes.
@@ -56,6 +61,7 @@ module growth_front
       procedure :: grow_by
       procedure :: has_gained
       procedure :: look_ahead
+      procedure :: increments
    end type front_t
 
    !> How far a tip looks ahead, in increments: the last piece of a path is up to so long, and no
@@ -97,6 +103,32 @@ contains
       end do
    end subroutine find_tips
 
+   !> l_max of the tips of a fracture [m].
+   elemental real(rk) function increment_of(self, fracture) result(increment)
+      class(growth_rules_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      increment = self%increment
+      if (allocated(self%own_increment)) increment = self%own_increment(fracture)
+   end function increment_of
+
+   !> Ends and kinks that near to the way of a fracture's tip lie on it [m].
+   elemental real(rk) function near_of(self, fracture) result(near)
+      class(growth_rules_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      near = self%near
+      if (allocated(self%own_near)) near = self%own_near(fracture)
+   end function near_of
+
+   !> l_max of each tip [m].
+   pure function increments(self)
+      class(front_t), intent(in) :: self
+      real(rk) :: increments(size(self%tip))
+
+      increments = self%rules%increment_of(self%tip%fracture)
+   end function increments
+
    !> One increment of the tips at their onset, by the law of advances. They have to be evaluated
    !! before, and are after.
    subroutine grow_tips(self, any_grew, timers, error)
@@ -108,7 +140,7 @@ contains
 
       call plan_increment(self%tip, tips_at_onset(self%tip, self%rules%toughness, &
                                                   self%rules%together), &
-                          self%rules%increment, self%rules%exponent, advance)
+                          self%increments(), self%rules%exponent, advance)
       call self%grow_by(advance, any_grew, timers, error)
    end subroutine grow_tips
 
@@ -198,7 +230,7 @@ contains
             if (self%rules%heads) then
                call stop_half_way(self, i, (tip%xy), advance(i), to)
                if (self%rules%joins .and. &
-                   norm2(to - tip%xy) < half_way*no_room*self%rules%increment) then
+                   norm2(to - tip%xy) < half_way*no_room*self%rules%increment_of(tip%fracture)) then
                   call join_at_once(self, i, to)
                end if
             else
@@ -254,7 +286,8 @@ contains
 
       associate (rules => self%rules)
          call find_ahead(network, rules%outline, fracture, from, &
-                         foresight*rules%increment*direction, rules%near, target, at)
+                         foresight*rules%increment_of(fracture)*direction, &
+                         rules%near_of(fracture), target, at)
       end associate
    end subroutine look_ahead
 
@@ -396,7 +429,8 @@ contains
          if (.not. tip%advance > 0.0_rk .or. tip%arrested) return
          call self%look_ahead(self%network_before, tip%fracture, tip%origin, tip%direction, &
                               target, at)
-         if (norm2(at - tip%origin) > advance + (foresight - 1.0_rk)*self%rules%increment) then
+         if (norm2(at - tip%origin) > advance &
+             + (foresight - 1.0_rk)*self%rules%increment_of(tip%fracture)) then
             target = target_none
          end if
       end associate
@@ -441,7 +475,7 @@ contains
    pure subroutine plan_increment(tips, grows, increment, exponent, advance)
       type(tip_t), intent(inout) :: tips(:)
       logical, intent(in) :: grows(:)  !< those at their toughness
-      real(rk), intent(in) :: increment  !< l_max [m]
+      real(rk), intent(in) :: increment(:)  !< (tips) l_max [m]
       real(rk), intent(in) :: exponent  !< of the growth law [-]
       real(rk), intent(out) :: advance(size(tips))  !< 0: does not grow now [m]
       real(rk) :: left, wanted(size(tips))
@@ -449,7 +483,7 @@ contains
 
       advance = 0.0_rk
       if (.not. any(grows)) return
-      wanted = in_grains(advances(tips%drive%energy, grows, increment, exponent), increment)
+      wanted = in_grains(increment*advances(tips%drive%energy, grows, 1.0_rk, exponent), increment)
       do i = 1, size(tips, kind=ik)
          if (.not. grows(i)) cycle
          call carry_over(wanted(i), tips(i)%carried, tips(i)%rosette_radius, advance(i), left)

@@ -169,11 +169,11 @@ contains
       real(rk), intent(in) :: off(:)  !< how well that is known [-]
       real(rk), intent(in) :: gain(:)  !< how far they have come [m]
       logical, intent(in) :: is_arrested(:)
-      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: increment(:)  !< of the tips [m]
       type(rivals_t), intent(in) :: rivals
       integer(ik), intent(out) :: kind(:)
       logical :: alike(size(drive), size(drive))
-      real(rk) :: apart, least
+      real(rk) :: apart, least, shorter
       integer(ik) :: i, j
 
       if (.not. allocated(self%usual)) self%usual = drive
@@ -183,12 +183,13 @@ contains
          do i = 1, size(drive, kind=ik)
             apart = abs(drive(i) - drive(j))
             least = same_drive
-            if (keep_company(self, i, j, gain(i), rivals, increment)) then
+            shorter = min(increment(i), increment(j))
+            if (keep_company(self, i, j, gain(i), rivals, shorter)) then
                apart = abs(self%usual(i) - self%usual(j))
                least = in_company
             end if
             alike(i, j) = apart <= max(least, hypot(off(i), off(j))) .and. &
-                          abs(gain(i) - gain(j)) <= same_gain*increment .and. &
+                          abs(gain(i) - gain(j)) <= same_gain*shorter .and. &
                           .not. (is_arrested(i) .or. is_arrested(j)) .and. &
                           .not. any(self%is_alone([i, j]))
          end do
@@ -234,7 +235,7 @@ contains
       class(company_t), intent(inout) :: self
       real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
       real(rk), intent(in) :: advance(:)  !< of them in the step [m]
-      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: increment(:)  !< of them [m]
 
       self%usual = self%usual + min(1.0_rk, advance/(memory*increment))*(drive - self%usual)
    end subroutine accept

@@ -20,7 +20,7 @@ module mechanics_body
                            mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
    use report_scene, only: follow_outlines, interface_distance, keep_off, place_rocks, &
-                           regions_of_other_rock
+                           regions_of_other_rock, set_own_sizes
    use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
    use scene_types, only: material_t, scene_t
    implicit none(type, external)
@@ -295,6 +295,7 @@ contains
       spec%size_boundary = scene%discretization%size_boundary
       spec%size_fracture = scene%discretization%size_fracture
       if (.not. spec%size_fracture > 0.0_rk) spec%size_fracture = spec%size_boundary
+      call set_own_sizes(scene, spec)
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
       spec%end_radius = end_radii(scene, network)
@@ -309,11 +310,14 @@ contains
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       real(rk) :: radii(2, size(network%first) - 1)
-      integer :: fracture
+      integer(ik) :: fracture
 
-      radii = min(scene%discretization%rosette_radius, 0.5_rk*end_pieces(network))
+      radii = 0.5_rk*end_pieces(network)
+      do fracture = 1, size(radii, 2, kind=ik)
+         radii(:, fracture) = min(scene%rosette_radius_of(fracture), radii(:, fracture))
+      end do
       if (.not. any(regions_of_other_rock(scene))) return
-      do fracture = 1, size(radii, 2)
+      do fracture = 1, size(radii, 2, kind=ik)
          associate (first => network%first)
             radii(1, fracture) = min(radii(1, fracture), 0.5_rk*interface_distance(scene, &
                                                                     network%xy(:, first(fracture))))
@@ -332,7 +336,7 @@ contains
       real(rk) :: radius
 
       if (.not. allocated(scene%regions)) return
-      radius = scene%discretization%rosette_radius
+      radius = scene%rosette_radius_of(self%mesh%fracture%tip_fracture(tip))
       call keep_off(self%mesh%xy(:, self%mesh%fracture%tip_node(tip)), scene, radius, error)
    end subroutine refuse_interface
 

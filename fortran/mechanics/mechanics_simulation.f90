@@ -15,6 +15,7 @@ module mechanics_simulation
    use report_rows, only: event_bifurcation, history_row_t, probe_row_t
    use report_simulation, only: snapshot_t
    use report_watch, only: doubtful, stop_on_doubt
+   use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -75,6 +76,9 @@ contains
          call summary%note(scene%growth%enabled, "growth", "remeshing: growth off")
          call summary%note(scene%adaptive%enabled, "adaptive meshes", "error estimates: off")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
+         if (scene%discretization%chosen) then
+            call summary%use_feature("default sizes: "//sizes_text(scene))
+         end if
       end associate
    end subroutine note_features
 

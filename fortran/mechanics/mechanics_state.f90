@@ -65,6 +65,7 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(outline_t) :: outline
+      integer(ik) :: f
 
       call self%set_scene(scene)
       self%factor = scene%load%from
@@ -79,6 +80,18 @@ contains
                                   exponent=scene%growth%exponent, together=together, &
                                   joins=.true., heads=.true., &
                                   near=near_way*scene%growth%increment, outline=outline%corners)
+      ! In equilibrium all tips that grow advance by shares of one increment (mechanics_tries): the
+      ! smallest of all fractures.
+      if (any(scene%fractures%increment > 0.0_rk)) then
+         associate (own => [(scene%increment_of(f), f=1, size(scene%fractures, kind=ik))])
+            self%rules%increment = minval(own)
+            self%rules%near = near_way*minval(own)
+            if (scene%growth%law == "paris") then
+               self%rules%own_increment = own
+               self%rules%own_near = near_way*own
+            end if
+         end associate
+      end if
       self%meshed_vertices = size(self%network%xy, 2)
       call self%body%build(scene, self%start, self%network, timers, error)
       if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)

@@ -41,6 +41,8 @@ module mesh_c_arrays
       real(rk) :: focus_size = 0.0_rk  !< largest size along fractures that this leads to [m]
       logical :: is_rough = .false.  !< faster triangles, which gmsh does not smooth
       real(rk) :: ring_slope = 0.0_rk  !< growth of sizes around rosettes [-]; 0: usual
+      !> (n_fractures) size along each fracture [m]; 0: size_fracture, which is the smallest of all
+      real(rk), allocatable :: own_size(:)
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
@@ -105,6 +107,13 @@ contains
             return
          end if
          if (n_fractures > 0) c_spec%end_radius = c_loc(spec%end_radius)
+      end if
+      if (allocated(spec%own_size)) then
+         if (ubound(spec%own_size, 1) /= n_fractures) then
+            call raise_error(error, "mesh_builder", "every fracture has one size")
+            return
+         end if
+         if (n_fractures > 0) c_spec%own_size = c_loc(spec%own_size)
       end if
       if (allocated(spec%guides)) then
          c_spec%n_guides = ubound(spec%guide_count, 1)

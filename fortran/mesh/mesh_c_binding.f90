@@ -43,6 +43,7 @@ module mesh_c_binding
       real(c_double) :: focus_size = 0.0_c_double
       integer(c_int32_t) :: is_rough = 0
       real(c_double) :: ring_slope = 0.0_c_double
+      type(c_ptr) :: own_size = c_null_ptr
    end type cm_spec_t
 
    !> Sizes of the arrays below.

@@ -80,10 +80,9 @@ module report_describe
                                                                             "list of whole numbers"]
 
    !> Scenes in which a name without a default is required, need_never to need_choice.
-   character(len=*), parameter :: need_words(0:6) = [character(len=26) :: "", "always", &
-                                                                  "with &fluid", "with &fracture", &
-                                                                     "with growth or intensities", &
-                                                                   "with growth", "with its choice"]
+   character(len=*), parameter :: need_words(0:4) = [character(len=15) :: "", "always", &
+                                                                     "with &fluid", "with growth", &
+                                                                                  "with its choice"]
 
 contains
 

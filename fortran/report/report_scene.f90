@@ -18,7 +18,7 @@ module report_scene
    private
 
    public :: follow_outlines, has_other_toughness, interface_distance, keep_off, law_of_fracture
-   public :: place_rocks, regions_of_other_rock, relative_toughness, shape_body
+   public :: place_rocks, regions_of_other_rock, relative_toughness, set_own_sizes, shape_body
 
    !> Smallest radius of a rosette near an interface over the usual one [-].
    real(rk), parameter :: least_rosette = 1.0_rk/32.0_rk
@@ -45,6 +45,18 @@ contains
                                                     /3.0_rk)
       end do
    end function place_rocks
+
+   !> Sizes along the fractures that have one of their own.
+   pure subroutine set_own_sizes(scene, spec)
+      type(scene_t), intent(in) :: scene
+      type(mesh_spec_t), intent(inout) :: spec
+
+      if (.not. allocated(scene%fractures)) return
+      if (.not. any(scene%fractures%cell_size > 0.0_rk)) return
+      spec%own_size = scene%fractures%cell_size
+      spec%size_fracture = scene%smallest_cell()
+      where (.not. spec%own_size > 0.0_rk) spec%own_size = scene%discretization%size_fracture
+   end subroutine set_own_sizes
 
    !> Regions whose outlines may be interfaces: all if the elastic or poroelastic constants of one
    !! differ from those of the scene's rock, otherwise none.
@@ -159,7 +171,7 @@ contains
       end associate
       along = network%xy(:, at) - network%xy(:, before)
       ratio = toughness_ahead(places, scene, network%xy(:, at), along/norm2(along), &
-                              share*scene%growth%increment)/scene%material%toughness
+                              share*scene%increment_of(fracture))/scene%material%toughness
    end function relative_toughness
 
    !> Contact law of a fracture; faces that are held closed are set bilateral by mechanics_faces.

@@ -2,7 +2,7 @@
 !! that the table of parameters defines, then the numbers.
 module scene_check
    use base_errors, only: error_t
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use base_tolerances, only: round_off
    use scene_check_fluid, only: check_fluid, check_given_fluid, check_given_wells, check_wells
    use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
@@ -133,7 +133,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: switch
-      real(rk) :: fine_size
+      integer(ik) :: f
 
       if (.not. scene%growth%intensities) return
       switch = "intensities"
@@ -162,17 +162,48 @@ contains
                      "restraints or point loads, which a square window does not include")
          return
       end if
-      fine_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
-      if (.not. scene%discretization%window > 2.0_rk*fine_size) then  ! the rosette has this radius
-         call refuse(error, sheet, sheet%find("fine"), "window", "is "// &
-                     real_text(scene%discretization%window)//" but must be larger than twice "// &
-                     "the fine mesh size, "//rounded_text(fine_size))
-      else if (scene%growth%increment > 0.5_rk*scene%discretization%window) then
-         call refuse(error, sheet, sheet%find("growth"), "increment", "is "// &
-                     real_text(scene%growth%increment)//" but must be at most half the "// &
-                     "window, "//rounded_text(0.5_rk*scene%discretization%window))
-      end if
+      do f = 1, size(scene%fractures, kind=ik)
+         call check_window(sheet, scene, f, error)
+         if (allocated(error)) return
+      end do
    end subroutine check_levels
+
+   !> The windows of a fracture's tips are larger than their rosettes and increments.
+   pure subroutine check_window(sheet, scene, f, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      integer(ik), intent(in) :: f  !< index of the fracture
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: fine_size, window
+      integer :: record
+
+      fine_size = scene%discretization%fine_ratio*scene%cell_size_of(f)
+      window = scene%window_of(f)
+      if (.not. window > 2.0_rk*fine_size) then  ! the rosette has this radius
+         record = owner("fine", scene%fractures(f)%window)
+         call refuse(error, sheet, record, "window", "is "//real_text(window)//" but must be "// &
+                     "larger than twice the fine mesh size, "//rounded_text(fine_size)// &
+                     "; omit it for the default, 5 lengths of the fracture")
+      else if (scene%increment_of(f) > 0.5_rk*window) then
+         record = owner("growth", scene%fractures(f)%increment)
+         call refuse(error, sheet, record, "increment", "is "// &
+                     real_text(scene%increment_of(f))//" but must be at most half the "// &
+                     "window, "//rounded_text(0.5_rk*window)//"; omit it for the default, "// &
+                     "the fine mesh size")
+      end if
+
+   contains
+
+      !> The fracture's group if it has a value of its own.
+      pure integer function owner(group, own) result(record)
+         character(len=*), intent(in) :: group
+         real(rk), intent(in) :: own  !< [m]
+
+         record = sheet%find(group)
+         if (own > 0.0_rk) record = sheet%find("fracture", int(f))
+      end function owner
+
+   end subroutine check_window
 
    !> Every name belongs to the choice of its group, is given with its partner, and is not above its
    !! upper bound.

@@ -342,12 +342,12 @@ contains
             return
          end if
          distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
-         if (distance <= scene%discretization%size_fracture) return
+         if (distance <= scene%cell_size_of(well%fracture)) return
          call refuse(error, sheet, record, "x", "and y are "// &
                      point_text(well%x, well%y)//", "//rounded_text(distance)// &
                      " m away from fracture '"//trim(scene%fractures(well%fracture)%name)// &
                      "', but must be within size_fracture, "// &
-                     real_text(scene%discretization%size_fracture)//" m")
+                     real_text(scene%cell_size_of(well%fracture))//" m")
       end associate
    end subroutine check_place
 
@@ -363,7 +363,7 @@ contains
       real(rk) :: size
 
       size = scene%discretization%size_boundary
-      if (scene%has_fractures()) size = scene%discretization%size_fracture
+      if (scene%has_fractures()) size = scene%smallest_cell()
       if (well%turbulence > 0.0_rk) then
         call refuse(error, sheet, record, "turbulence", "is given, but a well in the rock with "// &
                      "a pressure control must not have it")

@@ -64,22 +64,47 @@ contains
       type(scene_t), intent(in) :: scene
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: least
+      integer :: i
 
       associate (body => scene%domain, sizes => scene%discretization)
          least = least_size*norm2([body%x_max - body%x_min, body%y_max - body%y_min])
-         if (size(scene%fractures) > 0 .and. sizes%size_fracture < least) then
+         do i = 1, merge(size(scene%fractures), 0, sizes%chosen)  ! then cells are no cause
+            call check_length(sheet, scene, i, least, error)
+            if (allocated(error)) return
+         end do
+         if (size(scene%fractures) > 0 .and. scene%smallest_cell() < least) then
             call refuse(error, sheet, mesh_record(sheet), "size_fracture", &
-                        too_small(sizes%size_fracture, least))
+                        too_small(scene%smallest_cell(), least))
          else if (.not. scene%has_fluid() .and. sizes%rosette_radius < least) then
             call refuse(error, sheet, mesh_record(sheet), "rosette_radius", &
                         too_small(sizes%rosette_radius, least))
          else if (scene%growth%intensities .and. scene%has_fluid()) then
-            if (sizes%fine_ratio*sizes%size_fracture >= least) return
+            if (sizes%fine_ratio*scene%smallest_cell() >= least) return
             call refuse(error, sheet, sheet%find("fine"), "size_ratio", &
-                        too_small(sizes%fine_ratio, least/sizes%size_fracture))
+                        too_small(sizes%fine_ratio, least/scene%smallest_cell()))
          end if
       end associate
    end subroutine check_least_size
+
+   !> A fracture is long enough for any cells.
+   pure subroutine check_length(sheet, scene, i, least, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< index of the fracture
+      real(rk), intent(in) :: least  !< [m]
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_vertices(sheet, i, scene%fractures(i), error)
+      if (allocated(error)) return
+      associate (length => scene%fractures(i)%length())
+         if (length >= least) return
+         call refuse(error, sheet, sheet%find("fracture", i), "x", "and y of fracture '"// &
+                     trim(scene%fractures(i)%name)//"' give it a length of "// &
+                     rounded_text(length)//" but it must have at least "//rounded_text(least)// &
+                     ": elements of less than "//real_text(least_size)//" of the body's "// &
+                     "diagonal cannot be meshed")
+      end associate
+   end subroutine check_length
 
    !> Reason for refusing a size.
    pure function too_small(given, least) result(reason)
@@ -132,16 +157,43 @@ contains
       do i = 1, size(scene%fractures)
          call check_vertices(sheet, i, scene%fractures(i), error)
          if (allocated(error)) return
-         if (scene%discretization%size_fracture > scene%fractures(i)%length()) then
+         if (scene%fractures(i)%cell_size > 0.0_rk) then
+            call check_cell_size(sheet, scene, i, error)
+            if (allocated(error)) return
+         else if (scene%discretization%size_fracture > scene%fractures(i)%length()) then
             call refuse(error, sheet, mesh_record(sheet), "size_fracture", "is "// &
                         real_text(scene%discretization%size_fracture)// &
                         " but must be at most the length of fracture '"// &
                         trim(scene%fractures(i)%name)//"', "// &
-                        rounded_text(scene%fractures(i)%length()))
+                        rounded_text(scene%fractures(i)%length())//"; omit it, so that "// &
+                        "cells follow from the length of each fracture")
             return
          end if
       end do
    end subroutine check_fractures
+
+   !> Cells of its own are no larger than the fracture, and than those far from it.
+   pure subroutine check_cell_size(sheet, scene, i, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< index of the fracture
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: bound
+      real(rk) :: most
+
+      associate (fracture => scene%fractures(i))
+         bound = "size_boundary"
+         most = scene%discretization%size_boundary
+         if (fracture%length() < most) then
+            most = fracture%length()
+            bound = "the length of the fracture"
+         end if
+         if (fracture%cell_size <= most) return
+         call refuse(error, sheet, sheet%find("fracture", i), "cell_size", "of fracture '"// &
+                     trim(fracture%name)//"' is "//real_text(fracture%cell_size)// &
+                     " but must be at most "//bound//", "//rounded_text(most))
+      end associate
+   end subroutine check_cell_size
 
    !> A fracture has at least two vertices, each with x and y.
    pure subroutine check_vertices(sheet, i, fracture, error)

@@ -304,6 +304,9 @@ contains
       call exchange(record, "held_closed", fracture%held_closed)
       call exchange(record, "face_pressure", fracture%face_pressure)
       call exchange(record, "aperture", fracture%aperture, nothing=0.0_rk)
+      call exchange(record, "cell_size", fracture%cell_size, nothing=0.0_rk)
+      call exchange(record, "window", fracture%window, nothing=0.0_rk)
+      call exchange(record, "increment", fracture%increment, nothing=0.0_rk)
    end subroutine exchange_fracture
 
    !> Group &injection without the name of its fracture, for which the scene has an index.

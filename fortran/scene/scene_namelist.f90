@@ -10,11 +10,12 @@ module scene_namelist
    use scene_fluid_law, only: has_law
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
-                               need_choice, need_fluid, need_fracture, need_growth, need_tips
+                               need_choice, need_fluid, need_growth
    use scene_parse, only: parse_scene
    use scene_schedule, only: load_schedules
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, refuse, sheet_t
    use scene_sides, only: normal_tractions
+   use scene_sizes, only: choose_sizes
    use scene_types, only: injection_t, material_t, name_length, region_t, scene_t
    use scene_values, only: default_value, shortened, value_t
    use scene_words, only: is_identifier
@@ -49,7 +50,7 @@ contains
    pure subroutine complete_sheet(sheet, error)
       type(sheet_t), intent(inout) :: sheet
       type(error_t), allocatable, intent(out) :: error
-      type(value_t) :: enabled, intensities
+      type(value_t) :: enabled
       logical :: has_fluid, is_needed(0:need_choice)
       integer :: i, item
 
@@ -72,12 +73,9 @@ contains
       if (.not. allocated(error)) call refuse_foreign(sheet, error)
       if (allocated(error)) return
       enabled = sheet%records(sheet%find("growth"))%value("enabled")
-      intensities = sheet%records(sheet%find("growth"))%value("intensities")
       is_needed = .false.
       is_needed(need_always) = .true.
       is_needed(need_fluid) = has_fluid
-      is_needed(need_fracture) = sheet%has("fracture")
-      is_needed(need_tips) = enabled%flag .or. intensities%flag
       is_needed(need_growth) = enabled%flag
       do i = 1, sheet%length
          call refuse_missing(sheet, i, is_needed, error)
@@ -143,6 +141,7 @@ contains
       integer, intent(in) :: record  !< index into sheet%records
       logical, intent(in) :: is_needed(0:)  !< in this scene, by the need of a parameter
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: advice
       integer :: item
 
       associate (group => groups(sheet%records(record)%group), given => sheet%records(record))
@@ -154,28 +153,41 @@ contains
             else if (.not. is_needed(parameters(item)%need)) then
                cycle
             end if
+            advice = ""
+            if (parameters(item)%need == need_growth) advice = "; "//advice_on_growth(sheet)
             if (given%line == 0) then
                call raise_error(error, "", sheet%path//": group &"//trim(group%name)// &
-                                " is missing, and with it "//described(item)// &
+                                " is missing, and with it "//described(item)//advice// &
                                 " (see docs/input.md)")
             else
-               call refuse(error, sheet, record, "", described(item)//", is missing")
+               call refuse(error, sheet, record, "", described(item)//", is missing"//advice)
             end if
             return
          end do
       end associate
    end subroutine refuse_missing
 
+   !> What a scene without a toughness may begin with, and what else its growth lacks.
+   pure function advice_on_growth(sheet) result(advice)
+      type(sheet_t), intent(in) :: sheet
+      character(len=:), allocatable :: advice
+      type(value_t) :: damping
+
+      advice = "rock has 0.5e6 to 2.5e6, so begin with toughness = 1.5e6"
+      if (.not. sheet%has("fracture")) advice = advice//"; growth needs a &fracture too"
+      damping = sheet%records(sheet%find("material"))%value("radiation_damping")
+      if (.not. damping%line > 0) return
+      if (damping%reals(1) > 0.0_rk) advice = advice//"; radiation_damping must be omitted with it"
+   end function advice_on_growth
+
    !> Name, unit and reason of a needed parameter.
    pure function described(item) result(words)
       integer, intent(in) :: item  !< index into parameters
       character(len=:), allocatable :: words
-      character(len=*), parameter :: reason(need_always:need_growth) = [character(len=46) :: &
+      character(len=*), parameter :: reason(need_always:need_growth) = [character(len=31) :: &
                                                                         "which is always needed", &
                                                                 "which a scene with &fluid needs", &
-                                                            "which a scene with a fracture needs", &
-                                                 "which growth and stress intensity factors need", &
-                                                                        "which growth needs"]
+                                                                               "which growth needs"]
 
       associate (parameter => parameters(item))
          words = trim(parameter%name)
@@ -211,11 +223,9 @@ contains
             if (.not. reference > -huge(1.0_rk)) reference = scene%initial%pressure
          end associate
       end if
+      call choose_sizes(scene)
       associate (d => scene%discretization)
-         if (scene%has_fluid()) then
-            call default(scene%growth%increment, d%fine_ratio*d%size_fracture)
-         else
-            call default(scene%growth%increment, d%size_fracture)
+         if (.not. scene%has_fluid()) then
             call default(d%rosette_radius, d%size_fracture)
             call default(d%rosette_radius, d%size_boundary)  ! without fractures
          end if

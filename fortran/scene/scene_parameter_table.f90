@@ -3,8 +3,7 @@
 module scene_parameter_table
    use scene_parameters, only: in_fluid, in_mechanics, kind_choice, kind_integer, kind_logical, &
                                kind_name, kind_reals, kind_text, kind_wholes, need_always, &
-                               need_choice, need_fluid, need_fracture, need_growth, need_tips, &
-                               parameter_t
+                               need_choice, need_fluid, need_growth, parameter_t
    use scene_words, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
                           exponent_range, newton_range, passes_range, poisson_range, &
                           porosity_range, positive, rosette_range, share, steps_range, &
@@ -275,7 +274,16 @@ module scene_parameter_table
          meaning="Pressure on the faces, also on those of its wings, times the load factor, in "// &
                  "addition to contact"), &
       parameter_t("fracture", "aperture", unit="m", need=need_fluid, range=positive, absent="0", &
-         meaning="Residual hydraulic aperture a_0 of the closed fracture")]
+         meaning="Residual hydraulic aperture a_0 of the closed fracture"), &
+      parameter_t("fracture", "cell_size", unit="m", absent="size_fracture", range=positive, &
+         derived=.true., &
+         meaning="Size of cells or elements along the fracture, at most its length; where "// &
+                 "size_fracture is omitted a fraction of its length"), &
+      parameter_t("fracture", "window", unit="m", absent="window of &fine", range=positive, &
+         derived=.true., scenes=in_fluid, meaning="Edge of the windows of its tips"), &
+      parameter_t("fracture", "increment", unit="m", absent="increment of &growth", &
+         range=positive, derived=.true., &
+         meaning="Largest advance of its tips, as increment of &growth")]
 
    type(parameter_t), parameter :: process_parameters(*) = [ &
       parameter_t("injection", "name", kind_name, absent="well_ and its number", derived=.true., &
@@ -359,14 +367,17 @@ module scene_parameter_table
                  "(length), or stays and growth is unstable until it arrests (dead)")]
 
    type(parameter_t), parameter :: numerics_parameters(*) = [ &
-      parameter_t("fe", "size_fracture", unit="m", need=need_fracture, range=positive, &
-         absent="no fracture", at_most="size_boundary", &
-         meaning="Element size at the fractures, at most the length of each fracture"), &
-      parameter_t("fe", "size_boundary", unit="m", need=need_always, range=positive, &
+      parameter_t("fe", "size_fracture", unit="m", range=positive, &
+         absent="a 20th of each fracture's length", derived=.true., at_most="size_boundary", &
+         meaning="Element size at the fractures, at most the length of each. By default each "// &
+                 "fracture has its own cell_size (docs/theory.md)"), &
+      parameter_t("fe", "size_boundary", unit="m", range=positive, derived=.true., &
+         absent="a 20th of the domain's shorter edge", &
          meaning="Element size far from the fractures, at most the shorter edge of the domain"), &
       parameter_t("fe", "rosette_radius", unit="m", range=positive, absent="size_fracture", &
          derived=.true., &
-         meaning="Size of the elements around a tip, smaller if another object is near"), &
+         meaning="Size of the elements around a tip, smaller if another object is near, in "// &
+                 "proportion where a fracture has its own cell_size"), &
       parameter_t("fe", "rosette_sectors", kind_integer, default="12", range=rosette_range, &
          meaning="Quarter-point elements around a tip"), &
       parameter_t("fe", "element", kind_choice, default="'quarter_point'", &
@@ -379,10 +390,12 @@ module scene_parameter_table
          meaning="Target relative error of the stresses in the energy norm"), &
       parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
          meaning="Maximum number of adapted meshes"), &
-      parameter_t("coarse", "size_fracture", unit="m", need=need_fracture, range=positive, &
-         absent="no fracture", at_most="size_boundary", &
-         meaning="Cell size dH at the fractures, at most the length of each fracture"), &
-      parameter_t("coarse", "size_boundary", unit="m", need=need_always, range=positive, &
+      parameter_t("coarse", "size_fracture", unit="m", range=positive, &
+         absent="a 20th of each fracture's length", derived=.true., at_most="size_boundary", &
+         meaning="Cell size dH at the fractures, at most the length of each. By default each "// &
+                 "fracture has its own cell_size (docs/theory.md)"), &
+      parameter_t("coarse", "size_boundary", unit="m", range=positive, derived=.true., &
+         absent="a 20th of the domain's shorter edge", &
          meaning="Cell size far from the fractures, at most the shorter edge of the domain"), &
       parameter_t("coarse", "newton_max", kind_integer, default="30", range=newton_range, &
          meaning="Newton iterations before a step is cut"), &
@@ -392,8 +405,8 @@ module scene_parameter_table
          choices="auto|full|sparse", &
          meaning="Solution of the fracture equations: condensation of the rock onto a full "// &
                  "matrix, or one sparse system; `auto` selects the cheaper one"), &
-      parameter_t("fine", "window", unit="m", need=need_tips, range=positive, choices="body", &
-         absent="no fine level", &
+      parameter_t("fine", "window", unit="m", range=positive, derived=.true., choices="body", &
+         absent="5 fracture lengths, or 'body'", &
          meaning="Edge l of the square window around a tip, more than 2 size_ratio dH; or the "// &
                  "whole body as one window for all tips"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &

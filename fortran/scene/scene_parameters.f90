@@ -10,8 +10,7 @@ module scene_parameters
    public :: groups, side_names, text_length
    public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
    public :: kind_wholes
-   public :: need_always, need_choice, need_fluid, need_fracture, need_growth, need_never
-   public :: need_tips
+   public :: need_always, need_choice, need_fluid, need_growth, need_never
    public :: applies, choice_name, choice_value, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
@@ -26,10 +25,8 @@ module scene_parameters
    integer, parameter :: need_never = 0
    integer, parameter :: need_always = 1  !< in every group of this name
    integer, parameter :: need_fluid = 2  !< in scenes with a fluid
-   integer, parameter :: need_fracture = 3  !< in scenes with a fracture
-   integer, parameter :: need_tips = 4  !< with growth or stress intensity factors
-   integer, parameter :: need_growth = 5  !< with growth
-   integer, parameter :: need_choice = 6  !< with the choice of `of`
+   integer, parameter :: need_growth = 3  !< with growth
+   integer, parameter :: need_choice = 4  !< with the choice of `of`
 
    ! Scenes that may have a group or a parameter.
    integer, parameter :: in_all = 0

@@ -180,7 +180,7 @@ contains
          else if (earlier > 0) then
             call refuse(error, sheet, sheet%length, "", "is given twice, first on "// &
                         line_text(sheet, earlier, sheet%records(earlier)%line, sheet%length)// &
-                        ", but must be given once")
+                        ", but must be given once: put all its names there")
             return
          end if
          next = next + 1

@@ -219,12 +219,15 @@ contains
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
       type(near_end_t), allocatable :: found(:)
+      real(rk) :: longest
       character(len=:), allocatable :: other
       integer :: i
 
-      found = near_ends(scene%fractures, scene%domain, near_end*scene%growth%increment)
+      longest = max(scene%growth%increment, maxval([scene%fractures%increment, 0.0_rk]))
+      found = near_ends(scene%fractures, scene%domain, near_end*longest)
       do i = 1, size(found)
          associate (this => found(i))
+            if (.not. this%distance < near_end*scene%increment_of(this%fracture)) cycle
             if (this%other > 0) then
                other = " '"//trim(scene%fractures(this%other)%name)//"'"
             else

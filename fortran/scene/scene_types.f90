@@ -94,6 +94,10 @@ module scene_types
       !> pressure on the faces at load factor 1; mechanics only [Pa]
       real(rk) :: face_pressure = 0.0_rk
       real(rk) :: aperture = 0.0_rk  !< residual aperture a0 [m]
+      ! 0: those of the scene (cell_size_of, window_of, increment_of)
+      real(rk) :: cell_size = 0.0_rk  !< size of coarse cells, or elements, along it [m]
+      real(rk) :: window = 0.0_rk  !< edge of the windows of its tips [m]
+      real(rk) :: increment = 0.0_rk  !< largest advance of its tips [m]
    contains
       procedure :: length => fracture_length
    end type fracture_t
@@ -190,7 +194,7 @@ module scene_types
 
    !> Meshes and solvers of both levels.
    type :: discretization_t
-      real(rk) :: size_fracture = 0.0_rk  !< dH: size of cells at the fractures [m]
+      real(rk) :: size_fracture = 0.0_rk  !< dH: size of cells at fractures without a cell_size [m]
       real(rk) :: size_boundary = 0.0_rk  !< size of cells far from the fractures [m]
       real(rk) :: window = 0.0_rk  !< l: edge of a window; 0 if the window is the body [m]
       logical :: window_is_body = .false.  !< the whole body is the only window
@@ -202,6 +206,7 @@ module scene_types
       integer(ik) :: newton_max = 30  !< largest number of iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
       character(len=name_length) :: condensation = "auto"  !< or "full", "sparse"
+      logical :: chosen = .false.  !< the scene leaves some of the sizes open (scene_sizes)
    end type discretization_t
 
    !> Fracture growth.
@@ -268,6 +273,11 @@ module scene_types
       procedure :: has_wells
       procedure :: has_points
       procedure :: n_parts
+      procedure :: cell_size_of
+      procedure :: smallest_cell
+      procedure :: rosette_radius_of
+      procedure :: window_of
+      procedure :: increment_of
    end type scene_t
 
 contains
@@ -317,6 +327,59 @@ contains
       n_parts = 0
       if (allocated(self%parts)) n_parts = size(self%parts)
    end function n_parts
+
+   !> Size of coarse cells, or elements, along a fracture [m].
+   pure real(rk) function cell_size_of(self, fracture) result(size)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      size = self%fractures(fracture)%cell_size
+      if (.not. size > 0.0_rk) size = self%discretization%size_fracture
+   end function cell_size_of
+
+   !> Size of the elements around the tips of a fracture, in proportion to those along it [m].
+   !! Mechanics only.
+   pure real(rk) function rosette_radius_of(self, fracture) result(radius)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      radius = self%discretization%rosette_radius
+      associate (usual => self%discretization%size_fracture)
+         if (self%fractures(fracture)%cell_size > 0.0_rk) then
+            radius = radius*(self%fractures(fracture)%cell_size/usual)
+         end if
+      end associate
+   end function rosette_radius_of
+
+   !> Smallest size of cells, or elements, along fractures [m].
+   pure real(rk) function smallest_cell(self) result(size)
+      class(scene_t), intent(in) :: self
+      integer(ik) :: i
+
+      size = huge(1.0_rk)
+      do i = 1, ubound(self%fractures, 1)
+         size = min(size, self%cell_size_of(i))
+      end do
+   end function smallest_cell
+
+   !> Edge of the windows of a fracture's tips [m].
+   pure real(rk) function window_of(self, fracture) result(edge)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      edge = self%fractures(fracture)%window
+      if (.not. edge > 0.0_rk) edge = self%discretization%window
+   end function window_of
+
+   !> Longest advance of a fracture's tips [m].
+   pure real(rk) function increment_of(self, fracture) result(increment)
+      class(scene_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture
+
+      increment = 0.0_rk
+      if (allocated(self%fractures)) increment = self%fractures(fracture)%increment
+      if (.not. increment > 0.0_rk) increment = self%growth%increment
+   end function increment_of
 
    !> Number of stages, at least 1.
    pure integer(ik) function stage_count(self)

@@ -110,8 +110,8 @@ contains
                what = "elements of "//brief_text(seen%element_size(self%scene), 3)//" m"
             end if
          else if (window%can_be_larger()) then
-            what = "a window of "//brief_text(2.0_rk*window%edge_length(self%scene), 3)//" m"
-            if (.not. costs_as_body(self, 2.0_rk*window%edge_length(self%scene))) return
+            what = "a window of "//brief_text(2.0_rk*window%edge_length(), 3)//" m"
+            if (.not. costs_as_body(self, 2.0_rk*window%edge_length())) return
             if (.not. uncertainty(self%tip(tip), self%rules%toughness) < far_off) return
             kind = improve_by_body
             what = "the body as its window"

@@ -114,7 +114,7 @@ contains
       associate (toughness => self%rules%toughness, segment => self%now%segment)
          call self%now%company%find_kinds(self%tip%excess(toughness), &
                                           self%tip%relative_error(toughness), segment%gain, &
-                                          self%tip%arrested, self%rules%increment, &
+                                          self%tip%arrested, self%increments(), &
                                           self%now%rivals, search%kind)
          call segment%restart()
          if (.not. may_jump) then
@@ -337,7 +337,7 @@ contains
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
-                                               self%rules%increment)])/self%rules%increment
+                                               self%increments())/self%increments()])
       if (.not. search%is_last) then
          if (self%errs(trial%time_error)) return
          call share_before_switch(self, search%dt, punctual, trial%switch, timers, error)
@@ -384,13 +384,13 @@ contains
       real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
 
       self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
-                                  self%rules%increment)
+                                  self%increments())
       call self%now%segment%pace(self%tip%advance, dt, &
                                  self%tip%excess(self%rules%toughness) >= -tolerance)
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%company%accept(self%tip%excess(self%rules%toughness), &
-                                   self%tip%advance, self%rules%increment)
+                                   self%tip%advance, self%increments())
       call self%now%segment%accept()
    end subroutine accept_equilibrium
 

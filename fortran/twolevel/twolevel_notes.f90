@@ -103,7 +103,7 @@ contains
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       type(rivals_t), intent(in) :: rivals
-      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: increment(:)  !< (tips) [m]
       real(rk), intent(in) :: time  !< [s]
       type(chronicle_t), intent(inout) :: chronicle
       real(rk) :: lead
@@ -113,7 +113,7 @@ contains
 
       group = pack([(i, i=1, size(tips, kind=ik))], tips%advance > 0.0_rk)
       if (size(group) < 2) return
-      lead = rivals%preference_of(group)*increment
+      lead = rivals%preference_of(group)*minval(increment(group))
       is_bifurcation = lead > could_part
       if (is_bifurcation .and. .not. self%was_bifurcation) then
          call chronicle%add_event(time, event_bifurcation, integer_text(size(group, kind=ik))// &
@@ -129,9 +129,9 @@ contains
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       type(levels_state_t), intent(in) :: now
-      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: increment(:)  !< (tips) [m]
       type(chronicle_t), intent(inout) :: chronicle
-      real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the increment
+      real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the shorter increment
       character(len=:), allocatable :: what
       integer(ik) :: ahead, behind, i, j
 
@@ -139,10 +139,10 @@ contains
       do j = 2, size(tips, kind=ik)
          do i = 1, j - 1
             associate (gain => now%segment([i, j])%gain, kind => now%company%kind, &
-                       error => now%certainty%tip)
+                       error => now%certainty%tip, shorter => minval(increment([i, j])))
                if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
                if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
-               if (.not. abs(gain(1) - gain(2)) > max(least*increment, error(i) + error(j))) cycle
+               if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
                what = "this tip is ahead of an equal one at ("// &

@@ -50,12 +50,12 @@ contains
       is_near = .false.
       do i = 1, size(self%tip, kind=ik)
          if (.not. wants(i)) cycle
-         ahead(:, i) = way_ahead(self%tip(i), self%rules%increment)
+         ahead(:, i) = way_ahead(self%tip(i), self%rules%increment_of(self%tip(i)%fracture))
          is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
       end do
       tip = self%tip
-      call self%grow_by(merge(self%rules%increment, 0.0_rk, is_new .and. .not. is_near), any_grew, &
-                        timers, error)
+ call self%grow_by(merge(self%increments(), 0.0_rk, is_new .and. .not. is_near), any_grew, timers, &
+                        error)
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
          if (.not. is_new(i)) cycle
@@ -100,7 +100,8 @@ contains
             if (have_come(i) .or. .not. tip%is_free .or. segment%is_open .or. &
                 tip%heads_for /= target_none) cycle
             if (.not. tip%drive%intensity > 0.5_rk*self%rules%toughness) cycle  ! whatever it is
-            have_come(i) = has_come(self, i, tip%xy, way_ahead(tip, self%rules%increment))
+            have_come(i) = has_come(self, i, tip%xy, &
+                                    way_ahead(tip, self%rules%increment_of(tip%fracture)))
          end associate
       end do
    end function have_come
@@ -116,7 +117,8 @@ contains
 
       call self%look_ahead(self%now%coarse_network, self%tip(i)%fracture, from, direction, &
                            target, at)
-      has_come = target /= target_none .and. norm2(at - from) <= rest*self%rules%increment
+      has_come = target /= target_none .and. norm2(at - from) &
+                 <= rest*self%rules%increment_of(self%tip(i)%fracture)
    end function has_come
 
    !> Where new pieces end, in the directions that have been found. Tips that head for each other
@@ -139,10 +141,11 @@ contains
       do i = 1, size(self%tip, kind=ik)
          do j = 1, i - 1
             if (.not. (is_new(i) .and. is_new(j))) cycle
-            associate (a => self%tip(i)%origin, b => self%tip(j)%origin)
-               if (norm2(to(:, i) - b) > self%rules%near .or. &
-                   norm2(to(:, j) - a) > self%rules%near) cycle
-               if (norm2(a - b) <= rest*self%rules%increment) then
+            associate (a => self%tip(i)%origin, b => self%tip(j)%origin, rules => self%rules, &
+                       f => self%tip([i, j])%fracture)
+               if (norm2(to(:, i) - b) > rules%near_of(f(1)) .or. &
+                   norm2(to(:, j) - a) > rules%near_of(f(2))) cycle
+               if (norm2(a - b) <= rest*minval(rules%increment_of(f))) then
                   to(:, i) = b
                   is_new(j) = .false.
                   call take_back(self, before(j), j)
@@ -160,7 +163,8 @@ contains
          ! Pieces that have just been made may lie ahead of it.
          if (.not. has_end(i)) call find_end(self, i, ahead(:, i), target(i), to(:, i))
          if (target(i) /= target_none .and. &
-             norm2(to(:, i) - self%tip(i)%origin) <= rest*self%rules%increment) then
+             norm2(to(:, i) - self%tip(i)%origin) &
+             <= rest*self%rules%increment_of(self%tip(i)%fracture)) then
             call take_back(self, before(i), i)
             self%tip(i)%heads_for = target(i)
             self%tip(i)%origin = self%tip(i)%xy
@@ -202,8 +206,8 @@ contains
       associate (tip => self%tip(i), network => self%now%coarse_network, rules => self%rules)
          call self%look_ahead(network, tip%fracture, tip%origin, direction, target, to)
          if (target /= target_none) return
-         call find_beside(network, rules%outline, tip%fracture, tip%origin, tip%xy, rules%near, &
-                          target, to)
+         call find_beside(network, rules%outline, tip%fracture, tip%origin, tip%xy, &
+                          rules%near_of(tip%fracture), target, to)
       end associate
    end subroutine find_end
 

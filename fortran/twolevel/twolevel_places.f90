@@ -23,7 +23,7 @@ contains
       type(front_state_t), intent(in) :: front
       type(network_t), intent(in) :: start  !< of the scene
       type(segment_t), intent(in) :: segments(:)  !< (tips)
-      real(rk), intent(in) :: increment  !< [m]
+      real(rk), intent(in) :: increment(:)  !< (tips) [m]
       real(rk) :: advances(size(segments))
       integer(ik) :: i
 

@@ -7,6 +7,7 @@ module twolevel_simulation
    use coarse_rock, only: shear_beside
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use report_rows, only: history_row_t, probe_row_t, well_row_t
+   use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
    use report_simulation, only: snapshot_t
    use report_slip, only: slip_step_t
@@ -92,6 +93,9 @@ contains
             call summary%use_feature("stress in situ, hydrostatic")
          end if
          if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
+         if (scene%discretization%chosen) then
+            call summary%use_feature("default sizes: "//sizes_text(scene))
+         end if
       end associate
    end subroutine note_features
 
@@ -271,7 +275,7 @@ contains
       if (states_errors(self)) call note_certainty(self%scene, self%front_state_t, self%problem, &
                                                    self%dt, self%now)
       if (may_grow .and. self%is_equilibrium()) then
-         call self%notes%note_separation(self%tip, self%now, self%rules%increment, self%chronicle)
+         call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
       end if
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"

@@ -15,7 +15,7 @@ module twolevel_state
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
-   use report_scene, only: follow_outlines, law_of_fracture, shape_body
+   use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
    use report_simulation, only: simulation_t
    use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
@@ -224,6 +224,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
       type(outline_t) :: outline
+      integer(ik) :: f, n
 
       outline = outline_of_scene(scene)
       rules = growth_rules_t(toughness=scene%material%toughness, &
@@ -234,6 +235,13 @@ contains
                              near=max(near_way*scene%growth%increment, &
                                       near_in_mesh*scene%discretization%size_fracture), &
                              outline=outline%corners)
+      n = size(scene%fractures, kind=ik)
+      if (all(.not. scene%fractures%increment > 0.0_rk) .and. &
+          all(.not. scene%fractures%cell_size > 0.0_rk)) return
+      rules%own_increment = [(scene%increment_of(f), f=1, n)]
+      rules%increment = minval(rules%own_increment)
+      rules%own_near = [(max(near_way*scene%increment_of(f), &
+                             near_in_mesh*scene%cell_size_of(f)), f=1, n)]
    end function rules_of_scene
 
    !> What to mesh.
@@ -246,6 +254,7 @@ contains
                          size_fracture=scene%discretization%size_fracture, &
                          size_boundary=scene%discretization%size_boundary)
       if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
+      call set_own_sizes(scene, spec)
       call shape_body(scene, spec)
       if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
    end function coarse_spec
@@ -526,17 +535,24 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(coarse_problem_t), allocatable :: problem
       type(mesh_map_t) :: map
+      real(rk) :: radius
+      integer(ik) :: i, k, nearest
 
       call timers%heed(error)
       if (allocated(error)) return
       allocate (problem)
-      associate (size_fracture => self%scene%discretization%size_fracture)
-         call timers%start(phase_remesh)
-         call remesh(self%problem%mesher, self%now%coarse_network, centres, &
-                     max(5.0_rk*self%rules%increment, 3.0_rk*size_fracture), size_fracture, &
-                     problem%mesher, problem%mesh, map, error)
-         call timers%stop(phase_remesh)
-      end associate
+      radius = 0.0_rk  ! the largest of those of the tips that have gone on
+      do i = 1, size(centres, 2, kind=ik)
+         nearest = minloc([(norm2(self%tip(k)%xy - centres(:, i)), k=1, size(self%tip))], dim=1)
+         associate (f => self%tip(nearest)%fracture)
+            radius = max(radius, 5.0_rk*self%rules%increment_of(f), &
+                         3.0_rk*self%scene%cell_size_of(f))
+         end associate
+      end do
+      call timers%start(phase_remesh)
+      call remesh(self%problem%mesher, self%now%coarse_network, centres, radius, &
+                  self%scene%smallest_cell(), problem%mesher, problem%mesh, map, error)
+      call timers%stop(phase_remesh)
       if (allocated(error)) return
       call timers%start(phase_transfer)
       call transfer_levels(self%scene, self%problem, map, problem, self%now)

@@ -200,7 +200,7 @@ contains
       if (self%is_equilibrium()) then
          ! Nor does the speed of tips in a step in which cracks join, or without equilibrium.
          call accept_equilibrium(self, merge(0.0_rk, self%dt, is_unstable .or. trial%has_joined))
-         call self%notes%note_competition(self%tip, self%now%rivals, self%rules%increment, &
+         call self%notes%note_competition(self%tip, self%now%rivals, self%increments(), &
                                           self%now%coarse%time, self%chronicle)
       end if
       call self%stepper%step_done(trial, self%dt)

@@ -127,7 +127,8 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_loaded()) cycle
          associate (tip => self%now%windows%tip(i))
-            is_due = is_due .or. norm2(self%tip(i)%xy - tip%compared_at) > self%rules%increment &
+            is_due = is_due .or. norm2(self%tip(i)%xy - tip%compared_at) &
+                     > self%rules%increment_of(self%tip(i)%fracture) &
                      .or. .not. norm2([tip%found%k1, tip%found%k2] - tip%compared) &
                      <= like_before*norm2(tip%compared)
          end associate

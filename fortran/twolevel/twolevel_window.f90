@@ -54,7 +54,8 @@ module twolevel_window
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
       real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
-      integer :: times_larger = 0  !< than the scene says
+      real(rk) :: usual_edge = 0.0_rk  !< as the scene says [m]
+      integer :: times_larger = 0  !< than that
       type(mesher_t) :: mesher
       type(mesher_t) :: as_made  !< the mesh before tips moved in it, if they have
       type(mesh_t) :: mesh
@@ -105,6 +106,7 @@ contains
       self%coarser = other%coarser
       self%element_size = other%element_size
       self%times_larger = other%times_larger
+      self%usual_edge = other%usual_edge
       self%made = other%made
       self%follows_other = .true.
       self%sides = other%sides
@@ -126,6 +128,7 @@ contains
 
       if (allocated(self%made)) deallocate (self%made)
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
+      self%usual_edge = scene%window_of(tips(self%serves(1))%fracture)
       call place(self, scene, network, tips)
       self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
       spec = window_spec(self%lower, self%upper, self%element_size, scene)
@@ -223,11 +226,10 @@ contains
    end subroutine load_in_situ
 
    !> Of the square that the body cuts [m].
-   pure real(rk) function edge_length(self, scene)
+   pure real(rk) function edge_length(self)
       class(window_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
 
-      edge_length = 2.0_rk**self%times_larger*scene%discretization%window
+      edge_length = 2.0_rk**self%times_larger*self%usual_edge
    end function edge_length
 
    !> The corners: those of the body, or of a square around the tip as far as the body reaches.
@@ -243,7 +245,7 @@ contains
          self%upper = [domain%x_max, domain%y_max]
          if (self%is_body) return
          xy = tip_place(network, tips(self%serves(1)))
-         half = 0.5_rk*self%edge_length(scene)
+         half = 0.5_rk*self%edge_length()
          self%lower = xy - half
          self%upper = xy + half
          call clear_edges(network, 0.3_rk*self%element_size, self%lower, self%upper)

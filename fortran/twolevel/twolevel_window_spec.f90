@@ -74,6 +74,15 @@ contains
       allocate (spec%foci(2, size(serves)))
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
+      if (any(scene%fractures%cell_size > 0.0_rk)) then
+         spec%own_size = [(scene%cell_size_of(i), i=1, size(scene%fractures, kind=ik))]
+         do i = 1, size(tips, kind=ik)
+            associate (tip => tips(i))
+               spec%end_radius(tip%end, tip%fracture) = &
+                  tip%rosette_radius(scene, piece(tip%end, tip%fracture))
+            end associate
+         end do
+      end if
       do i = 1, size(serves, kind=ik)
          associate (tip => tips(serves(i)))
             spec%foci(:, i) = tip_place(network, tip)

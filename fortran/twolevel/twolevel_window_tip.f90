@@ -44,7 +44,7 @@ contains
       class(window_tip_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
 
-      element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(scene)
+      element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(self, scene)
    end function element_size
 
    !> Of the elements around it: two fit on its last straight piece, for the domain of the
@@ -54,14 +54,15 @@ contains
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: piece  !< its length [m]
 
-      rosette_radius = 0.5_rk**self%times_finer*min(usual_size(scene), 0.5_rk*piece)
+      rosette_radius = 0.5_rk**self%times_finer*min(usual_size(self, scene), 0.5_rk*piece)
    end function rosette_radius
 
    !> What the scene says [m].
-   elemental real(rk) function usual_size(scene)
+   elemental real(rk) function usual_size(self, scene)
+      class(window_tip_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
 
-      usual_size = scene%discretization%fine_ratio*scene%discretization%size_fracture
+      usual_size = scene%discretization%fine_ratio*scene%cell_size_of(self%fracture)
    end function usual_size
 
    elemental logical function can_be_finer(self)

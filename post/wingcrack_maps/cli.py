@@ -77,6 +77,10 @@ def _content(given: SimpleNamespace) -> tuple[Map, str]:
 def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
     """Examine, repair, write; give what is told of it."""
     base = read_base(given.scene)
+    if given.growth and base is not None and "growth" in base.groups:
+        raise SceneError(
+            f"{given.scene} has a group &growth; set enabled = .true. there, and leave out --growth"
+        )
     if not content.lines:
         raise SceneError(f"{path}: it has no lines, so no fractures")
     if extent(content.lines) == 0.0:
@@ -173,10 +177,10 @@ def _network(
     cell = given.cell
     if cell is None and base is not None:
         cell = base.number("coarse", "size_fracture") or base.number("fe", "size_fracture")
-    if cell is None:
+    if cell is None and not given.growth:
         cell = cell_size(content.lines)
     line_values = [line.attributes for line in content.lines]
-    return Network(content.lines, line_values, regions, region_values, body, cell)  # type: ignore[arg-type]
+    return Network(content.lines, line_values, regions, region_values, body, cell, given.growth)  # type: ignore[arg-type]
 
 
 def _heading(given: SimpleNamespace, path: str) -> str:

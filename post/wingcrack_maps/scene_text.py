@@ -25,7 +25,7 @@ _ROCK = """\
 ! Rock, fluid, stress, well and time are ours, to start from: granite at 2 km. Change them to yours.
 &material
   young = 40.0e9, poisson = 0.25
-  biot = 0.7, porosity = 0.01, permeability = 1.0e-18
+  biot = 0.7, porosity = 0.01, permeability = 1.0e-18, toughness = 1.5e6
 /
 &fluid compressibility = 4.5e-10, viscosity = 3.0e-4 /
 &initial pressure = 20.0e6 /
@@ -40,9 +40,27 @@ _RECTANGLE = """\
 
 _POLYGON = "&side name = 'held', edges = 1, x_displacement = 0.0, y_displacement = 0.0 /\n"
 
-_TIME = """\
-&time end = 3600.0 /
-&growth enabled = .false. /
+_TIME = "&time end = 3600.0 /\n"
+
+_TIME_WITH_GROWTH = """\
+! With this tolerance a fracture has 10 cells, with 0.01 it has 20.
+&time end = 3600.0, tolerance = 0.02 /
+"""
+
+_NO_GROWTH = """\
+! Without the exclamation mark fractures grow. Remove size_fracture of &coarse then, so that cells,
+! increments and windows follow from the length of each fracture:
+! &growth enabled = .true. /
+"""
+
+_GROWTH = """\
+! Cells, increments and windows follow from the length of each fracture (docs/theory.md).
+&growth enabled = .true. /
+"""
+
+_WELL = """\
+! A well in the fractures that hang together over the largest length. Its pressure limit is 3 MPa
+! above the smallest compression: fractures across that open.
 """
 
 
@@ -55,7 +73,8 @@ class Network:
     regions: Sequence[Area]
     region_values: Sequence[dict[str, Value]]
     body: Polygon | None
-    cell: float
+    cell: float | None
+    grows: bool = False
 
 
 def cell_size(lines: Sequence[Line]) -> float:
@@ -79,9 +98,11 @@ def scene_text(network: Network, heading: str, base: Base | None) -> str:
     comment = "".join(f"! {line}\n" for line in heading.splitlines())
     groups = _geometry(network, base)
     if base is not None:
-        return f"{base.text.rstrip()}\n\n{comment}{groups}"
+        growth = _GROWTH if network.grows else ""
+        return f"{base.text.rstrip()}\n\n{comment}{groups}{growth}"
     holds = _RECTANGLE if "x_min" in domain_values(_body(network)) else _POLYGON
-    return f"{comment}\n{groups}\n{_ROCK}{holds}{_well(network.lines)}{_TIME}"
+    time = _TIME_WITH_GROWTH + _GROWTH if network.grows else _TIME + _NO_GROWTH
+    return f"{comment}\n{groups}\n{_ROCK}{holds}{_WELL}{_well(network.lines)}{time}"
 
 
 def _body(network: Network) -> Polygon:
@@ -94,7 +115,7 @@ def _geometry(network: Network, base: Base | None) -> str:
     pieces = []
     if "domain" not in present:
         pieces.append(group_text("domain", domain_values(_body(network))))
-    if not ({"coarse", "fe"} & present.keys()):
+    if network.cell is not None and not ({"coarse", "fe"} & present.keys()):
         name = "coarse" if base is None or "fluid" in present else "fe"
         pieces.append(group_text(name, _sizes(network)))
     for area, values in zip(network.regions, network.region_values, strict=True):
@@ -110,6 +131,7 @@ def _geometry(network: Network, base: Base | None) -> str:
 
 
 def _sizes(network: Network) -> dict[str, Value]:
+    assert network.cell is not None
     low_x, low_y, high_x, high_y = _body(network).bounds
     edges = np.hypot(*np.diff(np.array(_body(network).exterior.coords), axis=0).T)
     far = min(_COARSENING * network.cell, high_x - low_x, high_y - low_y, float(edges.min()))
@@ -130,5 +152,5 @@ def _well(lines: Sequence[Line]) -> str:
     total = [sum(lines[j].length for j, c in enumerate(cluster) if c == own) for own in cluster]
     longest = max(range(len(lines)), key=lambda i: (total[i], lines[i].length))
     return group_text(
-        "injection", {"fracture": lines[longest].name, "rate": 1.0e-5, "pressure": 28.0e6}
+        "injection", {"fracture": lines[longest].name, "rate": 1.0e-5, "pressure": 33.0e6}
     )

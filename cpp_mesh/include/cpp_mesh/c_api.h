@@ -59,6 +59,10 @@ typedef struct {
     int32_t is_rough;   /* gmsh's faster triangles, which are smoothed here only: half the time */
     double ring_slope;  /* growth of sizes per distance beyond three radii of rosettes; 0: as
                            nearer to them, 0.3 */
+    const double* own_size; /* [n_fractures] size along each fracture, no larger than size_boundary,
+                               or with foci the largest one that these lead to; 0: size_fracture
+                               and focus_size; NULL: so have all. Tolerances follow from
+                               size_fracture, which is then the smallest of all */
 } cm_spec;
 
 typedef struct {
@@ -152,9 +156,9 @@ int cm_create_sized(const cm_spec* spec, const cm_network* network, const cm_mes
    the old one with vertices added at the ends of fractures. Existing fracture cells stay as they
    are, but where a new segment ends on one: it is divided, or the node between it and its
    neighbour moves there, and both are new then. Each new segment becomes one or more fracture cells
-   of about `size`. Nodes and cells outside are untouched. The patch is enlarged where it must hold
-   new segments or cells twice too large next to them. A mesh with rosettes is refused: make a new
-   one. */
+   of about `size`, or of the size that the fracture has of its own. Nodes and cells outside are
+   untouched. The patch is enlarged where it must hold new segments or cells twice too large next to
+   them. A mesh with rosettes is refused: make a new one. */
 int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_centres,
               const double* centres /* [n_centres][2] */, double radius, double size,
               cm_mesh** new_mesh);

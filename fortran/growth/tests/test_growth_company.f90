@@ -42,16 +42,16 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do i = 1, 100
-         call company%find_kinds(drive, known, [gain, gain], neither, increment, rivals, kind)
+ call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
          drive = [1.0_rk, 0.94_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
-         call company%accept(drive, spread(0.4_rk*increment, 1, 2), increment)
+         call company%accept(drive, spread(0.4_rk*increment, 1, 2), spread(increment, 1, 2))
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-      call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), increment)
-      call company%find_kinds(drive, known, [gain, gain], neither, increment, rivals, kind)
+     call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+ call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
 
@@ -92,11 +92,13 @@ contains
 
       call rivals%begin(3)
       same = 1.0_rk
-     call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, increment, rivals, kind)
+      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              spread(increment, 1, size(same)), rivals, kind)
       call checks%is_true(all(kind == 1), "all alike")
       call company%part(2_ik)
-      call company%accept(same, 0.0_rk*same, increment)
-     call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, increment, rivals, kind)
+      call company%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
+      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              spread(increment, 1, size(same)), rivals, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
 
@@ -112,7 +114,8 @@ contains
       call rivals%begin(2)
       come = 0.0_rk
       if (present(gain)) come = gain
-      call company%find_kinds([one, other], [off, off], come, neither, increment, rivals, kind)
+      call company%find_kinds([one, other], [off, off], come, neither, &
+                              spread(increment, 1, 2), rivals, kind)
       are_one = kind(1) == kind(2)
    end function are_one
 
@@ -136,10 +139,10 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do steps = 0, 100
-         call company%find_kinds(drive, known, [gain, gain], neither, increment, rivals, kind)
+ call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
          if (kind(1) /= kind(2)) return
          drive = [1.0_rk, 1.0_rk - lack]
-         call company%accept(drive, [moved, moved], increment)
+         call company%accept(drive, [moved, moved], spread(increment, 1, 2))
          gain = gain + moved
       end do
    end function steps_in_company

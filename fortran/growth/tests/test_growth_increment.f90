@@ -59,14 +59,14 @@ contains
       call checks%is_close(maxval(tips%advance), 0.0_rk, 0.0_rk, "nothing has grown yet")
       call checks%is_close(tips(3)%drive_before%energy, 4.0_rk, 0.0_rk, "drive before")
       ! A quarter of 0.2 m for the first tip: below 0.4 of a radius of 0.2 m.
-      call plan_increment(tips, grows, 0.2_rk, 1.0_rk, advance)
+      call plan_increment(tips, grows, spread(0.2_rk, 1, size(tips)), 1.0_rk, advance)
       call checks%is_close(maxval(abs(advance - [0.0_rk, 0.1_rk, 0.2_rk, 0.0_rk])), 0.0_rk, exact, &
                            "advances as the energies")
       call checks%is_close(tips(1)%carried, 0.05_rk, exact, "carried over")
-      call plan_increment(tips, grows, 0.2_rk, 1.0_rk, advance)
+      call plan_increment(tips, grows, spread(0.2_rk, 1, size(tips)), 1.0_rk, advance)
       call checks%is_close(advance(1), 0.1_rk, exact, "two short advances make one")
       call checks%is_close(tips(1)%carried, 0.0_rk, 0.0_rk, "nothing left")
-      call plan_increment(tips, grows .and. .false., 0.2_rk, 1.0_rk, advance)
+      call plan_increment(tips, grows .and. .false., spread(0.2_rk, 1, size(tips)), 1.0_rk, advance)
       call checks%is_close(maxval(advance), 0.0_rk, 0.0_rk, "none at its toughness")
    end subroutine test_plan
 

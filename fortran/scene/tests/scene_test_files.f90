@@ -261,6 +261,8 @@ contains
                                                 a%slip_taper, a%face_pressure], &
                                                [b%friction, b%dilation, b%aperture, b%slip, &
                                                 b%slip_taper, b%face_pressure])
+      same_fracture = same_fracture .and. same([a%cell_size, a%window, a%increment], &
+                                               [b%cell_size, b%window, b%increment])
       same_fracture = same_fracture .and. (a%held_closed .eqv. b%held_closed)
    end function same_fracture
 

@@ -68,7 +68,8 @@ contains
       call refuse(10, "  x(1)=0.9 x(2)=1.1", ":10: &fracture: unknown name x(1), the nearest "// &
                   "is x, whose values are given as one list without indices"//doc)
       call refuse(8, "&domain x_min=0.0 x_max=2.0 y_min=0.0 y_max=1.0 /", &
-                  ":8: &domain: is given twice, first on line 2, but must be given once"//doc)
+                  ":8: &domain: is given twice, first on line 2, but must be given once: put "// &
+                  "all its names there"//doc)
       call refuse(5, "  biot=0.8 porosity=0.01 Poisson=0.25", &
                   ":5: &material: poisson is given twice, first on line 4, but must be given once")
       call refuse(7, "  toughness=0.7e6", ":3: &material: is not ended by '/' as it must be"//doc)
@@ -137,13 +138,14 @@ contains
       call refuse(2, "", ": group &domain is missing, and with it x_min [m], which the "// &
                   "shape 'rectangle' needs"//doc)
       call refuse(7, "/", ":3: &material: toughness [Pa m^1/2], which growth needs, is missing"// &
-                  doc)
+                  "; rock has 0.5e6 to 2.5e6, so begin with toughness = 1.5e6"//doc)
+      call refuse(7, "radiation_damping=1.0e6 /", ":3: &material: toughness [Pa m^1/2], which "// &
+                  "growth needs, is missing; rock has 0.5e6 to 2.5e6, so begin with toughness "// &
+                  "= 1.5e6; radiation_damping must be omitted with it"//doc)
       call refuse(5, "  biot=0.8", ":3: &material: porosity, which a scene with &fluid needs, "// &
                   "is missing"//doc)
       call refuse(13, "/", ":9: &fracture: aperture [m], which a scene with &fluid needs, is "// &
                   "missing"//doc)
-      call refuse(24, "", ": group &fine is missing, and with it window [m], which growth and "// &
-                  "stress intensity factors need"//doc)
       call refuse(6, "", ":3: &material: permeability [m2], which a scene with &fluid needs, "// &
                   "is missing"//doc)
       call refuse(8, "", ":18: &injection: needs a fluid, but the group &fluid is missing"//doc)
@@ -200,9 +202,21 @@ contains
       call refuse(19, "  start=0.0 x=1.0 /", &
                   ":18: &injection: y is missing but must be given with x"//doc)
       call refuse(24, "&fine window=0.01 /", ":24: &fine: window is 0.01 but must be larger "// &
-                  "than twice the fine mesh size, 0.005"//doc)
+                  "than twice the fine mesh size, 0.005; omit it for the default, 5 lengths of "// &
+                  "the fracture"//doc)
+      call refuse(12, "  friction=0.5 cell_size=0.3", ":12: &fracture: cell_size of fracture"// &
+                  " 'f1' is 0.3 but must be at most size_boundary, 0.1"//doc)
+      call refuse_two(12, "  friction=0.5 cell_size=0.3", 22, "&coarse size_boundary=0.5", &
+                      ":12: &fracture: cell_size of fracture 'f1' is 0.3 but must be at most "// &
+                      "the length of the fracture, 0.2236"//doc)
+      call refuse(12, "  friction=0.5 window=0.001", ":12: &fracture: window is 0.001 but must "// &
+                  "be larger than twice the fine mesh size, 0.005; omit it for the default, 5 "// &
+                  "lengths of the fracture"//doc)
+      call refuse(12, "  friction=0.5 increment=-1.0", ":12: &fracture: increment is -1.0 but "// &
+                  "must be a finite number greater than 0.0 [m]"//doc)
       call refuse(25, "&growth enabled=.true. increment=0.15 /", &
-                  ":25: &growth: increment is 0.15 but must be at most half the window, 0.1"//doc)
+                  ":25: &growth: increment is 0.15 but must be at most half the window, 0.1; "// &
+                  "omit it for the default, the fine mesh size"//doc)
    end subroutine check_each_other
 
    subroutine check_geometry()
@@ -215,7 +229,8 @@ contains
                   ":22: &coarse: size_fracture is 0.2 but must be at most size_boundary, 0.1"//doc)
       call refuse(22, "&coarse size_fracture=0.25 size_boundary=0.5", &
                   ":22: &coarse: size_fracture is 0.25 but must be at most the length of "// &
-                  "fracture 'f1', 0.2236"//doc)
+                  "fracture 'f1', 0.2236; omit it, "// &
+                  "so that cells follow from the length of each fracture"//doc)
       call refuse(10, "  x=0.9, 1.0, 1.1", ":11: &fracture: y of fracture 'f1' has 2 values "// &
                   "but must have as many as x, 3"//doc)
       call refuse_two(10, "  x=0.9", 11, "  y=0.5", ":10: &fracture: x of fracture 'f1' has "// &

@@ -29,7 +29,7 @@ contains
    subroutine cut_everywhere()
       integer :: length, needed, n_refused
 
-      needed = index(good, "&growth") - 1  ! all that follows is optional
+      needed = index(good, "&coarse") - 1  ! all that follows is optional
       n_refused = 0
       do length = 0, needed, 7
          if (refused(good(1:length))) n_refused = n_refused + 1
@@ -41,13 +41,11 @@ contains
    !> Cut behind the last required group, at blanks or in a comment, a file is complete.
    logical function complete_at(length)
       integer, intent(in) :: length
-      integer :: last_group, last_size
+      integer :: last_group
 
-      last_group = index(good, "&fine") - 1
-      last_size = index(good, "size_boundary")
-      complete_at = length > last_size .and. length <= last_group
-      if (complete_at) complete_at = index(good(1:length), "/", back=.true.) > last_size
-      if (length > last_group) complete_at = index(good(last_group + 1:length), "/") > 0
+      last_group = index(good, "&time")
+      complete_at = length > last_group
+      if (complete_at) complete_at = index(good(last_group:length), "/") > 0
    end function complete_at
 
    subroutine change_bytes()

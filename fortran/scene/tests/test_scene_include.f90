@@ -71,7 +71,7 @@ contains
       call expect(rock//":4: unknown group &tine, the nearest is &time"//doc)
       call put_lines(rock, [character(len=100) :: granite, "&time end=1.0 /"])
       call expect(path//":6: &time: is given twice, first on line 4 of "//rock// &
-                  ", but must be given once"//doc)
+                  ", but must be given once: put all its names there"//doc)
       call put_lines(rock, [character(len=100) :: granite, f1])
       call expect(path//":9: &fracture: name 'f1' is already taken on line 5 of "//rock// &
                   " but must be unique"//doc)

@@ -168,8 +168,9 @@ contains
       call put_lines(path, [character(len=80) :: smallest(), &
                             "&fracture name='f' x=0.4,0.6 y=0.5,0.5 law='open' /"])
       call read_scene(path, scene, error)
-      call checks%fails_with(error, "&fe: size_fracture [m], which a scene with a "// &
-                             "fracture needs", "a fracture needs its cell size")
+      call checks%no_error(error, "a fracture without a cell size")
+      call checks%is_close(scene%discretization%size_fracture, 0.01_rk, 1.0e-15_rk, &
+                           "a 20th of its length")
       call put_lines(path, [character(len=80) :: smallest(0.1_rk), &
                             "&fracture name='f' x=0.4,0.6 y=0.5,0.5 law='open' /", &
                             "&restraint x=1 y=1 x_displacement=-0.5 /", &

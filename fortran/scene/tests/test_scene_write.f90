@@ -22,6 +22,7 @@ program test_scene_write
    call round_trip(source_path("inputs/paper_d/permeability_case1.nml"))
    call round_trip(source_path("inputs/benchmarks/onset_2300.nml"))
    call check_odd_numbers()
+   call check_sizes()
    call check_bodies()
    call check_word()
    call check_angles()
@@ -45,6 +46,29 @@ contains
       if (allocated(error)) return
       call checks%is_true(same_scene(first, second), name//" comes back the same")
    end subroutine round_trip
+
+   !> Sizes by default, of two fractures of different lengths.
+   subroutine check_sizes()
+      call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=10 y_min=0 y_max=10 /", &
+                            "&material young=1e10 poisson=0.1 biot=0.7 porosity=0.3 "// &
+                            "permeability=1e-19 toughness=1e6 /", &
+                            "&fluid compressibility=4e-10 viscosity=1e-3 /", &
+                            "&fracture name='f' x=5 6 y=5 5 friction=0.5 aperture=1e-4 /", &
+                            "&fracture name='g' x=5 5.3 y=3 3 friction=0.5 aperture=1e-4 /", &
+                            "&side name='left' x_displacement=0 /", &
+                            "&side name='bottom' y_displacement=0 /", &
+                            "&time end=7.7 /", "&growth enabled=.true. /"])
+      call round_trip(path)
+      call read_scene(path, scene, error)
+      call checks%is_true(scene%fractures(1)%cell_size > 0.0_rk, "one has a size of its own")
+      call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=10 y_min=0 y_max=10 /", &
+                            "&material young=1e10 poisson=0.1 /", &
+                            "&fracture name='f' x=5 5 y=5 5 law='open' /", &
+                            "&side name='left' x_displacement=0 y_displacement=0 /"])
+      call read_scene(path, scene, error)
+      call checks%fails_with(error, ":3: &fracture: x and y of fracture 'f' give it a length "// &
+                             "of 0.0 but it must have at least 1.4", "no length")
+   end subroutine check_sizes
 
    !> Numbers that no short decimal holds, quotes in texts, long polylines, a scene without fluid.
    subroutine check_odd_numbers()

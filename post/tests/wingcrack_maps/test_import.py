@@ -12,6 +12,7 @@ import pytest
 
 from map_calls import OUTCROP, area, feature, fractures, geojson, imported, needs_solver, rows
 from wingcrack.command_line import main
+from wingcrack.scenes.solver import check
 from wingcrack_maps.features import Line, Map
 from wingcrack_maps.read import read_map
 from wingcrack_maps.units import could_be_degrees, in_degrees
@@ -101,6 +102,60 @@ def test_fractures_are_added_to_a_scene(tmp_path: Path) -> None:
     found = fractures(scene)
     assert {name: f["friction"] for name, f in found.items()} == {"a": 0.4, "a_2": 0.5, "b": 0.7}
     assert ("renamed", "", "") in rows(scene, "noted")
+
+
+def test_a_scene_may_grow_by_one_line(tmp_path: Path) -> None:
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    status, scene = imported(path, "--unit", "m")
+    assert status == 0
+    groups = f90nml.read(scene)
+    assert "growth" not in groups
+    assert groups["material"]["toughness"] == 1.5e6
+    # what stands across the smallest compression can open
+    assert groups["injection"]["pressure"] > -groups["in_situ"]["syy"]
+    with scene.open("a", encoding="utf-8") as file:
+        file.write("&growth enabled = .true. /\n")
+    is_good, words = check(scene)
+    assert is_good, words
+    assert "tips:         growth" in words
+
+
+@pytest.mark.parametrize("cell", [None, "0.5"])
+def test_growth_leaves_the_sizes_to_the_solver(tmp_path: Path, cell: str | None) -> None:
+    path = geojson(tmp_path / "m.geojson", feature((0, 0), (10, 0)), feature((20, 3), (21, 3)))
+    options = ["--unit", "m", "--growth"] + ([] if cell is None else ["--cell", cell])
+    status, scene = imported(path, *options)
+    assert status == 0
+    groups = f90nml.read(scene)
+    assert groups["growth"]["enabled"]
+    assert ("coarse" in groups) is (cell is not None)
+    is_good, words = check(scene)
+    assert is_good, words
+    assert ("sizes:        cells 0.1 to 1 m along fractures" in words) is (cell is None)
+
+
+def test_growth_in_a_scene_with_growth_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    base = tmp_path / "base.nml"
+    base.write_text("&growth enabled = .false. /\n")
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    assert imported(path, "--unit", "m", "--scene", str(base), "--growth")[0] == 2
+    assert "has a group &growth; set enabled = .true. there" in capsys.readouterr().err
+
+
+def test_a_toughness_that_is_missing_is_told_with_a_value(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    base = tmp_path / "base.nml"
+    base.write_text(
+        "&material young = 40.0e9, poisson = 0.25, biot = 0.7, porosity = 0.01,"
+        " permeability = 1.0e-18 /\n"
+        "&fluid compressibility = 4.5e-10, viscosity = 3.0e-4 /\n&time end = 1.0 /\n"
+    )
+    path = geojson(tmp_path / "m.geojson", *LINES)
+    assert imported(path, "--unit", "m", "--scene", str(base), "--growth")[0] == 2
+    assert "begin with toughness = 1.5e6" in capsys.readouterr().err
 
 
 def test_names_are_made_good_and_different(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import f90nml
 import numpy as np
 import pytest
 import shapely
@@ -167,6 +168,16 @@ def test_two_sets_become_a_scene_that_the_solver_takes(tmp_path: Path) -> None:
     assert any(name.startswith("set1_") for name in names)
     assert any(name.startswith("set2_") for name in names)
     assert {row[0] for row in rows(out, "noted")} == {"density", "rejected", "assumed"}
+
+
+@needs_solver
+def test_a_network_grows_with_cells_by_the_lengths(tmp_path: Path) -> None:
+    out = tmp_path / "r.nml"
+    call = ["network", "--box=0,0,60,40", "--seed=7", "--distance=0.5", "--out", str(out)]
+    call += ["--density=p20=0.002", "--length=power:2.5,4,20", "--orientation=uniform"]
+    assert main([*call, "--growth"]) == 0
+    assert "enabled = .true." in out.read_text()
+    assert "coarse" not in f90nml.read(out)
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,7 @@ _COMMON = (  # of what makes scenes of fractures
         many=True,
     ),
     Parameter("--cell", "SIZE", "cells at the fractures [m]", values.length),
+    flag("--growth", "fractures grow; cells and windows follow from their lengths"),
     Parameter("--margin", "D", "room around the fractures in the body [m]", values.length),
     Parameter("--repair", "D", "repair what is nearer than this [m]", values.length),
     Parameter(
