@@ -34,7 +34,7 @@ contains
       viscous = 0.0_rk
       ! A tip that pauses, as it does where a segment begins, is probably about to go on.
       self%tip%viscous_rise = sqrt(self%last%front%tip%viscous_rise)
-      gain = advances(self%front_state_t, self%start, self%now%segment, self%rules%increment)
+      gain = advances(self%front_state_t, self%start, self%now%segment, self%increments())
       pressure = self%problem%fracture_pressure(self%before) - self%scene%initial%pressure
       do i = 1, size(self%tip, kind=ik)
          if (may_jump .or. .not. (self%tip(i)%is_free .and. gain(i) > 0.0_rk)) cycle
