@@ -22,8 +22,7 @@ endfunction()
 # each turn writes what is its own, and sums are taken outside. Rooms without this take the marks
 # for comments.
 function(room_threads name)
-  # With threads the false alarms of room_compile_options come in the debug build too.
-  target_compile_options(${name} PRIVATE ${OpenMP_Fortran_FLAGS} -Wno-uninitialized)
+  target_compile_options(${name} PRIVATE ${OpenMP_Fortran_FLAGS})
   target_link_libraries(${name} PRIVATE OpenMP::OpenMP_Fortran)
 endfunction()
 
@@ -66,10 +65,12 @@ function(room_modules name folder)
   target_include_directories(${name} PUBLIC ${mod_dir})
 endfunction()
 
+# -frecursive: procedures may run on several threads at once, so that no local array is static,
+# whatever its size. The check of recursion that -fcheck=all contains would take two threads in one
+# procedure for a recursion; -frecursive switches it off.
 # gfortran 12 takes the descriptors of allocatable arrays (their `offset` and `dim` before the first
-# allocation) for uninitialized: -Wmaybe-uninitialized in either build, -Wuninitialized where it
-# optimizes. In the debug build the latter is right, and stays. Where it optimizes no local array is
-# static, whatever its size: procedures may run on several threads at once.
+# allocation) for uninitialized, in procedures without that check and where it optimizes: hence
+# neither -Wuninitialized nor -Wmaybe-uninitialized. The debug build has signalling NaNs instead.
 function(room_compile_options name)
   target_compile_options(
     ${name}
@@ -80,14 +81,13 @@ function(room_compile_options name)
       $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
       -Wimplicit-interface
       -fimplicit-none
-      $<$<CONFIG:Release>:-O3
+      $<$<CONFIG:Release>:-O3>
       -frecursive
-      ${WINGCRACK_PROCESSOR}
+      $<$<CONFIG:Release>:${WINGCRACK_PROCESSOR}>
       -Wno-uninitialized
-      -Wno-maybe-uninitialized>
+      -Wno-maybe-uninitialized
       $<$<CONFIG:Debug>:-fcheck=all
       -fbacktrace
-      -finit-real=snan
-      -Wno-maybe-uninitialized>>
+      -finit-real=snan>>
   )
 endfunction()
