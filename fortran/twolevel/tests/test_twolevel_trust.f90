@@ -40,6 +40,10 @@ contains
       call add_fracture(scene, "f", ends_x, ends_y, friction, 0.0_rk)
       call evaluate_initial_state(scene, simulation, timers, error)
       call checks%no_error(error, "initial state")
+      simulation%now%segment%gain = tiny(1.0_rk)  ! tips that have grown are evaluated, also closed
+      call simulation%evaluate(timers, error)
+      call checks%no_error(error, "tips")
+      call checks%is_true(all(simulation%tip%is_loaded()), "both in windows")
    end subroutine start
 
    !> A sticking fracture in uniform stress: both levels are exact, so nothing is lacking.
