@@ -21,7 +21,7 @@ module coarse_state
       real(rk), allocatable :: roughness(:)  !< part of a0 that conducts fluid but holds none [m]
       real(rk), allocatable :: share(:)  !< of the cell's length behind the tip [-]
       logical, allocatable :: has_tip(:)  !< whether a tip lies in the cell
-      !> (n) of coarse_tip_layer where a tip lies in the cell; 0: viscosity has no effect [1/m^(1/2)]
+      !> (n) of coarse_tip_layer where a tip lies in the cell; 0: no effect of viscosity [1/m^(1/2)]
       real(rk), allocatable :: viscous(:)
       !> (n) resistance between fluid and rock on each side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)

@@ -187,7 +187,7 @@ contains
       character(len=*), parameter :: reason(need_always:need_growth) = [character(len=31) :: &
                                                                         "which is always needed", &
                                                                 "which a scene with &fluid needs", &
-                                                                               "which growth needs"]
+                                                                        "which growth needs"]
 
       associate (parameter => parameters(item))
          words = trim(parameter%name)

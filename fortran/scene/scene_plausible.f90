@@ -367,5 +367,4 @@ contains
                     trim(d%usual))
    end subroutine add
 
-
 end module scene_plausible
