@@ -174,7 +174,7 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     # The real command line understands the arguments; what is done with them is replaced.
     for package in ("wingcrack", "wingcrack_verify", "wingcrack_maps"):
         shutil.copytree(TOP / "post" / package, root / "post" / package)
-    for file in (root / "post").rglob("cli.py"):
+    for file in [*(root / "post").rglob("cli.py"), root / "post/wingcrack/scenes/new.py"]:
         file.write_text(_POST)
     place = folder / "place"
     place.mkdir()

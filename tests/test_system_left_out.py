@@ -87,7 +87,7 @@ SCENES = {
 # Those of growth: what evaluates tips and moves them.
 FLUID = ("coarse_", "twolevel_")
 TIPS = ("fine_tip_intensity", "fine_tip_interaction", "fine_tip_energy", "growth_law")
-CONTACT = ("contact_law: contact_equations", "contact_law: contact_residual")
+CONTACT = ("contact_point: contact_equations", "contact_point: contact_residual")
 WINDOWS = ("fine_", "twolevel_window", "twolevel_transfer", "twolevel_faces")
 JOINTS = ("coarse_fracture_flow: fill_joint", "coarse_fracture_flow: fill_branch")
 REGIONS = (
