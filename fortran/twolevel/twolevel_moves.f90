@@ -133,7 +133,7 @@ contains
       type(tip_t), intent(in) :: tips(:)
       type(tip_t), intent(in) :: before(:)  !< tips before the step
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      logical, intent(in) :: wants(:)  !< (tips) a new piece
+      logical, intent(in) :: wants(:)  !< (tips) the tip is to begin a new segment
       integer(ik), intent(inout) :: kind(:)  !< (tips) number of the group, from 1
       logical, intent(out) :: any_parted
       logical :: lags(size(kind))

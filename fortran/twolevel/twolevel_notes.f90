@@ -129,8 +129,9 @@ contains
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
 
-   !> Tips that have grown in one group, but whose gains differ by more than their errors now: nothing
-   !! but these errors has separated them, and it is chance which one is ahead.
+   !> Report tips that have grown in one group, but whose growth now differs by more than the errors
+   !! of the positions: only these errors have separated them, and chance decides which one is
+   !! ahead.
    subroutine note_separation(self, tips, now, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)

@@ -2,11 +2,12 @@
 !!
 !! The coarse level has the pressure at the middles of its cells; between them it is linear. Toward
 !! a tip that advances at the speed V, a fluid of viscosity mu follows at the same speed through an
-!! opening w that falls with the square root of the distance d: dp/dd = 12 mu V/w^2 goes with 1/d,
-!! so that the pressure is linear in ln d, from the last two middles on. This holds in cells that
-!! have grown. At the tips of other cells, and beyond the coarse fracture, the pressure is that of
-!! the last cell. A face takes the mean pressure with the weight 1/sqrt(d) with which it enters the
-!! stress intensity factor. Of the cell of the tip, only the part behind the tip counts.
+!! opening w that decreases with the square root of the distance d: dp/dd = 12 mu V/w^2 is
+!! proportional to 1/d, so that the pressure is linear in ln d, from the last two middles on. This
+!! applies to cells added by growth. At the tips of other cells, and beyond the coarse fracture, the
+!! pressure is that of the last cell. A face takes the mean pressure with the weight 1/sqrt(d), the
+!! weight of the pressure in the stress intensity factor. Of the cell of the tip, only the part
+!! behind the tip counts.
 module twolevel_pressure
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
@@ -17,21 +18,23 @@ module twolevel_pressure
 
    public :: match_pressure, pressure_map_t
 
-   !> Each face of a window lies between two middles, or beyond the first of them.
+   !> Interpolation from the middles of two coarse cells to each face of a window.
    type :: pressure_map_t
       integer(ik), allocatable :: cell(:, :)  !< (2, fracture cells) coarse fracture cells
-      real(rk), allocatable :: weight(:)  !< of the second; negative beyond the first [-]
+      !> weight of the second cell; negative beyond the middle of the first [-]
+      real(rk), allocatable :: weight(:)
    contains
       procedure :: on_faces
    end type pressure_map_t
 
 contains
 
-   !> Where the faces of a window lie among the coarse cells.
+   !> Find the coarse cells and weights for the faces of a window.
    pure function match_pressure(fine, coarse, is_grown) result(map)
       type(fine_mesh_t), intent(in) :: fine
       type(mesh_t), intent(in) :: coarse
-      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells) fluid follows the tip in them
+      !> (coarse fracture cells) fluid follows the tip in these cells
+      logical, intent(in) :: is_grown(:)
       type(pressure_map_t) :: map
       real(rk) :: ends(2), middle(coarse%fracture%n_cells)
       logical :: is_tip(2), is_wet(coarse%fracture%n_cells)
@@ -55,7 +58,7 @@ contains
       end do
    end function match_pressure
 
-   !> Whether a tip lies in one of some coarse cells, and not beyond the coarse fracture.
+   !> Whether a tip lies in one of the selected coarse cells, and not beyond the coarse fracture.
    pure logical function lies_in(coarse, are_meant, tip)
       type(mesh_t), intent(in) :: coarse
       logical, intent(in) :: are_meant(:)  !< (coarse fracture cells)
@@ -67,11 +70,11 @@ contains
       end associate
    end function lies_in
 
-   !> The free tips of a fracture that the window holds.
+   !> Free tips of a fracture in the window.
    pure subroutine find_ends(fine, fracture, ends, is_tip)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: fracture
-      real(rk), intent(out) :: ends(2)  !< arc length [m]; far away where there is none
+      real(rk), intent(out) :: ends(2)  !< arc length [m]; huge without a tip
       logical, intent(out) :: is_tip(2)
       integer(ik) :: end, tip
 
@@ -91,20 +94,21 @@ contains
       end associate
    end subroutine find_ends
 
-   !> The middles of what is behind the tips of the coarse cells of a fracture.
+   !> Middles of those parts of the coarse cells of a fracture that lie behind its tips.
    pure subroutine find_middles(coarse, fracture, ends, middle, is_wet)
       type(mesh_t), intent(in) :: coarse
       integer(ik), intent(in) :: fracture
       real(rk), intent(in) :: ends(2)  !< [m]
       real(rk), intent(out) :: middle(:)  !< (coarse fracture cells) arc length [m]
-      logical, intent(out) :: is_wet(:)  !< of this fracture, and not ahead of a tip
+      logical, intent(out) :: is_wet(:)  !< cells of this fracture, except those ahead of a tip
       real(rk) :: nothing
       integer(ik) :: j
 
       do j = 1, coarse%fracture%n_cells
          associate (s => coarse%fracture%cell_s(:, j))
             middle(j) = 0.5_rk*(max(s(1), ends(1)) + min(s(2), ends(2)))
-            ! A cell that a tip has just reached, but for round-off, has nothing behind it.
+            ! A cell whose start a tip has just reached, within rounding, has no part behind the
+            ! tip.
             nothing = same_place*(s(2) - s(1))
             is_wet(j) = coarse%fracture%cell_fracture(j) == fracture .and. &
                         s(1) + nothing < ends(2) .and. s(2) - nothing > ends(1)
@@ -112,15 +116,15 @@ contains
       end do
    end subroutine find_middles
 
-   !> The two middles that the pressure on a face follows from.
+   !> Find the two coarse cells and the weight for the pressure on a face.
    pure subroutine match_face(s, ends, is_tip, middle, is_wet, cell, weight)
-      real(rk), intent(in) :: s(2)  !< its ends [m]
-      real(rk), intent(in) :: ends(2)  !< of the fracture [m]
+      real(rk), intent(in) :: s(2)  !< ends of the face [m]
+      real(rk), intent(in) :: ends(2)  !< ends of the fracture [m]
       logical, intent(in) :: is_tip(2)
-      real(rk), intent(in) :: middle(:)  !< of the coarse cells [m]
+      real(rk), intent(in) :: middle(:)  !< middles of the coarse cells [m]
       logical, intent(in) :: is_wet(:)
       integer(ik), intent(out) :: cell(2)
-      real(rk), intent(out) :: weight  !< of the second [-]
+      real(rk), intent(out) :: weight  !< weight of the second cell [-]
       real(rk) :: at, d(2)
       integer(ik) :: end
 
@@ -159,11 +163,12 @@ contains
       mean_logarithm = mean_logarithm/(sqrt(upper) - sqrt(lower))
    end function mean_logarithm
 
-   !> Pressure on the faces. It does not rise beyond the last middle, and is not below what the
-   !! fluid bears. Where pressures count beyond those in situ, what is found is the whole one.
+   !> Total pressure on the faces. Beyond the last middle the pressure does not increase, and is not
+   !! below the lowest pressure of the fluid. With a state in situ, `pressure` is relative to that
+   !! state.
    pure function on_faces(self, pressure, lowest, in_situ) result(found)
       class(pressure_map_t), intent(in) :: self
-      real(rk), intent(in) :: pressure(:)  !< of the coarse fracture cells [Pa]
+      real(rk), intent(in) :: pressure(:)  !< (coarse fracture cells) [Pa]
       real(rk), intent(in) :: lowest  !< [Pa]
       real(rk), intent(in), optional :: in_situ(:)  !< (faces) [Pa]
       real(rk) :: found(size(self%weight))  !< [Pa]
