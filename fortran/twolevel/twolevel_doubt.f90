@@ -90,7 +90,6 @@ contains
       !> Error [%] above which the body is not used as the window: a larger error is not due to the
       !! edge alone, and a window that differs from the body by the edge alone would not show the
       !! other part.
-      !> edge alone would have nothing that says so.
       real(rk), parameter :: far_off = 25.0_rk
       type(window_tip_t) :: seen
       logical :: is_finer
