@@ -351,7 +351,7 @@ contains
    !! well flows at its rate all the time. Tips do not grow before K_IC, and the first state with
    !! growth follows one in which they have reached K_IC.
    subroutine test_chosen_steps(law)
-      character(len=*), intent(in) :: law  !< onset of growth
+      character(len=*), intent(in) :: law  !< growth law
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error

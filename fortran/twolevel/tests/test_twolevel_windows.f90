@@ -16,7 +16,7 @@ program test_twolevel_windows
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 
-   real(rk), parameter :: length = 0.1_rk  !< position of the crack [m]
+   real(rk), parameter :: length = 0.1_rk  !< length of the crack [m]
    type(checks_t) :: checks
    type(timers_t) :: timers
    type(twolevel_simulation_t) :: simulation
