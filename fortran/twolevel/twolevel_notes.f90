@@ -152,8 +152,9 @@ contains
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
                call chronicle%add_event(now%coarse%time, event_bifurcation, "this tip is ahead "// &
-                                        "of an equal one at ("//brief_text(tips(behind)%xy(1), 4)// &
-                                        ", "//brief_text(tips(behind)%xy(2), 4)//") m by "// &
+                                        "of an equal one at ("// &
+                                        brief_text(tips(behind)%xy(1), 4)//", "// &
+                                        brief_text(tips(behind)%xy(2), 4)//") m by "// &
                                         brief_text(abs(gain(1) - gain(2)), 3)// &
                                         " m, more than their errors: which one is ahead is "// &
                                         "chance", tips(ahead)%fracture, tips(ahead)%xy)
