@@ -14,26 +14,28 @@ module growth_rivals
 
    public :: company_t, could_part, lags_behind, rivals_t
 
-   !> What has been measured for a tip holds until it has gone so many lengths of its piece on.
+   !> Growth of a tip, in lengths of its path segment, after which its column is measured again [-].
    real(rk), parameter :: holds_for = 8.0_rk
 
-   !> Share of the last measurement of a tip in the mean with the earlier ones: each errs by some
-   !! per cent of K_IC per increment.
+   !> Weight of the last measurement in the running mean: each measurement has an error of some per
+   !! cent of K_IC per increment [-].
    real(rk), parameter :: fresh = 0.5_rk
 
-   !> Share of a piece that a tip has gone along where it is measured.
+   !> Share of the path segment that a tip must have advanced for its column to be measured [-].
    real(rk), parameter :: half_way = 0.5_rk
 
-   !> A try teaches where it errs by more than this from what was to be expected: less may be the
+   !> Error of the predicted excess above which a try leads to a Broyden update: smaller ones may be
    !! errors of the meshes [-].
    real(rk), parameter :: noticeable = 0.01_rk
 
-   !> What is known of the tips.
+   !> Tip interaction matrix, and which of its columns have been measured.
    type :: rivals_t
-      real(rk), allocatable :: measured(:, :)  !< (tips, tips) mean of d(K_eq,i/K_IC)/da_j [1/m]
-      real(rk), allocatable :: matrix(:, :)  !< as measured last, with what tries have taught
-      logical, allocatable :: is_known(:)  !< (tips) columns of it
-      real(rk), allocatable :: known_at(:)  !< (tips) gain of each then [m]
+      !> (tips, tips) running mean of d(K_eq,i/K_IC)/da_j [1/m]
+      real(rk), allocatable :: measured(:, :)
+      !> (tips, tips) last measurement with Broyden updates [1/m]
+      real(rk), allocatable :: matrix(:, :)
+      logical, allocatable :: is_known(:)  !< (tips) columns that have been measured
+      real(rk), allocatable :: known_at(:)  !< (tips) growth of each tip at its last measurement [m]
    contains
       procedure :: begin
       procedure :: has_to_ask
@@ -43,34 +45,34 @@ module growth_rivals
       procedure :: matrix_for
    end type rivals_t
 
-   !> Share of an increment within which tips have come equally far [-].
+   !> Difference of growth within which tips have advanced equally far, in increments [-].
    real(rk), parameter :: same_gain = 0.02_rk
 
-   !> Errors of the intensities that do not tell tips from each other, over K_IC [-].
+   !> Difference of K_eq/K_IC within which tips are equal: the error of the intensities [-].
    real(rk), parameter :: same_drive = 0.01_rk
 
-   !> The same for tips that have grown equally far so far, of what each had in the mean over the
-   !! last pieces of its path: their paths differ by what their meshes do, which changes their
-   !! intensities by more than the errors of these, now one way and now the other [-].
+   !> The same for tips of one group, for means of the excess over the last segments of the paths:
+   !! the meshes make their paths differ, which changes the intensities by more than their errors,
+   !! with alternating sign [-].
    real(rk), parameter :: in_company = 0.03_rk
 
-   !> Increments over which that mean reaches back [-].
+   !> Growth over which the excess is averaged, in increments [-].
    real(rk), parameter :: memory = 2.0_rk
 
-   !> Tips could part where a lead of one increment changes K_eq/K_IC by more than this: that is
-   !! measured with a lead of two fifths (twolevel_probe), which has to be worth twice what does not
-   !! tell tips from each other [-].
+   !> Change of K_eq/K_IC per increment of lead above which tips could separate. It is measured with
+   !! a lead of two fifths of an increment (twolevel_probe), which then changes K_eq/K_IC by twice
+   !! `same_drive` [-].
    real(rk), parameter :: could_part = 5.0_rk*same_drive
 
-   !> What a tip in company may lack of its toughness where it comes to rest: new pieces and their
-   !! meshes throw it back by some per cent [-].
+   !> Deficit of K_eq/K_IC up to which a stopped tip stays in its group: new path segments and their
+   !! meshes reduce K_eq by some per cent [-].
    real(rk), parameter :: by_chance = 0.1_rk
 
-   !> Tips on their way, and the company that they have kept so far.
+   !> Groups of tips that advance equally.
    type :: company_t
-      integer(ik), allocatable :: kind(:)  !< (tips) those of one have gone equally far
-      real(rk), allocatable :: usual(:)  !< (tips) mean of their excesses on the way [-]
-      logical, allocatable :: is_alone(:)  !< (tips) has lagged behind its company
+      integer(ik), allocatable :: kind(:)  !< (tips) number of the group, from 1
+      real(rk), allocatable :: usual(:)  !< (tips) mean excess over the last increments [-]
+      logical, allocatable :: is_alone(:)  !< (tips) has fallen behind its group, and stays alone
    contains
       procedure :: find_kinds
       procedure :: part
@@ -79,20 +81,21 @@ module growth_rivals
 
 contains
 
-   !> Nothing is known of any tip.
+   !> Start without any measurement.
    subroutine begin(self, n)
       class(rivals_t), intent(out) :: self
-      integer, intent(in) :: n  !< tips
+      integer, intent(in) :: n  !< number of tips
 
       allocate (self%matrix(n, n), self%measured(n, n), self%known_at(n), source=0.0_rk)
       allocate (self%is_known(n), source=.false.)
    end subroutine begin
 
-   !> The tips of a group whose columns are to be measured: not near the start of a piece, where its
-   !! kink and what the mesh can hold there decide.
+   !> Tips of a group whose columns are to be measured. Near the start of a path segment nothing is
+   !! measured: there the kink and the shortest advance that the mesh resolves determine the
+   !! intensities.
    pure function has_to_ask(self, group, segment) result(asked)
       class(rivals_t), intent(in) :: self
-      integer(ik), intent(in) :: group(:)  !< tips
+      integer(ik), intent(in) :: group(:)  !< tip numbers
       type(segment_t), intent(in) :: segment(:)  !< (tips)
       integer(ik), allocatable :: asked(:)
 
@@ -101,13 +104,13 @@ contains
                     - self%known_at(group) > holds_for*segment(group)%length))
    end function has_to_ask
 
-   !> A tip by itself has been moved, the others not.
+   !> Store the measurement of a column: one tip has been moved, the other tips have not.
    pure subroutine note(self, tip, moved, before, after, segment)
       class(rivals_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
-      real(rk), intent(in) :: moved  !< [m]
+      real(rk), intent(in) :: moved  !< displacement of the tip [m]
       real(rk), intent(in) :: before(:), after(:)  !< (tips) excess of K_eq over K_IC [-]
-      type(segment_t), intent(in) :: segment  !< of that tip
+      type(segment_t), intent(in) :: segment  !< path segment of the tip
 
       self%matrix(:, tip) = (after - before)/moved
       associate (share => merge(fresh, 1.0_rk, self%is_known(tip)))
@@ -117,10 +120,10 @@ contains
       self%known_at(tip) = segment%gain
    end subroutine note
 
-   !> Tips have been moved from where they were.
+   !> Broyden update from a try in which tips have been moved.
    pure subroutine learn(self, moved, outcome)
       class(rivals_t), intent(inout) :: self
-      real(rk), intent(in) :: moved(:)  !< (tips) [m]
+      real(rk), intent(in) :: moved(:)  !< (tips) displacements [m]
       real(rk), intent(in) :: outcome(:)  !< (tips) change of K_eq over K_IC [-]
       real(rk), allocatable :: matrix(:, :)
       integer(ik), allocatable :: known(:)
@@ -134,23 +137,24 @@ contains
       self%matrix(known, known) = matrix
    end subroutine learn
 
-   !> How much the lead of one tip of a group over the others drives it on, at the most [1/m].
-   !! Negative: they grow together.
+   !> Largest change of K_eq/K_IC per length by which one tip leads the others of a group [1/m].
+   !! Negative: equal growth is stable.
    pure real(rk) function preference_of(self, group)
       class(rivals_t), intent(in) :: self
-      integer(ik), intent(in) :: group(:)  !< tips
+      integer(ik), intent(in) :: group(:)  !< tip numbers
 
       preference_of = -huge(1.0_rk)
       if (.not. all(self%is_known(group))) return
       preference_of = preference(self%measured(group, group), spread(1.0_rk, 1, size(group)))
    end function preference_of
 
-   !> Influence of the advances of kinds on the excess of each.
+   !> Interaction matrix of the groups of tips. Without a measurement the diagonal term is a usual
+   !! slope.
    pure function matrix_for(self, group, kind, segment) result(matrix)
       class(rivals_t), intent(in) :: self
-      integer(ik), intent(in) :: group(:)  !< tips
-      integer(ik), intent(in) :: kind(:)  !< of each, from 1
-      type(segment_t), intent(in) :: segment(:)  !< (kinds)
+      integer(ik), intent(in) :: group(:)  !< tip numbers
+      integer(ik), intent(in) :: kind(:)  !< group of each tip, from 1
+      type(segment_t), intent(in) :: segment(:)  !< (groups)
       real(rk) :: matrix(size(segment), size(segment))  !< d(K_eq,k/K_IC)/da_l [1/m]
       integer :: k
 
@@ -162,12 +166,12 @@ contains
       end do
    end function matrix_for
 
-   !> The kinds of the tips, from 1, in an accepted state. Tips of one kind shall go on equally far.
+   !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally.
    subroutine find_kinds(self, drive, off, gain, is_arrested, increment, rivals, kind)
       class(company_t), intent(inout) :: self
       real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
-      real(rk), intent(in) :: off(:)  !< how well that is known [-]
-      real(rk), intent(in) :: gain(:)  !< how far they have come [m]
+      real(rk), intent(in) :: off(:)  !< estimated error of the excess [-]
+      real(rk), intent(in) :: gain(:)  !< growth of the tips [m]
       logical, intent(in) :: is_arrested(:)
       real(rk), intent(in) :: increment(:)  !< of the tips [m]
       type(rivals_t), intent(in) :: rivals
@@ -198,12 +202,12 @@ contains
       self%kind = kind
    end subroutine find_kinds
 
-   !> Two tips have grown, equally far, and neither would run ahead if it got a lead: what parts
-   !! them then is chance.
+   !> Whether two tips of one group have grown, and equal growth of the two is stable: only
+   !! numerical errors could separate them.
    pure logical function keep_company(self, i, j, gain, rivals, increment)
       class(company_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
-      real(rk), intent(in) :: gain  !< of the first [m]
+      real(rk), intent(in) :: gain  !< growth of the first tip [m]
       type(rivals_t), intent(in) :: rivals
       real(rk), intent(in) :: increment  !< [m]
 
@@ -213,16 +217,15 @@ contains
       keep_company = rivals%preference_of([i, j])*increment <= could_part
    end function keep_company
 
-   !> A tip that has come to rest lacks so much of its toughness that it has not got there by
-   !! itself: it has no share in what drives those that it has been like so far.
+   !> Whether a stopped tip is so far below its toughness that it no longer belongs to its group.
    elemental logical function lags_behind(excess, off)
       real(rk), intent(in) :: excess  !< of K_eq over K_IC [-]
-      real(rk), intent(in) :: off  !< how well that is known [-]
+      real(rk), intent(in) :: off  !< estimated error of the excess [-]
 
       lags_behind = excess < -max(by_chance, off)
    end function lags_behind
 
-   !> A tip has lagged behind: it is like no other from now on.
+   !> Remove a tip from its group for the rest of the run.
    pure subroutine part(self, tip)
       class(company_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
@@ -230,7 +233,7 @@ contains
       self%is_alone(tip) = .true.
    end subroutine part
 
-   !> A step is accepted.
+   !> Update the mean excess after an accepted step.
    subroutine accept(self, drive, advance, increment)
       class(company_t), intent(inout) :: self
       real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]

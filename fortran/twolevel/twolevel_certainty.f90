@@ -1,18 +1,18 @@
-!> Errors of fracture length and well pressure while tips grow in equilibrium.
+!> Estimated errors of fracture length and well pressure while tips grow in equilibrium.
 !!
 !! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid volume in the crack.
 !! If K_eq has an error e K_IC, the error of the tip position is e divided by the slope of K_eq/K_IC
 !! along the path. The pressure error follows from the derivative of the pressure with respect to
-!! the length. Both slopes are those of the tries of a step, at the fluid volume of this step. These
+!! the length. Both slopes come from the tries of a step, at the fluid volume of the step. These
 !! errors do not accumulate, since each state is in equilibrium. Before growth the time errors of
 !! the steps accumulate with their signs.
 !!
 !! The error of the coarse cells is added: at each tip a crack opens, slips and leaks as if it were
-!! longer or shorter by at most a tenth of its cell (coarse_tips: 0.05 in each). A relative error of
-!! the length along which fluid leaks off causes the same relative error of the pressure rise. Where
-!! all fluid leaks off, a crack in equilibrium grows until its true length takes the fluid, so the
-!! tip positions have the same error again. Layers of viscous flow at a tip need finer cells; their
-!! error is not included.
+!! longer or shorter by at most a tenth of the coarse cell at the tip (coarse_tips: 0.05 in each). A
+!! relative error of the length along which fluid leaks off causes the same relative error of the
+!! pressure rise. Where all fluid leaks off, a crack in equilibrium grows until the injected fluid
+!! leaks off over the true length, so the tip positions have the same error again. Layers of viscous
+!! flow at a tip need finer cells; their error is not included.
 module twolevel_certainty
    use base_kinds, only: rk
    use twolevel_course, only: course_t
@@ -21,25 +21,26 @@ module twolevel_certainty
 
    public :: certainty_t, tip_excess_t
 
-   real(rk), parameter :: share = 0.1_rk  !< of a tip's coarse cell that its place may be off [-]
+   !> error of a tip position, over the length of the coarse cell at the tip [-]
+   real(rk), parameter :: share = 0.1_rk
 
-   !> What a step tells of a tip.
+   !> Error of K_eq of a tip in a step, and the data to convert it into an error of the position.
    type :: tip_excess_t
-      logical :: grows = .false.  !< in the step
-      real(rk) :: error = 0.0_rk  !< of K_eq, over K_IC [-]
-      real(rk) :: slope = -1.0_rk  !< of K_eq over K_IC along the path, < 0 [1/m]
-      real(rk) :: cell = 0.0_rk  !< length of the coarse cell there [m]
+      logical :: grows = .false.  !< the tip has advanced in the step
+      real(rk) :: error = 0.0_rk  !< error of K_eq, over K_IC [-]
+      real(rk) :: slope = -1.0_rk  !< derivative of K_eq/K_IC along the path, < 0 [1/m]
+      real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
    end type tip_excess_t
 
-   !> What is known of both, and what the last tries and the last step tell.
+   !> Estimated errors, and the data of the last tries and of the last step.
    type :: certainty_t
-      real(rk) :: length = 0.0_rk  !< how far the length of all fractures may be off [m]
-      real(rk) :: pressure = 0.0_rk  !< how far that at the wells may be off [Pa]
-      real(rk), allocatable :: tip(:)  !< how far each tip may be off [m]
-      integer :: tries = 0  !< of the present step
-      real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two
-      real(rk) :: slope = 0.0_rk  !< of the pressure over the length [Pa/m]
-      type(course_t) :: course  !< of the pressure [Pa]
+      real(rk) :: length = 0.0_rk  !< error of the length of all fractures [m]
+      real(rk) :: pressure = 0.0_rk  !< error of the pressure at the wells [Pa]
+      real(rk), allocatable :: tip(:)  !< (tips) errors of the positions [m]
+      integer :: tries = 0  !< number of tries of the present step
+      real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two tries
+      real(rk) :: slope = 0.0_rk  !< derivative of the pressure with respect to the length [Pa/m]
+      type(course_t) :: course  !< time error of the pressure [Pa]
    contains
       procedure :: begin_step
       procedure :: see_try
@@ -48,18 +49,18 @@ module twolevel_certainty
 
 contains
 
-   !> Tries of another step follow.
+   !> Begin the tries of a new step.
    elemental subroutine begin_step(self)
       class(certainty_t), intent(inout) :: self
 
       self%tries = 0
    end subroutine begin_step
 
-   !> A try of the step, with tips where they are tried to be.
+   !> Update the derivative of the pressure from a try of the step.
    elemental subroutine see_try(self, length, pressure)
       class(certainty_t), intent(inout) :: self
-      real(rk), intent(in) :: length  !< of the fractures [m]
-      real(rk), intent(in) :: pressure  !< at the wells [Pa]
+      real(rk), intent(in) :: length  !< length of the fractures in the try [m]
+      real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
       real(rk) :: change(2)
 
       self%tried(:, 1) = self%tried(:, 2)
@@ -70,14 +71,15 @@ contains
       if (abs(change(1)) > sqrt(epsilon(1.0_rk))*length) self%slope = change(2)/change(1)
    end subroutine see_try
 
-   !> A step has been accepted.
+   !> Update the errors after an accepted step.
    pure subroutine accept(self, step, pressure, tips, length, rise, leaked)
       class(certainty_t), intent(inout) :: self
-      real(rk), intent(in) :: step  !< [s]
-      real(rk), intent(in) :: pressure  !< at the wells [Pa]
+      real(rk), intent(in) :: step  !< length of the step [s]
+      real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
       type(tip_excess_t), intent(in) :: tips(:)
-      real(rk), intent(in) :: length  !< of all fractures [m]
-      real(rk), intent(in) :: rise  !< of the pressure, from the lowest to the highest so far [Pa]
+      real(rk), intent(in) :: length  !< length of all fractures [m]
+      !> difference of the highest and the lowest pressure of the run so far [Pa]
+      real(rk), intent(in) :: rise
       real(rk), intent(in) :: leaked  !< share of the injected fluid that has leaked off [-]
 
       if (.not. allocated(self%tip)) allocate (self%tip(size(tips)), source=0.0_rk)

@@ -1,12 +1,13 @@
 !> Growth as equilibrium (model.md section 5): at the end of a time step each tip has either not
 !! advanced and K_eq <= K_IC, or advanced so far that K_eq = K_IC.
 !!
-!! Within a step the coarse level is solved from the state before, with the tips at trial positions.
-!! The windows give the intensities there, and each tip advances until its excess vanishes. A tip
-!! lies anywhere along the last straight segment of its path. The coarse mesh has a cell for the
-!! whole segment, and tip springs represent the part of the segment behind the tip (coarse_tips).
-!! The coarse mesh therefore changes once per segment, and neither its matrix nor the fluid volume
-!! jumps. A segment begins in the direction in which K_II vanishes at its end (growth_tip).
+!! Within a step the coarse level is solved from the state at the start of the step, with the tips
+!! at trial positions. The windows give the intensities, and each tip advances until its excess
+!! vanishes. A tip lies anywhere along the last straight segment of its path. The coarse mesh has a
+!! cell for the whole segment, and tip springs represent the part of the segment behind the tip
+!! (coarse_tips). The coarse mesh therefore changes once per segment, and neither its matrix nor the
+!! fluid volume jumps. A segment begins in the direction in which K_II vanishes at its end
+!! (growth_tip).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -34,48 +35,49 @@ module twolevel_equilibrium
 
    public :: accept_equilibrium, find_equilibrium, punctual
 
-   !> Excess of K_eq over K_IC, relative to that, beyond which no segment begins in a tried step:
-   !! its direction would be that of a state that never is.
+   !> Excess K_eq/K_IC - 1 above which no segment begins in a tried step: its direction would be
+   !! that of a state that does not occur [-].
    real(rk), parameter :: excess_max = 0.2_rk
 
-   !> A step that errs this much with the tips where they were cannot be taken, whatever they do
-   !! [-].
+   !> Time error of the first try, over the tolerance, above which a step is rejected before the
+   !! tips move [-].
    real(rk), parameter :: much = 4.0_rk
 
-   !> A tip comes to a joint no earlier before the end of a step, and jumps in one no longer, than
-   !! this share of the time since the wells were switched last [-].
+   !> Largest time between the connection of a tip to its target and the end of the step, and
+   !! largest step in which a tip may jump, over the time since the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
    !> A tip whose excess in the first try of a step is below the negative of this is evaluated again
    !! in the last try only [-].
    real(rk), parameter :: lack_of_far = 0.3_rk
 
-   !> A step that is being tried.
+   !> State of the tries of a step.
    type :: search_t
       real(rk) :: dt = 0.0_rk  !< [s]
-      logical :: is_last = .false.  !< its error in time is not judged
-      logical :: may_jump = .false.  !< tips may go on from piece to piece in it
-      ! Of its tries
-      real(rk), allocatable :: unmoved(:)  !< (tips) excesses of the first one [-]
-      integer(ik), allocatable :: kind(:)  !< (tips) from 1: those of one go equally far
-      logical, allocatable :: has_begun(:)  !< (tips) a new piece
+      logical :: is_last = .false.  !< last try: the time error is not checked
+      logical :: may_jump = .false.  !< tips may advance by several segments in the step
+      ! Data of the tries
+      real(rk), allocatable :: unmoved(:)  !< (tips) excess in the first try [-]
+      integer(ik), allocatable :: kind(:)  !< (tips) number of the tip group, from 1
+      logical, allocatable :: has_begun(:)  !< (tips) the tip has begun a new segment
       type(lesson_t) :: lesson
-      type(advances_t) :: advances  !< search for the places of the tips on segments
-      logical :: is_over = .false.  !< there is no more to be tried
+      type(advances_t) :: advances  !< search for the positions of the tips on their segments
+      logical :: is_over = .false.  !< the tries have ended
    end type search_t
 
 contains
 
-   !> Try a step from the last remembered state: state and tips at its end. A tip that would go on
-   !! for more than one new piece goes too far, unless it may jump: the step is so short that it
-   !! does not matter when in it that happens, or it is the last try, in which nothing but growth
-   !! happens until that arrests. Nothing is accepted yet. A step in which a tip would grow, or
-   !! might, whose intensities are not known well enough asks for better windows.
+   !> Try a step from the last stored state: find the state at its end, and the tip positions in
+   !! equilibrium. A step in which a tip would advance by more than one new segment goes too far,
+   !! unless tips may jump: then the step is so short that the time of the jump within the step does
+   !! not matter, or it is the last try, which consists of unstable growth until its arrest. Nothing
+   !! is accepted here. A step in which the intensities of a tip that grows, or might grow, are not
+   !! accurate enough returns refinements of the windows.
    subroutine find_equilibrium(self, dt, is_last, may_jump, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical, intent(in) :: is_last  !< its error in time is not judged; tips may jump
-      logical, intent(in) :: may_jump
+      logical, intent(in) :: is_last  !< last try: the time error is not checked; tips may jump
+      logical, intent(in) :: may_jump  !< tips may advance by several segments in the step
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(out) :: trial
@@ -99,7 +101,7 @@ contains
       trial%goes_too_far = .true.
    end subroutine find_equilibrium
 
-   !> Tips begin the step where they probably come.
+   !> Put the tips at their predicted positions at the end of the step.
    subroutine begin_search(self, dt, is_last, may_jump, search)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -125,11 +127,11 @@ contains
       call self%now%certainty%begin_step()
    end subroutine begin_search
 
-   !> The state and the intensities with the tips where they are tried to be.
+   !> Solve the coarse level and evaluate the intensities at the trial positions of the tips.
    subroutine find_state(self, search, is_first, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      logical, intent(in) :: is_first  !< try
+      logical, intent(in) :: is_first  !< first try of the step
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(inout) :: trial
@@ -161,20 +163,20 @@ contains
       if (.not. search%is_over) self%now%asked = are_asked(self)
    end subroutine find_state
 
-   !> Share of the step after which the first tip that has not grown before begins to [-].
+   !> Share of the step after which a tip begins to grow for the first time [-].
    pure real(rk) function onset_of(self)
       class(two_levels_t), intent(in) :: self
 
       onset_of = first_onset(self%last%front%tip, self%tip, self%now%segment, self%rules%toughness)
    end function onset_of
 
-   !> Let the tips go where their excess will probably vanish.
+   !> Move the tips to where their excess is predicted to vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
       type(timers_t), intent(inout) :: timers
-      logical, intent(out) :: any_moves  !< or is to be asked anew where it is
-      logical, intent(out) :: wants(:)  !< (tips) a new piece
+      logical, intent(out) :: any_moves  !< a tip has moved, or is to be evaluated again
+      logical, intent(out) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(error_t), allocatable, intent(out) :: error
       logical, dimension(size(self%tip)) :: in_play, moves
 
@@ -183,18 +185,18 @@ contains
       call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
       call search%lesson%begin(self%now%segment, self%tip, self%rules%toughness)
-      if (any_moves) search%advances = advances_t()  ! with the influences that have been measured
+      if (any_moves) search%advances = advances_t()  ! with the measured tip interaction
       call judge_tips(self%now%segment, self%now%rivals, shared_excesses(self), have_come(self), &
                       self%tip%arrested, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 
-   !> All tips are at rest, or at the ends of their pieces: some leave their kind, some join what
-   !! they have come to, some begin new pieces; else the state is an equilibrium.
+   !> Continue when no tip moves within its segment: some tips leave their group, some join their
+   !! targets, some begin new segments; else the state is an equilibrium.
    subroutine go_on(self, search, wants, timers, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      logical, intent(inout) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(timers_t), intent(inout) :: timers
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
@@ -204,7 +206,7 @@ contains
                         self%rules%toughness, wants, search%kind, any_parted)
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
-      ! Not while others are on their way: they may go back.
+      ! Only now: while other tips still move, they may retreat.
       if (.not. search%may_jump) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
@@ -224,14 +226,14 @@ contains
       end if
    end subroutine go_on
 
-   !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
-   !! step: then they would exceed their toughness by more than the tolerance, and the step is cut
-   !! to where their excess vanishes. Where tips may jump, straight lines say nothing of that: the
-   !! step is halved, until it is the last try.
+   !> Stop tips that have grown by the prescribed gain, unless they reach it too early in the step:
+   !! then K_eq would exceed the toughness by more than the tolerance, and the step is cut to the
+   !! time at which the excess vanishes. Where tips may jump, linear interpolation does not give
+   !! this time: the step is halved, until the last try.
    subroutine stop_gained(self, search, wants, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      logical, intent(inout) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(trial_t), intent(inout) :: trial
       logical :: stops(size(wants))
 
@@ -252,8 +254,8 @@ contains
       search%is_over = trial%goes_too_far .or. trial%is_late
    end subroutine stop_gained
 
-   !> Tips join what they have come to, unless that is too early in the step. The error in time is
-   !! that up to the joint: what follows is a jump.
+   !> Connect tips to their targets, unless they reach them too early in the step. The time error is
+   !! that up to the connection, which is a jump.
    subroutine join(self, search, joins, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -275,7 +277,7 @@ contains
       search%advances = advances_t()
    end subroutine join
 
-   !> Tips begin new pieces, unless they have gone too far by that, or are not known well enough.
+   !> Begin new segments, unless the step goes too far, or the intensities are not accurate enough.
    subroutine begin_wanted(self, search, wants, timers, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -296,13 +298,13 @@ contains
          if (any(wants .and. (search%has_begun .or. &
                               self%tip%excess(toughness) > excess_max))) then
             trial%jumps = .true.
-            trial%time_error = 0.0_rk  ! what jumps has no rates
+            trial%time_error = 0.0_rk  ! jumps have no rates
          end if
          trial%goes_too_far = trial%jumps .and. .not. search%may_jump
          search%is_over = trial%goes_too_far
          if (search%is_over) then
             trial%was_beyond = any(wants .and. before > excess_max)
-            ! From where they come to the toughness on, not from the start of the step.
+            ! Onset at the time when the tips reach the toughness, not at the start of the step.
             trial%onset = onset(before, search%unmoved, wants)
             return
          end if
@@ -317,14 +319,14 @@ contains
          end do
          call keep_together(self%now%segment, search%kind)
       end if
-      ! Not those that have come to something already: nothing lies between.
+      ! Without the tips whose whole segment is a ligament.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
-      search%lesson = lesson_t()  ! of other pieces
+      search%lesson = lesson_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted
 
-   !> No tip is to go on. If that holds for those that have not been asked too, and all are known
-   !! well enough, the state is an equilibrium.
+   !> End the tries: no tip is to advance. If the tips that have not been evaluated do not exceed
+   !! the toughness either, and all intensities are accurate enough, the state is an equilibrium.
    subroutine conclude(self, search, timers, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -348,8 +350,8 @@ contains
       call find_improvements(self, self%before%time, trial%improvements)
    end subroutine conclude
 
-   !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
-   !! from their toughness, known as well as that is.
+   !> Tips that may grow in a step, according to its first try: tips on open segments, and tips that
+   !! are near their toughness within the error of their intensities.
    pure function are_asked(self) result(asked)
       class(two_levels_t), intent(in) :: self
       logical :: asked(size(self%tip))
@@ -360,10 +362,10 @@ contains
       end associate
    end function are_asked
 
-   !> Evaluate the tips that the tries of a step have not asked for. From now on all are asked.
+   !> Evaluate the tips that the tries of a step have left out. All tips are evaluated from now on.
    subroutine ask_others(self, any_exceeds, timers, error)
       class(two_levels_t), intent(inout) :: self
-      logical, intent(out) :: any_exceeds  !< its toughness
+      logical, intent(out) :: any_exceeds  !< one of these tips exceeds its toughness
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       logical :: others(size(self%tip))
@@ -378,16 +380,17 @@ contains
       any_exceeds = any(others .and. self%tip%excess(self%rules%toughness) > tolerance)
    end subroutine ask_others
 
-   !> The tried state is accepted.
+   !> Accept the tried state.
    subroutine accept_equilibrium(self, dt)
       class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
+      !> length of the step; 0: the speeds of the tips do not apply to the next step [s]
+      real(rk), intent(in) :: dt
 
       self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
                                   self%increments())
       call self%now%segment%pace(self%tip%advance, dt, &
                                  self%tip%excess(self%rules%toughness) >= -tolerance)
-      where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
+      where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! straight segments
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%company%accept(self%tip%excess(self%rules%toughness), &
                                    self%tip%advance, self%increments())

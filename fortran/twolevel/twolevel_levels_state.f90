@@ -17,44 +17,46 @@ module twolevel_levels_state
 
    public :: checkpoint_t, different_part, equal, fluid_totals_t, levels_state_t, part_t, parts
 
-   !> Where the fluid of all steps so far has gone [m2].
+   !> Fluid volumes of all steps so far [m2].
    type :: fluid_totals_t
-      real(rk) :: injected = 0.0_rk  !< less what was produced
-      real(rk) :: produced = 0.0_rk  !< that wells have drawn
+      real(rk) :: injected = 0.0_rk  !< injected minus produced
+      real(rk) :: produced = 0.0_rk  !< drawn by wells
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock
       real(rk) :: outflow = 0.0_rk  !< through ends of fractures on the boundary
-      real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells
-      real(rk) :: mass_error = 0.0_rk  !< what appeared or vanished
+      real(rk) :: prefilled = 0.0_rk  !< contained in new fracture cells
+      real(rk) :: mass_error = 0.0_rk  !< error of the balance
    end type fluid_totals_t
 
-   !> All but tips and network, which both ways of simulating have (growth_front).
+   !> State of both levels without tips and fine network (growth_front).
    type :: levels_state_t
-      type(state_t) :: coarse  !< of the coarse level, on its mesh
-      type(network_t) :: coarse_network  !< that this has; the fine one is ahead of it
-      integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
-      logical :: has_new_mesh = .false.  !< since the last accepted state
+      type(state_t) :: coarse  !< coarse level, on its mesh
+      type(network_t) :: coarse_network  !< coarse network; the fine network is ahead of it
+      integer(ik), allocatable :: grown(:)  !< fracture cells added by the last growth
+      logical :: has_new_mesh = .false.  !< the mesh has changed since the last accepted state
       logical :: undrained = .false.  !< the state is the undrained response to the load
-      type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
-      !> (tips) those that are evaluated; unallocated: all. Tries of a step need no others.
+      type(segment_t), allocatable :: segment(:)  !< (tips) last path segments
+      !> (tips) tips that are evaluated; unallocated: all. The tries of a step do not need the
+      !! others.
       logical, allocatable :: asked(:)
-      type(rivals_t) :: rivals  !< how the tips act on each other
-      type(company_t) :: company  !< which of them grow as one
+      type(rivals_t) :: rivals  !< tip interaction matrix
+      type(company_t) :: company  !< tip groups
       type(windows_state_t) :: windows
-      type(windows_state_t) :: reference  !< of the body as one window
+      type(windows_state_t) :: reference  !< state of the body as one window
       type(trend_t) :: trend  !< rates of the last accepted step
-      type(certainty_t) :: certainty  !< how well lengths and pressures are known
+      type(certainty_t) :: certainty  !< estimated errors of lengths and pressures
       type(fluid_totals_t) :: fluid
-      real(rk), allocatable :: given(:)  !< (controlled wells) since they were last switched [m2]
-      logical, allocatable :: at_limit(:)  !< (controlled wells) flow at less than their rate
+      real(rk), allocatable :: given(:)  !< (controlled wells) volumes since the last switch [m2]
+      !> (controlled wells) wells whose rate is reduced by a limit
+      logical, allocatable :: at_limit(:)
    end type levels_state_t
 
-   !> All of it.
+   !> Complete state of a simulation.
    type :: checkpoint_t
       type(front_state_t) :: front
       type(levels_state_t) :: levels
    end type checkpoint_t
 
-   !> A part of a state as numbers, to compare it with that of another one.
+   !> A part of a state as numbers, for comparisons.
    type :: part_t
       character(len=:), allocatable :: name
       real(rk), allocatable :: value(:)
@@ -62,14 +64,14 @@ module twolevel_levels_state
 
 contains
 
-   !> Two states are the same to the last bit.
+   !> Whether two states are equal to the last bit.
    pure logical function equal(a, b)
       type(checkpoint_t), intent(in) :: a, b
 
       equal = len(different_part(a, b)) == 0
    end function equal
 
-   !> The name of the first part in which two states differ; empty: they are the same.
+   !> Name of the first part in which two states differ; empty: the states are equal.
    pure function different_part(a, b) result(name)
       type(checkpoint_t), intent(in) :: a, b
       character(len=:), allocatable :: name
@@ -88,7 +90,7 @@ contains
       if (size(of_a) /= size(of_b)) name = "parts"
    end function different_part
 
-   !> The parts of a state, in the order of its components.
+   !> Parts of a state, in the order of its components.
    pure function parts(state) result(list)
       type(checkpoint_t), intent(in) :: state
       type(part_t), allocatable :: list(:)
@@ -198,7 +200,7 @@ contains
       end associate
    end function certainty_part
 
-   !> Tips have no components but plain ones, some of them private.
+   !> Bytes of the tips, which have only non-allocatable components, some of them private.
    pure function bytes_of_tips(tip) result(values)
       type(tip_t), allocatable, intent(in) :: tip(:)
       real(rk), allocatable :: values(:)
@@ -207,7 +209,7 @@ contains
       if (allocated(tip)) values = real(transfer(tip, [0_int8]), rk)
    end function bytes_of_tips
 
-   !> So have segments.
+   !> Bytes of the segments, which have only non-allocatable components.
    pure function bytes_of_segments(segment) result(values)
       type(segment_t), allocatable, intent(in) :: segment(:)
       real(rk), allocatable :: values(:)

@@ -21,13 +21,17 @@ module twolevel_notes
 
    public :: note_certainty, note_excess, notes_t
 
-   !> What has been noted so far.
+   !> Events written so far, and the data for those to come.
    type :: notes_t
-      type(approach_t), allocatable, private :: approach(:)  !< (tips) to their first growth
-      logical, allocatable :: is_uncertain(:)  !< (tips) stated with considerable errors of growth
-      logical, private :: was_bifurcation = .false.  !< in the last step with growth
-      logical, allocatable, private :: grew_together(:, :)  !< (tips, tips) as members of one group
-      logical, allocatable, private :: has_separated(:)  !< (tips) from such a tip
+      !> (tips) data before the onset of growth
+      type(approach_t), allocatable, private :: approach(:)
+      !> (tips) considerable errors of growth have been stated
+      logical, allocatable :: is_uncertain(:)
+      logical, private :: was_bifurcation = .false.  !< tips competed in the last step with growth
+      !> (tips, tips) the two tips have grown as members of one group
+      logical, allocatable, private :: grew_together(:, :)
+      !> (tips) the tip has separated from a tip of its group
+      logical, allocatable, private :: has_separated(:)
    contains
       procedure :: begin
       procedure :: note_onsets
@@ -37,7 +41,7 @@ module twolevel_notes
 
 contains
 
-   !> No tip has grown.
+   !> Start before any growth.
    subroutine begin(self, n)
       class(notes_t), intent(out) :: self
       integer, intent(in) :: n  !< tips
@@ -47,7 +51,8 @@ contains
       allocate (self%grew_together(n, n), source=.false.)
    end subroutine begin
 
-   !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
+   !> Report the onset of growth: the time at which the tip reached K_IC, once the tip has advanced
+   !! for the first time.
    subroutine note_onsets(self, tips, segments, toughness, time, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -79,8 +84,9 @@ contains
       end do
    end subroutine note_onsets
 
-   !> The tips that the initial state leaves above their toughness. It is what the scene says, so
-   !! nothing grows in it; what it bears too much is in no equilibrium and grows at once.
+   !> Report the tips above their toughness in the initial state. Tips do not grow in the state that
+   !! the scene prescribes; above the toughness they are not in equilibrium, and grow in the first
+   !! step.
    subroutine note_excess(tips, toughness, time, chronicle)
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
@@ -98,7 +104,7 @@ contains
       end do
    end subroutine note_excess
 
-   !> Tips of which one could run ahead of the others.
+   !> Report tips of which one could run ahead of the others.
    subroutine note_competition(self, tips, rivals, increment, time, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -158,7 +164,7 @@ contains
       end do
    end subroutine note_separation
 
-   !> How well length and pressure are known in the state that a step of length dt has led to.
+   !> Update the estimated errors of length and pressure after a step of length dt.
    subroutine note_certainty(scene, front, problem, dt, now)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front

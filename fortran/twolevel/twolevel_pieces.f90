@@ -26,13 +26,15 @@ module twolevel_pieces
 
    public :: begin_pieces, can_join, comes_to, have_come, join_targets
 
-   !> Share of the last piece that fails at once where the tip exceeds its toughness before it.
+   !> Ligament at the end of the last path segment, over the length of the segment: it breaks at
+   !! once where K_eq exceeds the toughness before it [-].
    real(rk), parameter :: rest = 0.05_rk
 
 contains
 
-   !> New pieces for tips, which stand at the ends of their paths: their directions are found in the
-   !! tried state; then the coarse level, back in the state before the step, gets their cells.
+   !> Begin new segments for tips at the ends of their paths: find the directions in the tried
+   !! state, return the coarse level to the state before the step, and add the new cells to its
+   !! mesh.
    subroutine begin_pieces(self, wants, timers, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: wants(:)  !< (tips)
@@ -74,8 +76,8 @@ contains
       self%before = self%now%coarse
    end subroutine begin_pieces
 
-   !> Where a tip goes, by the criterion in the present state, before the direction of a new piece
-   !! is corrected.
+   !> Direction of a tip by the criterion in the present state, before the direction of a new
+   !! segment is corrected.
    pure function way_ahead(tip, increment) result(direction)
       type(tip_t), intent(in) :: tip
       real(rk), intent(in) :: increment  !< [m]
@@ -88,7 +90,7 @@ contains
       direction = turned(tip%direction, kink)
    end function way_ahead
 
-   !> Tips with nothing but the rest of a piece before them.
+   !> Whether only a ligament is left ahead of each tip.
    pure function have_come(self)
       class(two_levels_t), intent(in) :: self
       logical :: have_come(size(self%tip))
@@ -106,7 +108,7 @@ contains
       end do
    end function have_come
 
-   !> What a tip that goes straight on comes to is no farther than the rest of a piece.
+   !> Whether the target straight ahead of a tip is no farther than a ligament.
    pure logical function has_come(self, i, from, direction)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
@@ -121,14 +123,15 @@ contains
                  <= rest*self%rules%increment_of(self%tip(i)%fracture)
    end function has_come
 
-   !> Where new pieces end, in the directions that have been found. Tips that head for each other
-   !! meet half way, or where one of them is if they are that near.
+   !> Find the ends of new segments in their directions. Tips that are each other's targets meet
+   !! half way, or at one of the two tips if these are no farther apart than a ligament.
    subroutine end_pieces(self, before, ahead, is_new, centres)
       class(two_levels_t), intent(inout) :: self
-      type(tip_t), intent(in) :: before(:)  !< the tips as they were before their new pieces
-      real(rk), intent(in) :: ahead(:, :)  !< (2, tips) directions of the pieces, unit vectors
+      type(tip_t), intent(in) :: before(:)  !< tips before their new segments
+      real(rk), intent(in) :: ahead(:, :)  !< (2, tips) directions of the segments, unit vectors
       logical, intent(inout) :: is_new(:)  !< (tips)
-      real(rk), allocatable, intent(out) :: centres(:, :)  !< (2, n) where the network changes [m]
+      !> (2, n) points where the network changes [m]
+      real(rk), allocatable, intent(out) :: centres(:, :)
       logical :: has_end(size(self%tip))
       real(rk) :: to(2, size(self%tip))
       integer(ik) :: i, j, target(size(self%tip))
@@ -160,7 +163,7 @@ contains
       end do
       do i = 1, size(self%tip, kind=ik)
          if (.not. is_new(i)) cycle
-         ! Pieces that have just been made may lie ahead of it.
+         ! Segments created in this loop may lie ahead of the tip.
          if (.not. has_end(i)) call find_end(self, i, ahead(:, i), target(i), to(:, i))
          if (target(i) /= target_none .and. &
              norm2(to(:, i) - self%tip(i)%origin) &
@@ -180,10 +183,10 @@ contains
       end do
    end subroutine end_pieces
 
-   !> A tip has no new piece after all.
+   !> Remove the new segment of a tip.
    subroutine take_back(self, before, i)
       class(two_levels_t), intent(inout) :: self
-      type(tip_t), intent(in) :: before  !< it, as it was without
+      type(tip_t), intent(in) :: before  !< the tip before its new segment
       integer(ik), intent(in) :: i  !< tip
 
       associate (tip => self%tip(i), network => self%network)
@@ -195,7 +198,7 @@ contains
       end associate
    end subroutine take_back
 
-   !> Where the last piece of a tip ends, and on what.
+   !> Find the end and the target of the last segment of a tip.
    pure subroutine find_end(self, i, direction, target, to)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
@@ -211,11 +214,11 @@ contains
       end associate
    end subroutine find_end
 
-   !> All that is left of the way to what a tip heads for is the rest that fails at once.
+   !> Make the whole segment of a tip a ligament.
    subroutine stay_before(self, i, to)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: to(2)  !< the place that it heads for [m]
+      real(rk), intent(in) :: to(2)  !< position of the target [m]
 
       associate (tip => self%tip(i))
          call self%now%segment(i)%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), &
@@ -224,12 +227,12 @@ contains
       end associate
    end subroutine stay_before
 
-   !> Let a tip go along a piece from where its last one has ended.
+   !> Open a new segment from the end of the last one.
    pure subroutine open_piece(self, i, to)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: to(2)  !< where it ends [m]
-      real(rk) :: gain  ! up to its start [m]
+      real(rk), intent(in) :: to(2)  !< end of the segment [m]
+      real(rk) :: gain  ! growth up to the start of the segment [m]
 
       associate (tip => self%tip(i), segment => self%now%segment(i))
          if (tip%heads_for /= target_none) tip%direction = (to - tip%origin)/norm2(to - tip%origin)
@@ -241,8 +244,8 @@ contains
       end associate
    end subroutine open_piece
 
-   !> Tips that have come so near to what they head for that only the rest has to fail, where that
-   !! is broken itself.
+   !> Whether each tip can join its target: only the ligament is left, and the target is a broken
+   !! part of its fracture, a side of the body, or a tip that can join as well.
    pure function can_join(self)
       class(two_levels_t), intent(in) :: self
       logical :: can_join(size(self%tip))
@@ -261,8 +264,8 @@ contains
       end do
    end function can_join
 
-   !> A tip heads for another one that stands there. The rock between them is one: what breaks it
-   !! from either side lets the first one go on, for the other has no way of its own.
+   !> Whether the target of tip i is another tip j that does not advance. They share one ligament:
+   !! if it breaks from either side, tip i joins, since tip j has no segment of its own.
    pure logical function comes_to(self, i, j)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
@@ -274,7 +277,7 @@ contains
       end associate
    end function comes_to
 
-   !> The place that a tip heads for [m].
+   !> Position of the target of a tip [m].
    pure function joint_of(self, i) result(xy)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
@@ -283,7 +286,7 @@ contains
       xy = end_place(self%now%coarse_network, self%tip(i)%fracture, self%tip(i)%end)
    end function joint_of
 
-   !> A place on the path of a fracture lies behind its tips.
+   !> Whether a point on the path of a fracture lies behind its tips.
    pure logical function is_broken(self, fracture, xy)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
@@ -299,7 +302,7 @@ contains
       end associate
    end function is_broken
 
-   !> Two tips head for one place and have both come near to it.
+   !> Whether two tips have the same target, and only ligaments are left before both.
    pure logical function meet(self, i, j)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
@@ -312,7 +315,8 @@ contains
                        <= same_place*self%rules%increment
    end function meet
 
-   !> The rests of some pieces fail. What a tip comes to may be another one, which ends there too.
+   !> Break the ligaments of tips and connect them to their targets. A target may be another tip,
+   !! whose path ends there too.
    subroutine join_targets(self, joins)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: joins(:)  !< (tips)

@@ -1,7 +1,7 @@
-!> Interaction of tips with a fluid: measured in a tried step by setting back one tip after the
-!! other, and improved by Broyden updates in the tries that follow.
+!> Tip interaction in scenes with a fluid: measured in a tried step by setting back one tip after
+!! the other, and improved by Broyden updates in the tries that follow.
 !!
-!! The step begins from the state before, so the fluid volume supplied by the wells is fixed. The
+!! The step begins from the previous state, so the fluid volume supplied by the wells is fixed. The
 !! coarse level keeps mesh and factors, since tips lie anywhere in their cells (coarse_tips). A tip
 !! costs one solution of the coarse level, two meshes of the windows that contain the tip, and one
 !! solution of each window.
@@ -20,14 +20,14 @@ module twolevel_probe
 
    public :: lesson_t, measure_rivals
 
-   !> How far a tip is set back, as a share of its piece: the intensities of new windows differ by
-   !! some tenths of a per cent.
+   !> Distance by which a tip is set back, over the length of its segment: the intensities of new
+   !! meshes differ by some tenths of a per cent [-].
    real(rk), parameter :: probe = 0.4_rk
 
-   !> A try, from which the next one teaches.
+   !> Data of a try for the Broyden update in the next one.
    type :: lesson_t
-      real(rk), allocatable :: reached(:)  !< (tips) along their pieces [m]
-      real(rk), allocatable :: excess(:)  !< (tips) over the toughness [-]
+      real(rk), allocatable :: reached(:)  !< (tips) positions along their segments [m]
+      real(rk), allocatable :: excess(:)  !< (tips) excesses over the toughness [-]
    contains
       procedure :: begin
       procedure :: tell
@@ -35,8 +35,8 @@ module twolevel_probe
 
 contains
 
-   !> Measure what is not known of the tips in play, if there are several. Windows and coarse level
-   !! have to be asked anew then.
+   !> Measure missing columns of the tip interaction matrix, if several tips are in play. If columns
+   !! have been measured, the coarse level and the windows are to be evaluated again.
    subroutine measure_rivals(self, in_play, dt, timers, has_measured, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: in_play(:)  !< (tips)
@@ -82,7 +82,7 @@ contains
       call go_back(self%now%coarse, state)
    end subroutine measure_rivals
 
-   !> Remember a try.
+   !> Store a try.
    subroutine begin(self, segments, tips, toughness)
       class(lesson_t), intent(out) :: self
       type(segment_t), intent(in) :: segments(:)  !< (tips)
@@ -93,7 +93,7 @@ contains
       self%excess = tips%excess(toughness)
    end subroutine begin
 
-   !> What the last try has shown beside the one before.
+   !> Broyden update of the tip interaction matrix with the changes since the last try.
    subroutine tell(self, segments, tips, toughness, rivals)
       class(lesson_t), intent(in) :: self
       type(segment_t), intent(in) :: segments(:)  !< (tips)

@@ -1,4 +1,4 @@
-!> Tips that are alike count as one, whatever their order.
+!> Tip groups: equal tips count as one, whatever their order.
 program test_growth_kinds
    use base_kinds, only: ik, rk
    use growth_competition, only: likes, matrix_of_kinds, means, numbered, of_kinds
@@ -13,8 +13,8 @@ program test_growth_kinds
 
 contains
 
-   !> Of six tips 2, 5, 4 form a chain, and 1 and 6 a pair that only one of them knows of; any order
-   !! of them gives the same kinds.
+   !> Of six tips 2, 5, 4 form a chain, and 1 and 6 a pair that is marked for only one of them; any
+   !! order of the tips leads to the same groups.
    subroutine test_likes()
       integer(ik), parameter :: expected(6) = [1_ik, 2_ik, 3_ik, 2_ik, 2_ik, 1_ik]
       logical :: alike(6, 6), turned(6, 6)
@@ -43,7 +43,8 @@ contains
                           "numbers of marks")
    end subroutine test_likes
 
-   !> Two kinds of three tips: if the first and third move by one, the means change so.
+   !> Two groups of three tips: changes of the group means if the first and third tip advance by
+   !! one.
    subroutine test_values()
       integer(ik), parameter :: kind(3) = [1_ik, 2_ik, 1_ik]
       real(rk) :: matrix(3, 3), moved(3), reduced(2, 2)

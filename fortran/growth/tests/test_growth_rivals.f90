@@ -1,4 +1,4 @@
-!> Tips that act on each other, without a mesh: intensities that are linear in their places.
+!> Tip interaction without a mesh: intensities that are linear in the positions of the tips.
 program test_growth_rivals
    use base_kinds, only: ik, rk
    use growth_rivals, only: rivals_t
@@ -8,7 +8,7 @@ program test_growth_rivals
 
    integer, parameter :: n = 4
    integer(ik), parameter :: all_tips(n) = [1_ik, 2_ik, 3_ik, 4_ik]
-   real(rk), parameter :: own = -0.6_rk, shadow = -0.9_rk  !< per length of a piece
+   real(rk), parameter :: own = -0.6_rk, shadow = -0.9_rk  !< per length of a segment
    type(checks_t) :: checks
 
    call test_measure()
@@ -18,8 +18,8 @@ program test_growth_rivals
 
 contains
 
-   !> Two cracks with two tips each: tips of one crack do not act on each other, those of the other
-   !! one shade them.
+   !> Two cracks with two tips each: tips of one crack do not interact, those of the other crack
+   !! shield them.
    pure function truth() result(matrix)
       real(rk) :: matrix(n, n)
       integer :: i, j
@@ -32,7 +32,7 @@ contains
       end do
    end function truth
 
-   !> Tips half along pieces of one metre.
+   !> Tips half way along segments of one metre.
    pure function pieces() result(segment)
       type(segment_t) :: segment(n)
       integer :: i
@@ -44,7 +44,8 @@ contains
       end do
    end function pieces
 
-   !> Moved one after the other: then all is known, until they have gone far.
+   !> Measure all columns, one tip after the other; they stay known until the tips have advanced
+   !! far.
    subroutine measure(rivals, segment)
       type(rivals_t), intent(out) :: rivals
       type(segment_t), intent(in) :: segment(n)
@@ -79,8 +80,8 @@ contains
                            "the tips of one grow together")
    end subroutine test_measure
 
-   !> A try that errs by less than the meshes teaches nothing; one that errs more is told right
-   !! then. What was measured stays.
+   !> A try whose prediction errs by less than the meshes changes nothing; after one that errs more
+   !! the prediction is exact. The measured values stay.
    subroutine test_learning()
       type(rivals_t) :: rivals
       type(segment_t) :: segment(n)
@@ -99,8 +100,8 @@ contains
       call checks%is_close(maxval(abs(rivals%measured - truth())), 0.0_rk, 1.0e-15_rk, "measured")
    end subroutine test_learning
 
-   !> Influences of kinds: those of their tips together, or the slope of a segment where a tip has
-   !! not been measured.
+   !> Interaction of groups: the sum over their tips, or the slope of a segment where a tip has not
+   !! been measured.
    subroutine test_matrix()
       type(rivals_t) :: rivals
       type(segment_t) :: segment(n)

@@ -1,5 +1,5 @@
 !> Stated errors of length and pressure: exact for a crack whose K_eq/K_IC and pressure are linear
-!! in its length, and for a pressure with a constant second derivative in time before it grows.
+!! in its length, and for a pressure with a constant second derivative in time before growth.
 program test_twolevel_certainty
    use base_kinds, only: rk
    use testing_checks, only: checks_t
@@ -14,10 +14,10 @@ program test_twolevel_certainty
 
 contains
 
-   !> K_eq/K_IC falls by 5 per metre at either of two tips, the pressure by 1e6 Pa per metre of
-   !! length. With 1 % in K_eq a tip is off by 2 mm, the pressure by 4 kPa; a tenth of the cells of
-   !! 10 mm adds 1 mm each and, with half of the fluid leaked off, half of that, and 1 % of the 3e6
-   !! Pa that the pressure has risen on 0.2 m.
+   !> K_eq/K_IC decreases by 5 per metre at either of two tips, the pressure by 1e6 Pa per metre of
+   !! length. With an error of 1 % of K_eq the error of a tip is 2 mm, that of the pressure 4 kPa; a
+   !! tenth of the cells of 10 mm adds 1 mm each and, with half of the fluid leaked off, half of
+   !! that, and 1 % of the pressure rise of 3e6 Pa on 0.2 m.
    subroutine test_growth()
       type(certainty_t) :: certainty
 
@@ -27,7 +27,7 @@ contains
       call accept(certainty, [.true., .true.])
       call checks%is_close(certainty%length, 7.0e-3_rk, 1.0e-12_rk, "length")
       call checks%is_close(certainty%pressure, 7.0e3_rk + 0.01_rk*3.0e6_rk, 1.0e-3_rk, "pressure")
-      ! A tip that rests stays as far off as it was.
+      ! The error of a stopped tip stays.
       call accept(certainty, [.false., .false.])
       call checks%is_close(certainty%length, 7.0e-3_rk, 1.0e-12_rk, "length at rest")
 
@@ -43,8 +43,8 @@ contains
                             0.2_rk, 3.0e6_rk, 0.5_rk)
    end subroutine accept
 
-   !> p' = 2 t by backward Euler with the step h is h t too large at t; of the first step, which has
-   !! none to compare with, h**2 is not known.
+   !> p' = 2 t by backward Euler with the step h is h t too large at t; the error h**2 of the first
+   !! step, which has no rate to compare with, is not known.
    subroutine test_steps()
       type(certainty_t) :: certainty
       real(rk), parameter :: h = 0.1_rk
