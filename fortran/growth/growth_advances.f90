@@ -16,7 +16,7 @@
 !! where other tips have grown past it.
 module growth_advances
    use base_kinds, only: rk
-   use growth_competition, only: complementary_advances, learn_from_trial
+   use growth_competition, only: complementary_advances, broyden_update
    implicit none(type, external)
    private
 
@@ -56,7 +56,7 @@ module growth_advances
       procedure :: begin
       procedure :: improve
       procedure, private :: judge
-      procedure, private :: learn
+      procedure, private :: update_matrix
       procedure, private :: propose
       procedure, private :: advance
    end type advances_t
@@ -94,7 +94,7 @@ contains
       logical :: is_stuck
 
       self%evaluations = self%evaluations + 1
-      if (self%evaluations > 1) call self%learn(excess)
+      if (self%evaluations > 1) call self%update_matrix(excess)
       if (.not. self%is_monotone) call self%judge(excess)
       has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance))
       if (.not. has_moved) return
@@ -153,7 +153,7 @@ contains
    end subroutine judge
 
    !> Broyden update of the matrix, with advances scaled by the lengths of the segments.
-   pure subroutine learn(self, excess)
+   pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
       real(rk) :: scaled(size(excess), size(excess))
@@ -163,12 +163,12 @@ contains
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
          end do
-         call learn_from_trial(scaled, (self%place - self%best)/length, excess - self%excess)
+         call broyden_update(scaled, (self%place - self%best)/length, excess - self%excess)
          do j = 1, size(excess)
             self%matrix(:, j) = scaled(:, j)/length(j)
          end do
       end associate
-   end subroutine learn
+   end subroutine update_matrix
 
    !> Solve the linear problem within the trust region around the best position. Tips at an upper
    !! bound stay there if they would retreat by no more than `sliver`.

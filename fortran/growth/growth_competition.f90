@@ -25,8 +25,8 @@ module growth_competition
    implicit none(type, external)
    private
 
-   public :: complementary_advances, learn_from_trial, likes, matrix_of_kinds, means, numbered
-   public :: of_kinds, preference
+   public :: complementary_advances, broyden_update, likes, matrix_of_groups, means, numbered
+   public :: values_of_groups, preference
 
    ! Position of a tip with respect to its bounds.
    integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
@@ -124,7 +124,7 @@ contains
 
    !> Broyden update of the matrix: the smallest change (Frobenius norm) with which the matrix
    !! predicts the measured change of the intensities (Broyden 1965).
-   pure subroutine learn_from_trial(matrix, change, outcome)
+   pure subroutine broyden_update(matrix, change, outcome)
       real(rk), intent(inout) :: matrix(:, :)  !< M [Pa m^-1/2]
       real(rk), intent(in) :: change(:)  !< change of the advances [m]
       real(rk), intent(in) :: outcome(:)  !< change of the intensities at constant load [Pa m^1/2]
@@ -137,7 +137,7 @@ contains
       do j = 1, size(change)
          matrix(:, j) = matrix(:, j) + missed*change(j)/length
       end do
-   end subroutine learn_from_trial
+   end subroutine broyden_update
 
    !> Largest eigenvalue of M on the advances on which the load does no work. Negative: equal growth
    !! of the group is stable. A group of one tip cannot separate: -huge.
@@ -229,7 +229,7 @@ contains
 
    !> Interaction matrix of the groups: mean change of a group's intensities per advance of all tips
    !! of another group.
-   pure function matrix_of_kinds(kind, matrix) result(reduced)
+   pure function matrix_of_groups(kind, matrix) result(reduced)
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       real(rk), intent(in) :: matrix(:, :)
       real(rk) :: reduced(maxval(kind), maxval(kind))
@@ -242,10 +242,10 @@ contains
                                         + matrix(i, j)/count(kind == kind(i))
          end do
       end do
-   end function matrix_of_kinds
+   end function matrix_of_groups
 
    !> One value per group: that of its first tip.
-   pure function of_kinds(kind, values) result(each)
+   pure function values_of_groups(kind, values) result(each)
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       real(rk), intent(in) :: values(:)
       real(rk) :: each(maxval(kind))
@@ -254,6 +254,6 @@ contains
       do k = 1, size(each)
          each(k) = values(findloc(kind, k, dim=1))
       end do
-   end function of_kinds
+   end function values_of_groups
 
 end module growth_competition

@@ -171,7 +171,7 @@ contains
       end do
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
-         call self%tip(i)%settle(-self%tip(i)%intensity%k2)
+         call self%tip(i)%commit(-self%tip(i)%intensity%k2)
       end do
       call join_tips(self, advance, any_joined)
       if (any_joined) call self%evaluate(timers, error)
@@ -225,7 +225,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. advance(i) > 0.0_rk .or. self%tip(i)%arrested) cycle
          associate (tip => self%tip(i))
-            call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
+            call tip%predict(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
                              kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
             if (self%rules%heads) then
@@ -359,9 +359,11 @@ contains
       to = at
       self%tip(i)%target = target
       self%tip(i)%joined = .true.
-      call self%tip(i)%cease()
+      call self%tip(i)%deactivate()
       do k = 1, size(self%tip)
-         if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) call self%tip(k)%cease()
+         if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) then
+            call self%tip(k)%deactivate()
+         end if
       end do
    end subroutine join_at_once
 
@@ -389,7 +391,7 @@ contains
             if (comes_to(k, i)) then
                middle(:, i) = 0.5_rk*(self%tip(i)%origin + self%tip(k)%origin)
             else
-               call self%tip(k)%cease()
+               call self%tip(k)%deactivate()
             end if
          end do
       end do
@@ -399,7 +401,7 @@ contains
          associate (tip => self%tip(i))
             tip%target = target(i)
             tip%joined = .true.
-            call tip%cease()
+            call tip%deactivate()
             tip%xy = middle(:, i)
             tip%advance = norm2(tip%xy - tip%origin)
             call move_end(self%network, tip%fracture, tip%end, tip%xy)

@@ -10,7 +10,7 @@ module growth_segment
    type :: segment_t
       logical :: is_open = .false.  !< the tip is between the start and the end of the segment
       !> the whole segment is a ligament, which breaks at once at the toughness
-      logical, private :: is_rest = .false.
+      logical, private :: is_ligament = .false.
       real(rk) :: start(2) = 0.0_rk  !< [m]
       real(rk) :: direction(2) = 0.0_rk  !< unit vector
       real(rk) :: length = 0.0_rk  !< [m]
@@ -22,7 +22,7 @@ module growth_segment
       real(rk), private :: speed = 0.0_rk  !< speed of the tip in the last step [m/s]
    contains
       procedure :: open_segment
-      procedure :: leave_rest
+      procedure :: exclude_ligament
       procedure :: stop_after
       procedure :: stay_at_start
       procedure :: stays
@@ -63,7 +63,7 @@ contains
       real(rk), intent(in) :: length  !< [m]
 
       self%is_open = .true.
-      self%is_rest = .false.
+      self%is_ligament = .false.
       self%start = start
       self%direction = direction
       self%length = length
@@ -73,14 +73,14 @@ contains
    end subroutine open_segment
 
    !> Exclude the ligament: the tip advances along the rest of the segment only.
-   elemental subroutine leave_rest(self, rest)
+   elemental subroutine exclude_ligament(self, ligament)
       class(segment_t), intent(inout) :: self
-      real(rk), intent(in) :: rest  !< ligament, over the length of the segment [-]
+      real(rk), intent(in) :: ligament  !< ligament, over the length of the segment [-]
 
-      self%length = (1.0_rk - rest)*self%length
+      self%length = (1.0_rk - ligament)*self%length
       self%shortest = least*self%length
       self%reached = self%shortest
-   end subroutine leave_rest
+   end subroutine exclude_ligament
 
    !> Limit the length of the segment, but not below the shortest advance.
    elemental subroutine stop_after(self, length)
@@ -95,7 +95,7 @@ contains
       class(segment_t), intent(inout) :: self
 
       self%is_open = .false.
-      self%is_rest = .true.
+      self%is_ligament = .true.
       self%reached = 0.0_rk
       self%slope = 0.0_rk
    end subroutine stay_at_start
@@ -104,7 +104,7 @@ contains
    elemental logical function stays(self)
       class(segment_t), intent(in) :: self
 
-      stays = self%is_rest
+      stays = self%is_ligament
    end function stays
 
    !> End the segment at the final position of the tip.
@@ -115,7 +115,7 @@ contains
       self%length = norm2(end - self%start)
       self%reached = self%length
       self%is_open = .false.
-      self%is_rest = .false.
+      self%is_ligament = .false.
    end subroutine finish
 
    !> Position of the tip [m].

@@ -40,10 +40,10 @@ module growth_tip
       real(rk), private :: start_drive = 0.0_rk  !< drive at the start of the increment [Pa sqrt(m)]
       real(rk), private :: curvature = 0.0_rk  !< curvature of the path [rad/m]
    contains
-      procedure :: foresee
+      procedure :: predict
       procedure :: move
       procedure :: correct
-      procedure :: settle
+      procedure :: commit
    end type path_t
 
    !> A free tip: path, driving force, and target.
@@ -53,7 +53,7 @@ module growth_tip
       logical :: arrested = .false.  !< it will not grow again
       integer(ik) :: target = target_none  !< what has arrested it: a fracture, or of growth_targets
       logical :: joined = .false.  !< it has joined that; else it has stopped short of it
-      integer(ik) :: heads_for = target_none  !< what the last piece of its path ends on
+      integer(ik) :: path_target = target_none  !< what the last piece of its path ends on
       logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
       logical :: is_shut = .false.  !< the faces behind it stick: K = 0, without evaluation
       logical :: is_carried = .false.  !< its intensities are those of an earlier state
@@ -74,7 +74,7 @@ module growth_tip
    contains
       procedure :: begin_increment
       procedure :: resist
-      procedure :: cease
+      procedure :: deactivate
       procedure :: has_just_stopped
       procedure :: scale_of
       procedure :: excess
@@ -116,14 +116,14 @@ contains
    end subroutine resist
 
    !> Deactivate the tip and clear its intensities.
-   elemental subroutine cease(self)
+   elemental subroutine deactivate(self)
       class(tip_t), intent(inout) :: self
 
       self%arrested = .true.
       self%is_free = .false.
       self%intensity = intensity_t()
       self%drive = growth_drive_t()
-   end subroutine cease
+   end subroutine deactivate
 
    !> Scale of the excess over the toughness [Pa m^1/2].
    elemental real(rk) function scale_of(self, toughness)
@@ -202,7 +202,7 @@ contains
 
    !> Predict the kink with which the drive vanishes at the end of the next increment: it cancels
    !! the remaining drive and continues the curvature of the last increment.
-   pure subroutine foresee(self, drive_angle, drive, strength, advance, kink)
+   pure subroutine predict(self, drive_angle, drive, strength, advance, kink)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive_angle  !< kink angle of the criterion at the tip [rad]
       real(rk), intent(in) :: drive  !< -K_II at the tip [Pa sqrt(m)]
@@ -220,7 +220,7 @@ contains
       kink = max(-abs(drive_angle), min(abs(drive_angle), kink)) &
              + max(-most, min(most, self%curvature*advance))
       kink = in_grains(kink, radian)
-   end subroutine foresee
+   end subroutine predict
 
    !> Advance straight to a new position.
    pure subroutine move(self, to, kink)
@@ -256,7 +256,7 @@ contains
       has_turned = .false.
       if (.not. (self%advance > 0.0_rk .and. self%has_wing)) return
       if (.not. abs(drive_angle) > enough) return
-      call learn(self, drive)
+      call update_slope(self, drive)
       if (self%is_bracketed .and. drive*self%tried_drive(2) > 0.0_rk) then
          self%tried_drive(1) = 0.5_rk*self%tried_drive(1)
       else
@@ -291,7 +291,7 @@ contains
    end subroutine correct
 
    !> Update the derivative of the drive with respect to the kink from the last two iterates.
-   pure subroutine learn(self, drive)
+   pure subroutine update_slope(self, drive)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive  !< [Pa sqrt(m)]
 
@@ -302,16 +302,16 @@ contains
             self%falls = (self%tried_drive(2) - drive)/(between*self%strength)
          end if
       end associate
-   end subroutine learn
+   end subroutine update_slope
 
    !> Commit the last increment, and update the curvature.
-   pure subroutine settle(self, drive)
+   pure subroutine commit(self, drive)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive  !< -K_II at the new end [Pa sqrt(m)]
 
       if (.not. self%advance > 0.0_rk) return
       if (self%has_wing) then
-         call learn(self, drive)
+         call update_slope(self, drive)
          self%curvature = self%kink/self%advance
          if (self%falls > 0.0_rk) then
             self%curvature = (self%kink + (drive - self%start_drive) &
@@ -319,6 +319,6 @@ contains
          end if
       end if
       self%has_wing = .true.
-   end subroutine settle
+   end subroutine commit
 
 end module growth_tip

@@ -144,7 +144,7 @@ contains
       q = 0.0_rk
       associate (mesh => problem%mesh, condensed => problem%model%condensed)
          do w = 1, size(windows%slot, kind=ik)
-            if (.not. windows%is_asked(w, tips)) cycle
+            if (.not. windows%is_active(w, tips)) cycle
             associate (window => windows%slot(w)%window)
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
                xy = reshape([(cell_centre(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])

@@ -16,18 +16,18 @@ module twolevel_equilibrium
    use growth_advances, only: advances_t
    use growth_network, only: total_length
    use growth_targets, only: target_none
-   use twolevel_doubt, only: find_improvements
+   use twolevel_refinement, only: find_refinements
    use twolevel_growth_errors, only: is_uncertain
    use twolevel_excess, only: arrivals, at_joints, first_onset, onset, shared_excesses, &
                               tolerance
-   use twolevel_moves, only: is_in_play, judge_tips, keep_together, part_company
-   use twolevel_pieces, only: begin_pieces, can_join, have_come, join_targets
+   use twolevel_moves, only: is_in_play, judge_tips, keep_together, separate_tips
+   use twolevel_segments, only: begin_segments, can_join, are_at_ligaments, join_targets
    use twolevel_places, only: advances, place_tips
-   use twolevel_probe, only: lesson_t, measure_rivals
+   use twolevel_probe, only: previous_try_t, measure_interaction
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_tip_layers, only: find_tip_layers
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
    implicit none(type, external)
@@ -60,7 +60,7 @@ module twolevel_equilibrium
       real(rk), allocatable :: unmoved(:)  !< (tips) excess in the first try [-]
       integer(ik), allocatable :: kind(:)  !< (tips) number of the tip group, from 1
       logical, allocatable :: has_begun(:)  !< (tips) the tip has begun a new segment
-      type(lesson_t) :: lesson
+      type(previous_try_t) :: previous_try
       type(advances_t) :: advances  !< search for the positions of the tips on their segments
       logical :: is_over = .false.  !< the tries have ended
    end type search_t
@@ -114,17 +114,17 @@ contains
       allocate (search%kind(size(self%tip)))
       allocate (search%has_begun(size(self%tip)), source=.false.)
       associate (toughness => self%rules%toughness, segment => self%now%segment)
-         call self%now%company%find_kinds(self%tip%excess(toughness), &
+         call self%now%groups%find_groups(self%tip%excess(toughness), &
                                           self%tip%relative_error(toughness), segment%gain, &
                                           self%tip%arrested, self%increments(), &
-                                          self%now%rivals, search%kind)
+                                          self%now%interaction, search%kind)
          call segment%restart()
          if (.not. may_jump) then
             call segment%keep_pace(dt)
             call keep_together(self%now%segment, search%kind)
          end if
       end associate
-      call self%now%certainty%begin_step()
+      call self%now%stated_errors%begin_step()
    end subroutine begin_search
 
    !> Solve the coarse level and evaluate the intensities at the trial positions of the tips.
@@ -154,13 +154,13 @@ contains
       end if
       call self%evaluate(timers, error)
       if (allocated(error)) return
-      call self%now%certainty%see_try(total_length(self%network), &
+      call self%now%stated_errors%see_try(total_length(self%network), &
                                       self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
       search%unmoved = self%tip%excess(self%rules%toughness)
       if (.not. search%is_last) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
-      if (.not. search%is_over) self%now%asked = are_asked(self)
+      if (.not. search%is_over) self%now%active = active_tips(self)
    end subroutine find_state
 
    !> Share of the step after which a tip begins to grow for the first time [-].
@@ -181,12 +181,14 @@ contains
       logical, dimension(size(self%tip)) :: in_play, moves
 
       in_play = is_in_play(self%now%segment, self%tip%excess(self%rules%toughness))
-      call search%lesson%tell(self%now%segment, self%tip, self%rules%toughness, self%now%rivals)
-      call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
+      call search%previous_try%update_interaction(self%now%segment, self%tip, &
+         self%rules%toughness, self%now%interaction)
+      call measure_interaction(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
-      call search%lesson%begin(self%now%segment, self%tip, self%rules%toughness)
+      call search%previous_try%begin(self%now%segment, self%tip, self%rules%toughness)
       if (any_moves) search%advances = advances_t()  ! with the measured tip interaction
-      call judge_tips(self%now%segment, self%now%rivals, shared_excesses(self), have_come(self), &
+      call judge_tips(self%now%segment, self%now%interaction, shared_excesses(self), &
+         are_at_ligaments(self), &
                       self%tip%arrested, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
@@ -202,7 +204,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_parted, joins(size(self%tip))
 
-      call part_company(self%now%segment, self%now%company, self%tip, self%last%front%tip, &
+      call separate_tips(self%now%segment, self%now%groups, self%tip, self%last%front%tip, &
                         self%rules%toughness, wants, search%kind, any_parted)
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
@@ -213,7 +215,7 @@ contains
       call stop_gained(self, search, wants, trial)
       if (search%is_over) return
       joins = wants .and. can_join(self)
-      wants = wants .and. self%tip%heads_for == target_none
+      wants = wants .and. self%tip%path_target == target_none
       if (.not. (trial%has_joined .or. trial%jumps)) then
          trial%time_error = self%step_error(search%dt)
       end if
@@ -273,7 +275,7 @@ contains
       end if
       call join_targets(self, joins)
       trial%has_joined = .true.
-      search%lesson = lesson_t()
+      search%previous_try = previous_try_t()
       search%advances = advances_t()
    end subroutine join
 
@@ -291,8 +293,8 @@ contains
       associate (toughness => self%rules%toughness, &
                  before => self%last%front%tip%excess(self%rules%toughness))
          if (any([(wants(i) .and. is_uncertain(self, i), i=1, size(wants, kind=ik))])) then
-            call find_improvements(self, self%before%time, trial%improvements)
-            search%is_over = size(trial%improvements) > 0
+            call find_refinements(self, self%before%time, trial%refinements)
+            search%is_over = size(trial%refinements) > 0
             if (search%is_over) return
          end if
          if (any(wants .and. (search%has_begun .or. &
@@ -311,7 +313,7 @@ contains
       end associate
       excess = self%tip%excess(self%rules%toughness)
       excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
-      call begin_pieces(self, wants, timers, error)
+      call begin_segments(self, wants, timers, error)
       if (allocated(error)) return
       if (.not. search%may_jump) then
          do i = 1, size(wants)
@@ -321,7 +323,7 @@ contains
       end if
       ! Without the tips whose whole segment is a ligament.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
-      search%lesson = lesson_t()  ! the segments have changed
+      search%previous_try = previous_try_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted
 
@@ -335,7 +337,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_exceeds
 
-      call ask_others(self, any_exceeds, timers, error)
+      call evaluate_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
@@ -347,23 +349,23 @@ contains
       end if
       call estimate_coarse_errors(self, timers, error)
       if (allocated(error)) return
-      call find_improvements(self, self%before%time, trial%improvements)
+      call find_refinements(self, self%before%time, trial%refinements)
    end subroutine conclude
 
    !> Tips that may grow in a step, according to its first try: tips on open segments, and tips that
    !! are near their toughness within the error of their intensities.
-   pure function are_asked(self) result(asked)
+   pure function active_tips(self) result(active)
       class(two_levels_t), intent(in) :: self
-      logical :: asked(size(self%tip))
+      logical :: active(size(self%tip))
 
       associate (toughness => self%rules%toughness)
-         asked = self%now%segment%is_open .or. self%tip%excess(toughness) &
+         active = self%now%segment%is_open .or. self%tip%excess(toughness) &
                  + self%tip%relative_error(toughness) > -lack_of_far
       end associate
-   end function are_asked
+   end function active_tips
 
    !> Evaluate the tips that the tries of a step have left out. All tips are evaluated from now on.
-   subroutine ask_others(self, any_exceeds, timers, error)
+   subroutine evaluate_others(self, any_exceeds, timers, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(out) :: any_exceeds  !< one of these tips exceeds its toughness
       type(timers_t), intent(inout) :: timers
@@ -371,14 +373,14 @@ contains
       logical :: others(size(self%tip))
 
       any_exceeds = .false.
-      if (.not. allocated(self%now%asked)) return
-      others = .not. self%now%asked .and. self%tip%is_free
-      self%now%asked = others
+      if (.not. allocated(self%now%active)) return
+      others = .not. self%now%active .and. self%tip%is_free
+      self%now%active = others
       if (any(others)) call self%evaluate(timers, error)
-      deallocate (self%now%asked)
+      deallocate (self%now%active)
       if (allocated(error)) return
       any_exceeds = any(others .and. self%tip%excess(self%rules%toughness) > tolerance)
-   end subroutine ask_others
+   end subroutine evaluate_others
 
    !> Accept the tried state.
    subroutine accept_equilibrium(self, dt)
@@ -392,7 +394,7 @@ contains
                                  self%tip%excess(self%rules%toughness) >= -tolerance)
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! straight segments
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
-      call self%now%company%accept(self%tip%excess(self%rules%toughness), &
+      call self%now%groups%accept(self%tip%excess(self%rules%toughness), &
                                    self%tip%advance, self%increments())
       call self%now%segment%accept()
    end subroutine accept_equilibrium

@@ -4,7 +4,7 @@ module twolevel_excess
    use base_kinds, only: ik, rk
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
-   use twolevel_pieces, only: comes_to
+   use twolevel_segments, only: comes_to
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private

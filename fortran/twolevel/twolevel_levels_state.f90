@@ -4,12 +4,12 @@ module twolevel_levels_state
    use, intrinsic :: iso_fortran_env, only: int8
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
-   use growth_rivals, only: company_t, rivals_t
+   use growth_interaction, only: tip_groups_t, interaction_t
    use growth_front, only: front_state_t
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
-   use twolevel_certainty, only: certainty_t
+   use twolevel_errors, only: stated_errors_t
    use twolevel_trend, only: trend_t
    use twolevel_windows_state, only: windows_state_t
    implicit none(type, external)
@@ -37,13 +37,13 @@ module twolevel_levels_state
       type(segment_t), allocatable :: segment(:)  !< (tips) last path segments
       !> (tips) tips that are evaluated; unallocated: all. The tries of a step do not need the
       !! others.
-      logical, allocatable :: asked(:)
-      type(rivals_t) :: rivals  !< tip interaction matrix
-      type(company_t) :: company  !< tip groups
+      logical, allocatable :: active(:)
+      type(interaction_t) :: interaction  !< tip interaction matrix
+      type(tip_groups_t) :: groups  !< tip groups
       type(windows_state_t) :: windows
       type(windows_state_t) :: reference  !< state of the body as one window
       type(trend_t) :: trend  !< rates of the last accepted step
-      type(certainty_t) :: certainty  !< estimated errors of lengths and pressures
+      type(stated_errors_t) :: stated_errors  !< estimated errors of lengths and pressures
       type(fluid_totals_t) :: fluid
       real(rk), allocatable :: given(:)  !< (controlled wells) volumes since the last switch [m2]
       !> (controlled wells) wells whose rate is reduced by a limit
@@ -103,15 +103,16 @@ contains
                  part_t("new cells", integers(now%grown)), &
                  part_t("flags", truths([now%has_new_mesh, now%undrained])), &
                  part_t("segments", bytes_of_segments(now%segment)), &
-                 part_t("tips asked", some_truths(now%asked)), &
-                 part_t("rivals", [flat(now%rivals%matrix), flat(now%rivals%measured), &
-                                   numbers(now%rivals%known_at), &
-                                   some_truths(now%rivals%is_known)]), &
-                 part_t("company", [integers(now%company%kind), numbers(now%company%usual), &
-                                    some_truths(now%company%is_alone)]), &
+                 part_t("tips active", some_truths(now%active)), &
+                 part_t("interaction", [flat(now%interaction%matrix), &
+                    flat(now%interaction%measured), &
+                                   numbers(now%interaction%known_at), &
+                                   some_truths(now%interaction%is_known)]), &
+                 part_t("groups", [integers(now%groups%kind), numbers(now%groups%usual), &
+                                    some_truths(now%groups%is_alone)]), &
                  windows_parts("windows", now%windows), &
                  windows_parts("reference", now%reference), &
-                 trend_part(now%trend), certainty_part(now%certainty), &
+                 trend_part(now%trend), certainty_part(now%stated_errors), &
                  part_t("fluid", [now%fluid%injected, now%fluid%produced, now%fluid%leaked, &
                                   now%fluid%outflow, now%fluid%prefilled, now%fluid%mass_error]), &
                  part_t("wells", [numbers(now%given), some_truths(now%at_limit)])]
@@ -189,14 +190,16 @@ contains
                               trend%least_pressure, trend%least_jump])
    end function trend_part
 
-   pure type(part_t) function certainty_part(certainty) result(part)
-      type(certainty_t), intent(in) :: certainty
+   pure type(part_t) function certainty_part(stated_errors) result(part)
+      type(stated_errors_t), intent(in) :: stated_errors
 
-      associate (course => certainty%course)
-         part = part_t("errors", [certainty%length, certainty%pressure, numbers(certainty%tip), &
-                                  real(certainty%tries, rk), [certainty%tried], &
-                                  certainty%slope, truths([course%is_followed]), course%value, &
-                                  course%rate, course%error, course%step])
+      associate (time_error => stated_errors%time_error)
+         part = part_t("errors", [stated_errors%length, stated_errors%pressure, &
+            numbers(stated_errors%tip), &
+                                  real(stated_errors%tries, rk), [stated_errors%tried], &
+                                  stated_errors%slope, truths([time_error%is_followed]), &
+                                     time_error%value, &
+                                  time_error%rate, time_error%error, time_error%step])
       end associate
    end function certainty_part
 

@@ -4,25 +4,26 @@ module twolevel_moves
    use base_kinds, only: ik, rk
    use growth_advances, only: advances_t
    use growth_competition, only: numbered
-   use growth_rivals, only: company_t, lags_behind, rivals_t
+   use growth_interaction, only: tip_groups_t, lags_behind, interaction_t
    use growth_segment, only: segment_t, sliver
    use growth_tip, only: tip_t
    use twolevel_excess, only: tolerance
    implicit none(type, external)
    private
 
-   public :: is_in_play, judge_tips, keep_together, part_company
+   public :: is_in_play, judge_tips, keep_together, separate_tips
 
 contains
 
    !> Move the tips on open segments to where their excess is predicted to vanish; other tips begin
    !! a segment if they exceed the toughness. Tips of one group take the largest of their excesses,
    !! and so advance equally.
-   subroutine judge_tips(segments, rivals, alone, has_come, is_arrested, kind, search, moves, wants)
+   subroutine judge_tips(segments, interaction, alone, is_at_ligament, is_arrested, kind, &
+      search, moves, wants)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      type(rivals_t), intent(in) :: rivals
+      type(interaction_t), intent(in) :: interaction
       real(rk), intent(in) :: alone(:)  !< (tips) excess of K_eq over K_IC of each tip [-]
-      logical, intent(in) :: has_come(:)  !< (tips) only a ligament is left ahead of the tip
+      logical, intent(in) :: is_at_ligament(:)  !< (tips) only a ligament is left ahead of the tip
       logical, intent(in) :: is_arrested(:)
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       !> search for the positions of the tips on their segments
@@ -34,8 +35,8 @@ contains
       excess = [(maxval(alone, mask=kind == kind(i)), i=1, size(kind))]
       ! Only the ligament is left: it breaks as soon as K_eq reaches K_IC, before other tips
       ! advance. Without the increment, equal tips would all wait.
-      where (has_come) excess = excess + 2.0_rk*tolerance
-      call move_kinds(segments, rivals, kind, excess, search, moves)
+      where (is_at_ligament) excess = excess + 2.0_rk*tolerance
+      call move_groups(segments, interaction, kind, excess, search, moves)
       wants = .not. (moves .or. excess <= tolerance .or. is_arrested)
       where (segments%is_open) wants = wants .and. segments%is_complete()
    end subroutine judge_tips
@@ -51,9 +52,9 @@ contains
 
    !> Move the tip groups to the next iterate of the search for equilibrium; tips of one group
    !! advance equally.
-   subroutine move_kinds(segments, rivals, kind, excess, search, moves)
+   subroutine move_groups(segments, interaction, kind, excess, search, moves)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      type(rivals_t), intent(in) :: rivals
+      type(interaction_t), intent(in) :: interaction
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       real(rk), intent(in) :: excess(:)  !< (tips) excess of K_eq over K_IC [-]
       type(advances_t), intent(inout) :: search
@@ -69,7 +70,7 @@ contains
       if (search%evaluations == 0) then
          first = segments(leader)
          call search%begin(first%lowest(), first%length, first%reached, &
-                           rivals%matrix_for(on_way, number, first), sliver*first%length)
+                           interaction%matrix_for(on_way, number, first), sliver*first%length)
       end if
       call search%improve(excess(leader), tolerance, has_moved)
       do k = 1, size(leader, kind=ik)
@@ -85,7 +86,7 @@ contains
          call segments(on_way(k))%keep_up_with(segments(i), has_moved)
          moves(on_way(k)) = moves(i) .or. has_moved
       end do
-   end subroutine move_kinds
+   end subroutine move_groups
 
    !> Tips on open segments, and the first tip of each group of these tips.
    pure subroutine find_leaders(segments, kind, on_way, number, leader)
@@ -127,9 +128,9 @@ contains
    !! their toughness on an open segment before the step stay: a single mesh may reduce their K_eq.
    !! So do tips that are no farther below their toughness than the first of their group: a first
    !! segment, which kinks, may reduce K_eq of all of them.
-   subroutine part_company(segments, company, tips, before, toughness, wants, kind, any_parted)
+   subroutine separate_tips(segments, groups, tips, before, toughness, wants, kind, any_parted)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      type(company_t), intent(inout) :: company
+      type(tip_groups_t), intent(inout) :: groups
       type(tip_t), intent(in) :: tips(:)
       type(tip_t), intent(in) :: before(:)  !< tips before the step
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
@@ -147,7 +148,7 @@ contains
       do i = 1, size(kind, kind=ik)
          if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
          kind(i) = maxval(kind) + 1
-         call company%part(i)
+         call groups%remove_tip(i)
          if (segments(i)%is_open) call segments(i)%restart()
          any_parted = .true.
       end do
@@ -161,6 +162,6 @@ contains
          lacks = lags_behind(tip%excess(toughness) - first, tip%relative_error(toughness))
       end function lacks
 
-   end subroutine part_company
+   end subroutine separate_tips
 
 end module twolevel_moves

@@ -3,7 +3,7 @@
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
-   use growth_rivals, only: could_part, rivals_t
+   use growth_interaction, only: could_separate, interaction_t
    use growth_front, only: front_state_t
    use growth_network, only: total_length
    use growth_segment, only: segment_t
@@ -11,7 +11,7 @@ module twolevel_notes
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
    use scene_types, only: scene_t
-   use twolevel_certainty, only: tip_excess_t
+   use twolevel_errors, only: tip_excess_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
@@ -19,7 +19,7 @@ module twolevel_notes
    implicit none(type, external)
    private
 
-   public :: note_certainty, note_excess, notes_t
+   public :: note_stated_errors, note_excess, notes_t
 
    !> Events written so far, and the data for those to come.
    type :: notes_t
@@ -105,10 +105,10 @@ contains
    end subroutine note_excess
 
    !> Report tips of which one could run ahead of the others.
-   subroutine note_competition(self, tips, rivals, increment, time, chronicle)
+   subroutine note_competition(self, tips, interaction, increment, time, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
-      type(rivals_t), intent(in) :: rivals
+      type(interaction_t), intent(in) :: interaction
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
       real(rk), intent(in) :: time  !< [s]
       type(chronicle_t), intent(inout) :: chronicle
@@ -119,8 +119,8 @@ contains
 
       group = pack([(i, i=1, size(tips, kind=ik))], tips%advance > 0.0_rk)
       if (size(group) < 2) return
-      lead = rivals%preference_of(group)*minval(increment(group))
-      is_bifurcation = lead > could_part
+      lead = interaction%preference_of(group)*minval(increment(group))
+      is_bifurcation = lead > could_separate
       if (is_bifurcation .and. .not. self%was_bifurcation) then
          call chronicle%add_event(time, event_bifurcation, integer_text(size(group, kind=ik))// &
                                   " tips grow; a lead of one increment changes K_eq by "// &
@@ -141,11 +141,11 @@ contains
       character(len=:), allocatable :: what
       integer(ik) :: ahead, behind, i, j
 
-      if (.not. (allocated(now%company%kind) .and. allocated(now%certainty%tip))) return
+      if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
          do i = 1, j - 1
-            associate (gain => now%segment([i, j])%gain, kind => now%company%kind, &
-                       error => now%certainty%tip, shorter => minval(increment([i, j])))
+            associate (gain => now%segment([i, j])%gain, kind => now%groups%kind, &
+                       error => now%stated_errors%tip, shorter => minval(increment([i, j])))
                if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
                if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
                if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
@@ -165,7 +165,7 @@ contains
    end subroutine note_separation
 
    !> Update the estimated errors of length and pressure after a step of length dt.
-   subroutine note_certainty(scene, front, problem, dt, now)
+   subroutine note_stated_errors(scene, front, problem, dt, now)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front
       type(coarse_problem_t), intent(in) :: problem
@@ -184,9 +184,9 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
-         call now%certainty%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
+         call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                    total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate
-   end subroutine note_certainty
+   end subroutine note_stated_errors
 
 end module twolevel_notes

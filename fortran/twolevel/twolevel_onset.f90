@@ -2,7 +2,7 @@
 !! follows from the rate.
 module twolevel_onset
    use base_kinds, only: rk
-   use twolevel_course, only: course_t
+   use twolevel_time_error, only: accumulated_error_t
    implicit none(type, external)
    private
 
@@ -14,7 +14,7 @@ module twolevel_onset
       real(rk) :: time = 0.0_rk  !< [s]
       logical :: has_come = .false.  !< K_eq has reached the toughness
       real(rk) :: onset = 0.0_rk  !< time at which K_eq first reached the toughness [s]
-      type(course_t) :: drive  !< K_eq [Pa m^1/2]
+      type(accumulated_error_t) :: drive  !< K_eq [Pa m^1/2]
       real(rk) :: drive_error = 0.0_rk  !< estimated discretization error of K_eq [Pa m^1/2]
    contains
       procedure :: follow

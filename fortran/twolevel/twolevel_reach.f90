@@ -15,10 +15,10 @@ module twolevel_reach
    implicit none(type, external)
    private
 
-   public :: cluster_count, connections_per_branch, reached_cells, stretches_t
+   public :: cluster_count, connections_per_branch, reached_cells, intervals_t
 
    !> Intervals of arc length on fractures, which neither touch nor overlap.
-   type :: stretches_t
+   type :: intervals_t
       integer(ik), allocatable :: fracture(:)
       real(rk), allocatable :: s(:, :)  !< (2, n) start and end [m]
    contains
@@ -26,7 +26,7 @@ module twolevel_reach
       procedure :: add
       procedure :: length
       procedure :: covers
-   end type stretches_t
+   end type intervals_t
 
 contains
 
@@ -101,7 +101,7 @@ contains
 
    !> Remove all intervals.
    pure subroutine clear(self)
-      class(stretches_t), intent(inout) :: self
+      class(intervals_t), intent(inout) :: self
 
       self%fracture = [integer(ik) ::]
       self%s = reshape([real(rk) ::], [2, 0])
@@ -109,7 +109,7 @@ contains
 
    !> Add an interval, merged with the intervals that it touches or overlaps.
    pure subroutine add(self, fracture, s)
-      class(stretches_t), intent(inout) :: self
+      class(intervals_t), intent(inout) :: self
       integer(ik), intent(in) :: fracture
       real(rk), intent(in) :: s(2)  !< start and end [m]; nothing is added unless start < end
       logical :: stays(size(self%fracture))
@@ -127,14 +127,14 @@ contains
 
    !> Total length [m].
    pure real(rk) function length(self)
-      class(stretches_t), intent(in) :: self
+      class(intervals_t), intent(in) :: self
 
       length = sum(self%s(2, :) - self%s(1, :))
    end function length
 
    !> Whether a point of a fracture lies in an interval.
    pure logical function covers(self, fracture, s)
-      class(stretches_t), intent(in) :: self
+      class(intervals_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
       real(rk), intent(in) :: s  !< arc length [m]
 

@@ -11,16 +11,16 @@ module twolevel_simulation
    use scene_types, only: scene_t
    use report_simulation, only: snapshot_t
    use report_slip, only: slip_step_t
-   use twolevel_doubt, only: find_improvements, improve_windows, note_uncertain_tips
+   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
-   use twolevel_notes, only: note_certainty, note_excess
+   use twolevel_notes, only: note_stated_errors, note_excess
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
    use twolevel_steps, only: stepping_levels_t
-   use twolevel_stepping, only: improvement_t
+   use twolevel_stepping, only: refinement_t
    use twolevel_stimulation, only: stimulation_t
-   use twolevel_trust, only: estimate_coarse_errors
-   use twolevel_well_rows, only: well_books_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_well_rows, only: well_results_t
    implicit none(type, external)
    private
 
@@ -36,7 +36,7 @@ module twolevel_simulation
       logical :: has_begun = .false.  !< the first state has been requested
       logical :: is_initial = .false.  !< the present state is the one before the first step
       type(stimulation_t) :: stimulation
-      type(well_books_t) :: well_books
+      type(well_results_t) :: well_results
       !> seismic moment of all steps, per metre of thickness [N m]
       real(rk) :: seismic_moment = 0.0_rk
    contains
@@ -119,7 +119,7 @@ contains
       else
          if (is_first) then
             call self%stimulation%begin(self%problem, self%now%coarse)
-            call self%well_books%begin(self%scene, self%problem, self%now%coarse)
+            call self%well_results%begin(self%scene, self%problem, self%now%coarse)
          end if
          call self%take_step(timers, error)
       end if
@@ -206,8 +206,8 @@ contains
       type(well_row_t), allocatable :: rows(:)
 
       if (size(self%scene%injections) == 0) return
-      if (self%is_initial) call self%well_books%begin(self%scene, self%problem, self%now%coarse)
-      call self%well_books%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
+      if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+      call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                 merge(0.0_rk, self%dt, self%is_initial), rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
    end subroutine note_well_rows
@@ -273,7 +273,8 @@ contains
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
-      if (states_errors(self)) call note_certainty(self%scene, self%front_state_t, self%problem, &
+      if (states_errors(self)) call note_stated_errors(self%scene, self%front_state_t, &
+         self%problem, &
                                                    self%dt, self%now)
       if (may_grow .and. self%is_equilibrium()) then
          call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
@@ -290,16 +291,16 @@ contains
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(improvement_t), allocatable :: improvements(:)
+      type(refinement_t), allocatable :: refinements(:)
 
       do
          call self%evaluate(timers, error)
          if (allocated(error)) return
          call estimate_coarse_errors(self, timers, error)
          if (allocated(error) .or. .not. self%is_equilibrium()) return
-         call find_improvements(self, self%now%coarse%time, improvements)
-         if (size(improvements) == 0) return
-         call improve_windows(self, improvements)
+         call find_refinements(self, self%now%coarse%time, refinements)
+         if (size(refinements) == 0) return
+         call refine_windows(self, refinements)
       end do
    end subroutine evaluate_tips
 
@@ -383,8 +384,8 @@ contains
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
       if (.not. states_errors(self)) return
-      row%length_error = self%now%certainty%length
-      row%well_pressure_error = self%now%certainty%pressure
+      row%length_error = self%now%stated_errors%length
+      row%well_pressure_error = self%now%stated_errors%pressure
    end function history
 
    !> Displacement, stress and pressure at the probes.

@@ -125,7 +125,7 @@ contains
          end associate
       end if
       allocate (self%now%grown(0), self%now%segment(size(self%tip)))
-      call self%now%rivals%begin(size(self%tip))
+      call self%now%interaction%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
 
@@ -423,13 +423,13 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: asked(size(self%tip))
+      logical :: active(size(self%tip))
       integer(ik) :: i
 
       call timers%heed(error)
       if (allocated(error)) return
-      asked = .true.
-      if (allocated(self%now%asked)) asked = self%now%asked
+      active = .true.
+      if (allocated(self%now%active)) active = self%now%active
       associate (now => self%now)
          call follow_sides(self%scene, now%coarse%time, now%coarse%time)
          call timers%start(phase_tips)
@@ -440,9 +440,9 @@ contains
                                          now%coarse%jump)
          end if
          call carry_intensities(self)
-         asked = asked .and. self%tip%is_loaded()
+         active = active .and. self%tip%is_loaded()
          call self%problem%find_values(now%coarse)
-         call self%windows%evaluate(self%scene, self%network, self%tip, asked, &
+         call self%windows%evaluate(self%scene, self%network, self%tip, active, &
                                     self%has_reference(), self%problem, now%coarse, &
                                     now%undrained, now%windows, error)
          call timers%stop(phase_tips)
@@ -453,7 +453,7 @@ contains
             call now%windows%tip(i)%forget_coarse_error()
          end do
          do i = 1, size(self%tip, kind=ik)
-            if (.not. asked(i)) cycle
+            if (.not. active(i)) cycle
             now%windows%tip(i)%jump_then = tip_jump(self, i)
             now%windows%tip(i)%place_then = self%tip(i)%xy
          end do

@@ -29,7 +29,7 @@ module twolevel_stepping
    implicit none(type, external)
    private
 
-   public :: improve_by_body, improve_edge, improve_elements, improvement_t, stepper_t, trial_t
+   public :: improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t, trial_t
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
@@ -46,10 +46,10 @@ module twolevel_stepping
    integer, parameter :: improve_by_body = 3  !< body as window
 
    !> Refinement of the window of a tip.
-   type :: improvement_t
+   type :: refinement_t
       integer(ik) :: tip = 0
       integer :: kind = improve_elements
-   end type improvement_t
+   end type refinement_t
 
    !> Result of a tried step.
    type :: trial_t
@@ -68,7 +68,7 @@ module twolevel_stepping
       real(rk) :: advance = 0.0_rk  !< largest advance of a tip, over the length of a segment [-]
       character(len=:), allocatable :: reason  !< reason why the equations were not solved
       !> refinements of windows before the step is tried again; unallocated or empty: none
-      type(improvement_t), allocatable :: improvements(:)
+      type(refinement_t), allocatable :: refinements(:)
    contains
       procedure :: needs_windows
       procedure :: why_cut
@@ -300,8 +300,8 @@ contains
    pure logical function needs_windows(self)
       class(trial_t), intent(in) :: self
 
-      needs_windows = allocated(self%improvements)
-      if (needs_windows) needs_windows = size(self%improvements) > 0
+      needs_windows = allocated(self%refinements)
+      if (needs_windows) needs_windows = size(self%refinements) > 0
    end function needs_windows
 
    !> Reason of a cut, as text.

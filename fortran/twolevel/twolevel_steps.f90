@@ -9,12 +9,12 @@ module twolevel_steps
    use coarse_state, only: step_report_t
    use report_rows, only: event_step_cut, event_unstable
    use report_limits, only: limit_time_error
-   use twolevel_doubt, only: improve_windows
+   use twolevel_refinement, only: refine_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_notes, only: notes_t
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: improvement_t, stepper_t, trial_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_stepping, only: refinement_t, stepper_t, trial_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
    implicit none(type, external)
@@ -77,7 +77,7 @@ contains
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
          if (trial%needs_windows()) then
-            call try_better_windows(self, trial%improvements, timers, error)
+            call try_better_windows(self, trial%refinements, timers, error)
             if (allocated(error)) return
             cycle
          end if
@@ -129,14 +129,14 @@ contains
 
    !> Refine windows and evaluate the tips again in the state at the start of the step, from which
    !! onsets are interpolated; before the first step this state has no tractions.
-   subroutine try_better_windows(self, improvements, timers, error)
+   subroutine try_better_windows(self, refinements, timers, error)
       class(stepping_levels_t), intent(inout) :: self
-      type(improvement_t), intent(in) :: improvements(:)
+      type(refinement_t), intent(in) :: refinements(:)
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       call self%put_back()
-      call improve_windows(self, improvements)
+      call refine_windows(self, refinements)
       if (allocated(self%now%coarse%tractions)) then
          call self%evaluate(timers, error)
          if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
@@ -201,7 +201,7 @@ contains
          ! The speed of the tips does not apply to the next step if cracks have joined, or without
          ! equilibrium.
          call accept_equilibrium(self, merge(0.0_rk, self%dt, is_unstable .or. trial%has_joined))
-         call self%notes%note_competition(self%tip, self%now%rivals, self%increments(), &
+         call self%notes%note_competition(self%tip, self%now%interaction, self%increments(), &
                                           self%now%coarse%time, self%chronicle)
       end if
       call self%stepper%step_done(trial, self%dt)

@@ -16,7 +16,7 @@ module twolevel_stimulation
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: history_row_t
    use scene_regime, only: dimensionless_leakoff, dimensionless_toughness
-   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
+   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: end_at_tips, fracture_volume
    use twolevel_state, only: two_levels_t
@@ -28,7 +28,7 @@ module twolevel_stimulation
 
    !> Stimulated faces, and sums since the start.
    type :: stimulation_t
-      type(stretches_t), private :: faces  !< faces of the scene's fractures that have moved
+      type(intervals_t), private :: faces  !< faces of the scene's fractures that have moved
       type(fracture_mesh_t), private :: fracture  !< fracture cells at the start
       !> (2, cells) jump at the start, normal and tangential [m]
       real(rk), allocatable, private :: jump(:, :)

@@ -11,22 +11,22 @@ module twolevel_well_rows
    implicit none(type, external)
    private
 
-   public :: well_books_t, well_flows, well_pressures
+   public :: well_results_t, well_flows, well_pressures
 
    !> (wells) Sums, and values of the first state.
-   type :: well_books_t
+   type :: well_results_t
       real(rk), allocatable, private :: injected(:)  !< injected at their heads so far [m2]
       real(rk), allocatable, private :: first_pressure(:)  !< pressure before the first step [Pa]
    contains
       procedure :: begin
       procedure :: book
-   end type well_books_t
+   end type well_results_t
 
 contains
 
    !> Begin with the state before the first step.
    subroutine begin(self, scene, problem, state)
-      class(well_books_t), intent(out) :: self
+      class(well_results_t), intent(out) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -40,7 +40,7 @@ contains
 
    !> Rows of the state after a step of length dt; dt = 0: before the first step.
    subroutine book(self, scene, problem, state, at_limit, dt, rows)
-      class(well_books_t), intent(inout) :: self
+      class(well_results_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state

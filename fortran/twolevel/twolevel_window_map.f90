@@ -36,7 +36,7 @@ contains
       real(rk), parameter :: inwards = 1.0e-4_rk
       real(rk), allocatable :: inside(:, :)
       real(rk) :: centre(2), corners(2, 3)
-      integer(ik), allocatable :: asked(:), cells(:)
+      integer(ik), allocatable :: located(:), cells(:)
       integer(ik) :: c, k, v
 
       if (allocated(self%weight)) deallocate (self%weight, self%coarse_cell)
@@ -52,15 +52,15 @@ contains
             inside(:, v) = (1.0_rk - inwards)*fine%xy(:, v) + inwards*centre
          end do
       end do
-      asked = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
+      located = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
                                                v=1, fine%n_nodes)])
-      allocate (cells(size(asked)))
-      call locate(mesher, inside(:, asked), cells, error)
+      allocate (cells(size(located)))
+      call locate(mesher, inside(:, located), cells, error)
       if (allocated(error)) return
-      self%coarse_cell(asked) = cells
-      do k = 1, size(asked, kind=ik)
+      self%coarse_cell(located) = cells
+      do k = 1, size(located, kind=ik)
          corners = coarse%xy(:, coarse%cell_nodes(:, cells(k)))
-         self%weight(:, asked(k)) = barycentric(corners, fine%xy(:, asked(k)))
+         self%weight(:, located(k)) = barycentric(corners, fine%xy(:, located(k)))
       end do
    end subroutine find
 

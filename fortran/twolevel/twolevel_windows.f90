@@ -55,10 +55,10 @@ module twolevel_windows
       procedure :: network_changed
       procedure :: coarse_changed
       procedure :: intensity_of
-      procedure :: is_asked
+      procedure :: is_active
       procedure :: has_mesh
       procedure :: has_to_mesh
-      procedure :: make_anew
+      procedure :: mesh_again
       procedure :: take_body
       procedure :: n_unknowns
    end type windows_t
@@ -145,13 +145,13 @@ contains
 
    !> Evaluate intensities, drive and rosette radius of the active tips in a state of the coarse
    !! level.
-   subroutine evaluate(self, scene, network, tips, asked, is_beside_body, problem, state, &
+   subroutine evaluate(self, scene, network, tips, active, is_beside_body, problem, state, &
                        undrained, known, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network  !< of the fine level
       type(tip_t), intent(inout) :: tips(:)
-      logical, intent(in) :: asked(:)  !< (tips) active tips
+      logical, intent(in) :: active(:)  !< (tips) active tips
       logical, intent(in) :: is_beside_body  !< the windows are compared with the body as one window
       type(coarse_problem_t), intent(in) :: problem  !< with the values of the state
       type(state_t), intent(in) :: state
@@ -170,8 +170,8 @@ contains
       !$omp single
       do i = 1, size(self%slot, kind=ik)
          w = largest_first(i)
-         if (.not. self%is_asked(w, tips)) cycle
-         if (.not. any(asked(self%slot(w)%window%serves))) cycle
+         if (.not. self%is_active(w, tips)) cycle
+         if (.not. any(active(self%slot(w)%window%serves))) cycle
          !$omp task firstprivate(w) default(shared)
          call evaluate_window(self%slot(w), scene, network, tips, is_beside_body, problem, state, &
                               undrained, self%resistance, known%tip, known%history(w), &
@@ -341,13 +341,13 @@ contains
    end function has_mesh
 
    !> A window serves a tip with intensities to be evaluated.
-   pure logical function is_asked(self, window, tips)
+   pure logical function is_active(self, window, tips)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
 
-      is_asked = any(tips(self%slot(window)%window%serves)%is_loaded())
-   end function is_asked
+      is_active = any(tips(self%slot(window)%window%serves)%is_loaded())
+   end function is_active
 
    !> Whether some windows are to be meshed, or their meshes moved, for these tips.
    pure logical function has_to_mesh(self, tips)
@@ -357,7 +357,7 @@ contains
 
       has_to_mesh = .false.
       do w = 1, size(self%slot, kind=ik)
-         if (self%is_asked(w, tips) .and. .not. has_to_mesh) then
+         if (self%is_active(w, tips) .and. .not. has_to_mesh) then
             has_to_mesh = has_to_be_meshed(self%slot(w)%window, tips)
          end if
       end do
@@ -409,14 +409,14 @@ contains
    end function overlaps
 
    !> Mark the window of a tip to be meshed again, refined.
-   pure subroutine make_anew(self, tip, seen)
+   pure subroutine mesh_again(self, tip, seen)
       class(windows_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
       type(window_tip_t), intent(inout) :: seen  !< data of this tip
 
       call forget_mesh(self%slot(self%window_of(tip))%window)
       call seen%forget_coarse_error()
-   end subroutine make_anew
+   end subroutine mesh_again
 
    !> Discard the mesh of a window.
    pure subroutine forget_mesh(window)
@@ -438,7 +438,7 @@ contains
       self%slot(own)%window%serves = numbers_of(self%window_of == own)
       self%slot(body)%window%serves = numbers_of(self%window_of == body)
       call forget_mesh(self%slot(own)%window)
-      call self%make_anew(tip, seen)
+      call self%mesh_again(tip, seen)
    end subroutine take_body
 
    !> Discard all meshes: the network has changed, not only at its tips.
@@ -472,7 +472,7 @@ contains
       n_unknowns = 0
       do w = 1, size(self%slot, kind=ik)
          associate (window => self%slot(w)%window)
-            if (.not. allocated(window%made) .or. .not. self%is_asked(w, tips)) cycle
+            if (.not. allocated(window%made) .or. .not. self%is_active(w, tips)) cycle
             n_unknowns = n_unknowns + window%model%constraints%n_dofs
          end associate
       end do

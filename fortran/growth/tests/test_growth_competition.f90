@@ -1,7 +1,7 @@
 !> Competing tips: small systems with solutions by hand.
 program test_growth_competition
    use base_kinds, only: rk
-   use growth_competition, only: complementary_advances, learn_from_trial, preference
+   use growth_competition, only: complementary_advances, broyden_update, preference
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -21,10 +21,10 @@ contains
 
       true = reshape([-3.0_rk, 0.5_rk, 1.0_rk, -2.0_rk], [2, 2])
       learnt = 0.0_rk
-      call learn_from_trial(learnt, [0.1_rk, 0.0_rk], matmul(true, [0.1_rk, 0.0_rk]))
-      call learn_from_trial(learnt, [0.0_rk, 0.2_rk], matmul(true, [0.0_rk, 0.2_rk]))
+      call broyden_update(learnt, [0.1_rk, 0.0_rk], matmul(true, [0.1_rk, 0.0_rk]))
+      call broyden_update(learnt, [0.0_rk, 0.2_rk], matmul(true, [0.0_rk, 0.2_rk]))
       call checks%is_close(maxval(abs(learnt - true)), 0.0_rk, 1.0e-14_rk, "two trials")
-      call learn_from_trial(learnt, [0.0_rk, 0.0_rk], [1.0_rk, 1.0_rk])
+      call broyden_update(learnt, [0.0_rk, 0.0_rk], [1.0_rk, 1.0_rk])
       call checks%is_close(maxval(abs(learnt - true)), 0.0_rk, 1.0e-14_rk, "no change, no lesson")
    end subroutine test_learning
 

@@ -106,7 +106,7 @@ contains
       left = 0.0_rk  ! error of the direction of the last increment [rad]
       do increment = 1, 6
          drive = slope*left
-         call path%foresee(kink_angle(1.0_rk, -drive), drive, 1.0_rk, 0.1_rk, kink)
+         call path%predict(kink_angle(1.0_rk, -drive), drive, 1.0_rk, 0.1_rk, kink)
          call path%move(path%xy + 0.1_rk*(cos(kink)*path%direction &
                                           + sin(kink)*[-path%direction(2), path%direction(1)]), &
                         kink)
@@ -118,7 +118,7 @@ contains
             corrections = corrections + 1
          end do
          left = left + turn - path%kink
-         call path%settle(slope*left)
+         call path%commit(slope*left)
          if (increment == 1) call checks%is_true(corrections > 0, "the first has to be corrected")
          if (increment < 3) cycle
          call checks%is_true(corrections == 0, "later ones are foreseen")

@@ -21,7 +21,7 @@ contains
       logical :: has_moved
 
       call segment%open_segment([1.0_rk, 0.0_rk], [0.0_rk, 1.0_rk], 0.2_rk)
-      call segment%leave_rest(0.1_rk)
+      call segment%exclude_ligament(0.1_rk)
       call segment%go_to(0.2_rk, has_moved)
       call checks%is_true(has_moved, "goes on")
       call checks%is_true(segment%is_complete(), "all but the rest")

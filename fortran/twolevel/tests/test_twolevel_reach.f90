@@ -12,7 +12,7 @@ program test_twolevel_reach
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t, point_corner, point_interior, point_joint_x, point_tip
    use testing_checks, only: checks_t
-   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
+   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
    implicit none(type, external)
 
    integer, parameter :: n_cells = 11, n_points = 15
@@ -90,7 +90,7 @@ contains
 
    !> Intervals are merged with those that they meet, on the same fracture.
    subroutine test_stretches()
-      type(stretches_t) :: stretches
+      type(intervals_t) :: stretches
 
       call stretches%clear()
       call checks%is_close(stretches%length(), 0.0_rk, 0.0_rk, "none")

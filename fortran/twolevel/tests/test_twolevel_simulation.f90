@@ -10,7 +10,7 @@ program test_twolevel_simulation
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
    use testing_checks, only: checks_t
-   use twolevel_probe, only: measure_rivals
+   use twolevel_probe, only: measure_interaction
    use twolevel_results, only: cell_state
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
@@ -322,8 +322,9 @@ contains
       if (.not. all(simulation%now%segment%is_open)) return
       state = simulation%now%coarse
       tip = simulation%tip
-      call simulation%now%rivals%begin(2)
-      call measure_rivals(simulation, spread(.true., 1, 2), simulation%dt, timers, has_measured, &
+      call simulation%now%interaction%begin(2)
+      call measure_interaction(simulation, spread(.true., 1, 2), simulation%dt, timers, &
+         has_measured, &
                           error)
       call checks%no_error(error, "tips are set back")
       call checks%is_true(has_measured .eqv. any(simulation%now%segment%reached &
@@ -337,7 +338,7 @@ contains
                                        simulation%tip%drive%intensity - tip%drive%intensity])), &
                            0.0_rk, 0.0_rk, "and the tips")
       if (.not. has_measured) return
-      associate (matrix => simulation%now%rivals%measured)
+      associate (matrix => simulation%now%interaction%measured)
          call checks%is_true(all(matrix < 0.0_rk), "growth takes fluid from both")
          call checks%is_close(matrix(1, 1), matrix(2, 2), 0.1_rk*maxval(abs(matrix)), "mirrored")
          call checks%is_close(matrix(1, 2), matrix(2, 1), 0.1_rk*maxval(abs(matrix)), "both ways")

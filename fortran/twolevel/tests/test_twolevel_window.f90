@@ -15,7 +15,7 @@ program test_twolevel_window
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)

@@ -24,7 +24,7 @@
 !! An error that no window refinement can reduce and that decreases with time does not prevent
 !! growth (report_watch): the error is stated, with a warning. Errors of the coarse level in the
 !! pressure of the fractures are not included.
-module twolevel_trust
+module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_tips, timers_t
@@ -102,7 +102,7 @@ contains
 
       if (.not. is_due(self)) then
          do i = 1, size(tips, kind=ik)
-            if (self%tip(i)%is_loaded()) call judge_as_before(self%now%windows%tip(i))
+            if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do
          return
       end if
@@ -115,7 +115,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(tips, kind=ik)
          if (.not. tips(i)%is_loaded()) cycle
-         call judge_beside(self%now%reference%tip(i), self%now%windows%tip(i))
+         call compare_tip(self%now%reference%tip(i), self%now%windows%tip(i))
          self%now%windows%tip(i)%compared_at = tips(i)%xy
       end do
    end subroutine compare_with_body
@@ -140,7 +140,7 @@ contains
    end function is_due
 
    !> Errors of a tip from its K in the whole body.
-   pure subroutine judge_beside(body, tip)
+   pure subroutine compare_tip(body, tip)
       type(window_tip_t), intent(in) :: body
       type(window_tip_t), intent(inout) :: tip
       real(rk) :: of_body(2), of_window(2)
@@ -153,11 +153,11 @@ contains
       tip%of_edge = maxval(tip%uncertain)
       tip%of_elements = max(maxval(of_body), maxval(of_window))
       tip%uncertain = tip%uncertain + max(0.0_rk, of_body - of_window)
-   end subroutine judge_beside
+   end subroutine compare_tip
 
    !> Errors of a tip from the last comparison with the whole body; the mesh is another one, with
    !! other errors.
-   pure subroutine judge_as_before(tip)
+   pure subroutine keep_comparison(tip)
       type(window_tip_t), intent(inout) :: tip
 
       associate (own => [tip%found%k1_error, tip%found%k2_error])
@@ -165,7 +165,7 @@ contains
          if (tip%found%closed) tip%uncertain(1) = abs(tip%lacking(1)) + of_other_mesh*own(1)
          tip%of_elements = maxval(own)
       end associate
-   end subroutine judge_as_before
+   end subroutine keep_comparison
 
    !> Compare the edges of the windows with more and less accurate ones.
    subroutine compare_edges(self, error)
@@ -184,7 +184,7 @@ contains
       associate (tips => self%now%windows%tip, scene => self%scene, mesh => self%problem%mesh, &
                  linear => self%problem%values%nodal(:2, :))
          do w = 1, size(self%windows%slot, kind=ik)
-            if (.not. self%windows%is_asked(w, self%tip)) cycle
+            if (.not. self%windows%is_active(w, self%tip)) cycle
             associate (window => self%windows%slot(w)%window, &
                        history => self%now%windows%history(w))
                call window%intensities_with(history, better, error, &
@@ -242,7 +242,7 @@ contains
       end if
       !$omp parallel do schedule(dynamic, 1)
       do w = 1, size(self%windows%slot, kind=ik)
-         if (.not. self%windows%is_asked(w, self%tip)) cycle
+         if (.not. self%windows%is_active(w, self%tip)) cycle
          call self%windows%slot(w)%window%intensities_with(self%now%windows%history(w), rough, &
                                                            failure(w)%error, pressure= &
                                                            self%now%coarse%unknowns(3, :))
@@ -309,4 +309,4 @@ contains
       if (is_closed) error(1) = abs(difference(1))
    end function shown
 
-end module twolevel_trust
+end module twolevel_coarse_errors

@@ -5,7 +5,7 @@
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
 !! fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in an infinite plane.
 !> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
-program test_twolevel_doubt
+program test_twolevel_refinement
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
@@ -14,11 +14,11 @@ program test_twolevel_doubt
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use report_rows, only: event_growth_uncertain
-   use twolevel_doubt, only: find_improvements, improve_windows, note_uncertain_tips
+   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
    use twolevel_simulation, only: twolevel_simulation_t
-   use twolevel_stepping, only: improvement_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_stepping, only: refinement_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
 
    real(rk), parameter :: a = 0.05_rk  !< half-length [m]
@@ -84,11 +84,11 @@ contains
    subroutine improve(simulation, any_improved)
       type(twolevel_simulation_t), intent(inout) :: simulation
       logical, intent(out) :: any_improved
-      type(improvement_t), allocatable :: improvements(:)
+      type(refinement_t), allocatable :: refinements(:)
 
-      call find_improvements(simulation, 0.0_rk, improvements)
-      any_improved = size(improvements) > 0
-      call improve_windows(simulation, improvements)
+      call find_refinements(simulation, 0.0_rk, refinements)
+      any_improved = size(refinements) > 0
+      call refine_windows(simulation, refinements)
    end subroutine improve
 
    !> Whether each tip's separate window has a mesh.
@@ -213,4 +213,4 @@ contains
       call checks%is_true(.not. any(are_built(simulation)), "its own is not built")
    end subroutine test_body
 
-end program test_twolevel_doubt
+end program test_twolevel_refinement

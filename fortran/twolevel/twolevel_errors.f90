@@ -13,13 +13,13 @@
 !! pressure rise. Where all fluid leaks off, a crack in equilibrium grows until the injected fluid
 !! leaks off over the true length, so the tip positions have the same error again. Layers of viscous
 !! flow at a tip need finer cells; their error is not included.
-module twolevel_certainty
+module twolevel_errors
    use base_kinds, only: rk
-   use twolevel_course, only: course_t
+   use twolevel_time_error, only: accumulated_error_t
    implicit none(type, external)
    private
 
-   public :: certainty_t, tip_excess_t
+   public :: stated_errors_t, tip_excess_t
 
    !> error of a tip position, over the length of the coarse cell at the tip [-]
    real(rk), parameter :: share = 0.1_rk
@@ -33,32 +33,32 @@ module twolevel_certainty
    end type tip_excess_t
 
    !> Estimated errors, and the data of the last tries and of the last step.
-   type :: certainty_t
+   type :: stated_errors_t
       real(rk) :: length = 0.0_rk  !< error of the length of all fractures [m]
       real(rk) :: pressure = 0.0_rk  !< error of the pressure at the wells [Pa]
       real(rk), allocatable :: tip(:)  !< (tips) errors of the positions [m]
       integer :: tries = 0  !< number of tries of the present step
       real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two tries
       real(rk) :: slope = 0.0_rk  !< derivative of the pressure with respect to the length [Pa/m]
-      type(course_t) :: course  !< time error of the pressure [Pa]
+      type(accumulated_error_t) :: time_error  !< time error of the pressure [Pa]
    contains
       procedure :: begin_step
       procedure :: see_try
       procedure :: accept
-   end type certainty_t
+   end type stated_errors_t
 
 contains
 
    !> Begin the tries of a new step.
    elemental subroutine begin_step(self)
-      class(certainty_t), intent(inout) :: self
+      class(stated_errors_t), intent(inout) :: self
 
       self%tries = 0
    end subroutine begin_step
 
    !> Update the derivative of the pressure from a try of the step.
    elemental subroutine see_try(self, length, pressure)
-      class(certainty_t), intent(inout) :: self
+      class(stated_errors_t), intent(inout) :: self
       real(rk), intent(in) :: length  !< length of the fractures in the try [m]
       real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
       real(rk) :: change(2)
@@ -73,7 +73,7 @@ contains
 
    !> Update the errors after an accepted step.
    pure subroutine accept(self, step, pressure, tips, length, rise, leaked)
-      class(certainty_t), intent(inout) :: self
+      class(stated_errors_t), intent(inout) :: self
       real(rk), intent(in) :: step  !< length of the step [s]
       real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
       type(tip_excess_t), intent(in) :: tips(:)
@@ -85,10 +85,10 @@ contains
       if (.not. allocated(self%tip)) allocate (self%tip(size(tips)), source=0.0_rk)
       where (tips%grows) self%tip = tips%error/abs(tips%slope) + share*tips%cell*(1.0_rk + leaked)
       self%length = sum(self%tip)
-      call self%course%follow(step, pressure)
-      if (any(tips%grows)) self%course%error = 0.0_rk
-      self%pressure = abs(self%slope)*self%length + abs(self%course%error)
+      call self%time_error%follow(step, pressure)
+      if (any(tips%grows)) self%time_error%error = 0.0_rk
+      self%pressure = abs(self%slope)*self%length + abs(self%time_error%error)
       if (length > 0.0_rk) self%pressure = self%pressure + share*sum(tips%cell)/length*rise
    end subroutine accept
 
-end module twolevel_certainty
+end module twolevel_errors

@@ -1,6 +1,6 @@
 !> Tips so near to a target that only a ligament lies between: they join it at once where K_eq
 !! exceeds K_IC, and no other tips do.
-program test_twolevel_pieces
+program test_twolevel_segments
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
@@ -135,4 +135,4 @@ contains
                                       - [2.0_rk, 1.0_rk])), 0.0_rk, 1.0e-4_rk, "straight ahead")
    end subroutine test_side
 
-end program test_twolevel_pieces
+end program test_twolevel_segments

@@ -1,14 +1,14 @@
 !> Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
 !! their signs.
-module twolevel_course
+module twolevel_time_error
    use base_kinds, only: rk
    implicit none(type, external)
    private
 
-   public :: course_t
+   public :: accumulated_error_t
 
    !> Last value of the scalar, its rate, and the accumulated error.
-   type :: course_t
+   type :: accumulated_error_t
       logical :: is_followed = .false.  !< a last value exists
       real(rk) :: value = 0.0_rk
       real(rk) :: rate = 0.0_rk  !< rate in the last step [1/s]
@@ -16,7 +16,7 @@ module twolevel_course
       real(rk) :: step = 0.0_rk  !< length of the last step [s]
    contains
       procedure :: follow
-   end type course_t
+   end type accumulated_error_t
 
 contains
 
@@ -24,7 +24,7 @@ contains
    !! h (rate before)); the first step has no error estimate. A step of length 0 sets the value at a
    !! new start.
    elemental subroutine follow(self, step, value)
-      class(course_t), intent(inout) :: self
+      class(accumulated_error_t), intent(inout) :: self
       real(rk), intent(in) :: step  !< [s]
       real(rk), intent(in) :: value
 
@@ -40,4 +40,4 @@ contains
       self%value = value
    end subroutine follow
 
-end module twolevel_course
+end module twolevel_time_error

@@ -1,8 +1,8 @@
 !> Tip groups: tips that differ only by numerical errors advance equally; tips with real differences
 !! separate.
-program test_growth_company
+program test_growth_groups
    use base_kinds, only: ik, rk
-   use growth_rivals, only: company_t, could_part, lags_behind, rivals_t
+   use growth_interaction, only: tip_groups_t, could_separate, lags_behind, interaction_t
    use growth_segment, only: segment_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -34,26 +34,28 @@ contains
    !> In a group, errors of the meshes reduce K_eq of one and the other tip alternately by six per
    !! cent.
    subroutine test_chance()
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       integer(ik) :: kind(2)
       real(rk) :: drive(2), gain
       integer :: i
 
-      call rivals%begin(2)
+      call interaction%begin(2)
       drive = 1.0_rk
       gain = 0.0_rk
       do i = 1, 100
- call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+ call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+    interaction, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
          drive = [1.0_rk, 0.94_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
-         call company%accept(drive, spread(0.4_rk*increment, 1, 2), spread(increment, 1, 2))
+         call groups%accept(drive, spread(0.4_rk*increment, 1, 2), spread(increment, 1, 2))
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-     call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
- call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+     call groups%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+ call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+    interaction, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
 
@@ -66,12 +68,12 @@ contains
 
    !> Where a lead increases K_eq of a tip, only tips within their errors are equal.
    subroutine test_rivals()
-      real(rk), parameter :: worth(2) = [0.9_rk, 1.1_rk]*could_part/increment
+      real(rk), parameter :: worth(2) = [0.9_rk, 1.1_rk]*could_separate/increment
       integer, parameter :: steps(2) = [101, 1]
       integer :: k
 
       do k = 1, 2
-         call checks%is_true(steps_in_company(0.02_rk, worth(k)) == steps(k), "rivals")
+         call checks%is_true(steps_in_company(0.02_rk, worth(k)) == steps(k), "interaction")
       end do
    end subroutine test_rivals
 
@@ -87,20 +89,20 @@ contains
 
    !> A tip that has separated stays alone, although it equals the others; these stay one group.
    subroutine test_parting()
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       integer(ik) :: kind(3)
       real(rk) :: same(3)
 
-      call rivals%begin(3)
+      call interaction%begin(3)
       same = 1.0_rk
-      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              spread(increment, 1, size(same)), rivals, kind)
+      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              spread(increment, 1, size(same)), interaction, kind)
       call checks%is_true(all(kind == 1), "all alike")
-      call company%part(2_ik)
-      call company%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
-      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              spread(increment, 1, size(same)), rivals, kind)
+      call groups%remove_tip(2_ik)
+      call groups%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
+      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              spread(increment, 1, size(same)), interaction, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
 
@@ -108,16 +110,16 @@ contains
    logical function are_one(one, other, off, gain)
       real(rk), intent(in) :: one, other, off  !< [-]
       real(rk), intent(in), optional :: gain(2)  !< [m]
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       integer(ik) :: kind(2)
       real(rk) :: come(2)
 
-      call rivals%begin(2)
+      call interaction%begin(2)
       come = 0.0_rk
       if (present(gain)) come = gain
-      call company%find_kinds([one, other], [off, off], come, neither, &
-                              spread(increment, 1, 2), rivals, kind)
+      call groups%find_groups([one, other], [off, off], come, neither, &
+                              spread(increment, 1, 2), interaction, kind)
       are_one = kind(1) == kind(2)
    end function are_one
 
@@ -126,27 +128,28 @@ contains
    integer function steps_in_company(lack, lead) result(steps)
       real(rk), intent(in) :: lack  !< [-]
       real(rk), intent(in), optional :: lead  !< change of K_eq/K_IC per length of a lead [1/m]
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       type(segment_t) :: segment
       integer(ik) :: kind(2)
       real(rk) :: drive(2), gain
       real(rk), parameter :: moved = 0.2_rk*increment
 
-      call rivals%begin(2)
+      call interaction%begin(2)
       if (present(lead)) then
-         call rivals%note(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
-         call rivals%note(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
+         call interaction%store_column(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
+         call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
       end if
       drive = 1.0_rk
       gain = 0.0_rk
       do steps = 0, 100
- call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+ call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+    interaction, kind)
          if (kind(1) /= kind(2)) return
          drive = [1.0_rk, 1.0_rk - lack]
-         call company%accept(drive, [moved, moved], spread(increment, 1, 2))
+         call groups%accept(drive, [moved, moved], spread(increment, 1, 2))
          gain = gain + moved
       end do
    end function steps_in_company
 
-end program test_growth_company
+end program test_growth_groups

@@ -1,6 +1,6 @@
 !> Errors of intensities by the coarse level: zero where both levels are exact; the windows' jumps
 !! projected onto the coarse level; interpolation that is exact for quadratic fields.
-program test_twolevel_trust
+program test_twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
@@ -11,7 +11,7 @@ program test_twolevel_trust
    use twolevel_faces, only: coarse_jumps
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_thin_layers, only: layer_at_tip, layer_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
 
    real(rk), parameter :: ends_x(2) = [0.8_rk, 1.2_rk], ends_y(2) = [0.9_rk, 1.1_rk]
@@ -311,4 +311,4 @@ contains
       end do
    end function passing_of
 
-end program test_twolevel_trust
+end program test_twolevel_coarse_errors

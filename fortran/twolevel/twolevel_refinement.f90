@@ -7,7 +7,7 @@
 !! requires smaller elements. The error of the coarse level, which enters through the displacement
 !! on the edge, requires a larger window, and finally the body as one window for all tips. A window
 !! keeps its refined size and elements, and moves with its tip.
-module twolevel_doubt
+module twolevel_refinement
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use report_limits, only: limit_growth_error
@@ -15,39 +15,39 @@ module twolevel_doubt
    use report_watch, only: uncertainty
    use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, improvement_t
+   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, refinement_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
-   public :: find_improvements, improve_windows, note_uncertain_tips
+   public :: find_refinements, refine_windows, note_uncertain_tips
 
 contains
 
    !> Find refinements of the windows of uncertain tips; empty where none is possible. The tips are
    !! to be evaluated again with the refined windows.
-   subroutine find_improvements(self, time, improvements)
+   subroutine find_refinements(self, time, refinements)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< time of the last accepted state [s]
-      type(improvement_t), allocatable, intent(out) :: improvements(:)
-      type(improvement_t) :: improvement
+      type(refinement_t), allocatable, intent(out) :: refinements(:)
+      type(refinement_t) :: refinement
       character(len=:), allocatable :: what
       integer(ik) :: i
 
-      allocate (improvements(0))
+      allocate (refinements(0))
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), toughness => self%rules%toughness)
             if (.not. is_uncertain(self, i)) cycle
-            improvement%tip = i
-            call choose(self, i, improvement%kind, what)
+            refinement%tip = i
+            call choose(self, i, refinement%kind, what)
             if (.not. allocated(what)) cycle
-            improvements = [improvements, improvement]
+            refinements = [refinements, refinement]
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
                                           " % of K_IC before", tip%fracture, tip%xy)
          end associate
       end do
-   end subroutine find_improvements
+   end subroutine find_refinements
 
    !> Report the uncertain tips of an accepted state: a limit of the run, and an event at the first
    !! such state of each tip.
@@ -124,32 +124,32 @@ contains
    end subroutine choose
 
    !> Refine the windows when they are meshed the next time.
-   subroutine improve_windows(self, improvements)
+   subroutine refine_windows(self, refinements)
       class(two_levels_t), intent(inout) :: self
-      type(improvement_t), intent(in) :: improvements(:)
+      type(refinement_t), intent(in) :: refinements(:)
       integer :: k
 
-      do k = 1, size(improvements)
-         associate (i => improvements(k)%tip, windows => self%windows, &
-                    seen => self%now%windows%tip(improvements(k)%tip))
-            select case (improvements(k)%kind)
+      do k = 1, size(refinements)
+         associate (i => refinements(k)%tip, windows => self%windows, &
+                    seen => self%now%windows%tip(refinements(k)%tip))
+            select case (refinements(k)%kind)
             case (improve_elements)
                seen%times_finer = seen%times_finer + 1
-               call windows%make_anew(i, seen)
+               call windows%mesh_again(i, seen)
                if (self%scene%discretization%window_is_body) cycle
                self%now%reference%tip(i)%times_finer = seen%times_finer
-               call self%reference%make_anew(i, self%now%reference%tip(i))
+               call self%reference%mesh_again(i, self%now%reference%tip(i))
             case (improve_edge)
                associate (window => windows%slot(windows%window_of(i))%window)
                   window%times_larger = window%times_larger + 1
                end associate
-               call windows%make_anew(i, seen)
+               call windows%mesh_again(i, seen)
             case default
                call windows%take_body(i, seen)
             end select
          end associate
       end do
-   end subroutine improve_windows
+   end subroutine refine_windows
 
    !> Whether a window of this size would cost about as much as the body, where the body can be the
    !! window.
@@ -164,4 +164,4 @@ contains
       costs_as_body = costs_as_body .and. self%problem%mesh%fracture%n_cells <= self%reference_most
    end function costs_as_body
 
-end module twolevel_doubt
+end module twolevel_refinement

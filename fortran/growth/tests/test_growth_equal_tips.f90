@@ -1,7 +1,7 @@
 !> Tip groups: equal tips count as one, whatever their order.
-program test_growth_kinds
+program test_growth_equal_tips
    use base_kinds, only: ik, rk
-   use growth_competition, only: likes, matrix_of_kinds, means, numbered, of_kinds
+   use growth_competition, only: likes, matrix_of_groups, means, numbered, values_of_groups
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -51,13 +51,15 @@ contains
 
       matrix = reshape([-3.0_rk, 1.0_rk, 0.5_rk, 2.0_rk, -5.0_rk, 4.0_rk, 0.25_rk, 1.5_rk, &
                         -2.0_rk], [3, 3])
-      reduced = matrix_of_kinds(kind, matrix)
+      reduced = matrix_of_groups(kind, matrix)
       moved = means(kind, matmul(matrix, [1.0_rk, 0.0_rk, 1.0_rk]))
-      call checks%is_close(maxval(abs(reduced(:, 1) - of_kinds(kind, moved))), 0.0_rk, 1.0e-15_rk, &
+      call checks%is_close(maxval(abs(reduced(:, 1) - values_of_groups(kind, moved))), 0.0_rk, &
+         1.0e-15_rk, &
                            "a kind moves")
       moved = means(kind, matmul(matrix, [0.0_rk, 1.0_rk, 0.0_rk]))
-      call checks%is_close(maxval(abs(reduced(:, 2) - of_kinds(kind, moved))), 0.0_rk, 1.0e-15_rk, &
+      call checks%is_close(maxval(abs(reduced(:, 2) - values_of_groups(kind, moved))), 0.0_rk, &
+         1.0e-15_rk, &
                            "one alone moves")
    end subroutine test_values
 
-end program test_growth_kinds
+end program test_growth_equal_tips

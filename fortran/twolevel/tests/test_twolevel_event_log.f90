@@ -1,5 +1,5 @@
 !> Event log and rows of the tips: before and after growth, joints, arrests, contact.
-program test_twolevel_chronicle
+program test_twolevel_event_log
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: network_of_scene
@@ -145,4 +145,4 @@ contains
       call checks%is_true(.not. simulation%is_over(), "but for one more state")
    end subroutine test_gain
 
-end program test_twolevel_chronicle
+end program test_twolevel_event_log
