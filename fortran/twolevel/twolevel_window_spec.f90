@@ -25,8 +25,8 @@ module twolevel_window_spec
 
    !> Growth of element size along fractures with the distance from the tips served, up to the size
    !! of coarse fracture cells, below which the pressure of the fluid is not resolved; and, where
-   !! the errors are compared with the whole body (twolevel_coarse_errors), growth around the rosettes
-   !! beyond three radii, the range of the interaction integrals [-].
+   !! the errors are compared with the whole body (twolevel_coarse_errors), growth around the
+   !! rosettes beyond three radii, the range of the interaction integrals [-].
    real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
 
 contains
