@@ -10,63 +10,67 @@
 !! improve the matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei
 !! and Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003,
 !! sections 1.5 and 8.3); otherwise the trust region shrinks. Where this does not converge, as at
-!! jumps of K_eq, each tip advances from its lower bound until it does not exceed its toughness, and
-!! its place is found by bisection. The farthest place at which it exceeded its toughness never
-!! falls, so that this search ends. The search may leave a tip between its bounds with K_eq < K_IC:
-!! beyond a drop of K_eq, or where other tips have grown past it.
+!! jumps of K_eq, each tip advances from its lower bound until K_eq <= K_IC, and its position is
+!! found by bisection. The farthest position with K_eq > K_IC never decreases, so that this search
+!! ends. The search may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or
+!! where other tips have grown past it.
 module growth_advances
    use base_kinds, only: rk
-   use growth_competition, only: complementary_advances, learn_from_trial
+   use growth_competition, only: complementary_advances, broyden_update
    implicit none(type, external)
    private
 
    public :: advances_t, in_equilibrium
 
-   !> Shortest change of a place, over the distance between its bounds. The excess has been seen to
-   !! change by 33 over a segment, so that this is worth 3e-3 of K_IC.
+   !> Shortest change of a position, over the distance between its bounds [-]. The excess has been
+   !! seen to change by 33 over a segment, so that this is worth 3e-3 of K_IC.
    real(rk), parameter :: resolution = 1.0e-4_rk
 
-   !> Slope of the excess, over the distance between the bounds, below which a tip is not expected
-   !! to come to rest.
+   !> Slope of the excess, times the distance between the bounds, below which no equilibrium of a
+   !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
 
-   !> A solution on its way.
+   !> State of the iteration.
    type :: advances_t
-      real(rk), allocatable :: place(:)  !< (tips) to be evaluated next [m]
+      real(rk), allocatable :: place(:)  !< (tips) positions to be evaluated next [m]
       real(rk), allocatable :: matrix(:, :)  !< (tips, tips) d(excess)/da [1/m]
       integer :: evaluations = 0
-      logical :: is_monotone = .false.  !< Newton steps have made no headway
+      logical :: is_monotone = .false.  !< the monotone search has replaced the Newton steps
       real(rk), allocatable, private :: lower(:), upper(:)  !< [m]
-      real(rk), allocatable, private :: length(:)  !< between them [m]
-      real(rk), allocatable, private :: sliver(:)  !< below the upper bounds; counts as there [m]
-      real(rk), allocatable, private :: scale(:)  !< of the natural residual [1/m]
-      real(rk), allocatable, private :: best(:)  !< place with the least residual so far [m]
-      real(rk), allocatable, private :: excess(:)  !< there [-]
-      real(rk), private :: residual = huge(1.0_rk)  !< there [-]
-      real(rk), private :: radius = 1.0_rk  !< of the trust region, over the distance of the bounds
-      integer, private :: rejected = 0  !< proposals in a row
+      real(rk), allocatable, private :: length(:)  !< distance between the bounds [m]
+      !> distance from the upper bound within which a tip is put onto the bound [m]
+      real(rk), allocatable, private :: sliver(:)
+      real(rk), allocatable, private :: scale(:)  !< scale of the natural residual [1/m]
+      real(rk), allocatable, private :: best(:)  !< position with the least residual so far [m]
+      real(rk), allocatable, private :: excess(:)  !< value at `best` [-]
+      real(rk), private :: residual = huge(1.0_rk)  !< value at `best` [-]
+      !> trust region, over the distance between the bounds [-]
+      real(rk), private :: radius = 1.0_rk
+      integer, private :: rejected = 0  !< number of proposals rejected in succession
       ! Bracket of each tip in the monotone search.
-      real(rk), allocatable, private :: near(:)  !< farthest place with K_eq > K_IC [m]
-      real(rk), allocatable, private :: far(:)  !< nearest beyond that with K_eq <= K_IC [m]
+      real(rk), allocatable, private :: near(:)  !< farthest position with K_eq > K_IC [m]
+      !> nearest position beyond `near` with K_eq <= K_IC [m]
+      real(rk), allocatable, private :: far(:)
       integer, private :: monotone_steps = 0
    contains
       procedure :: begin
       procedure :: improve
       procedure, private :: judge
-      procedure, private :: learn
+      procedure, private :: update_matrix
       procedure, private :: propose
       procedure, private :: advance
    end type advances_t
 
 contains
 
-   !> Begin at a place with an estimate of the matrix.
+   !> Begin at a position with an estimate of the matrix.
    subroutine begin(self, lower, upper, place, matrix, sliver)
       class(advances_t), intent(out) :: self
       real(rk), intent(in) :: lower(:), upper(:)  !< (tips) bounds, lower <= upper [m]
-      real(rk), intent(in) :: place(:)  !< (tips) to be evaluated first [m]
+      real(rk), intent(in) :: place(:)  !< (tips) position to be evaluated first [m]
       real(rk), intent(in) :: matrix(:, :)  !< (tips, tips) estimate of d(excess)/da [1/m]
-      real(rk), intent(in), optional :: sliver(:)  !< so near to its bound a tip goes there [m]
+      !> (tips) distance from the upper bound within which a tip is put onto the bound [m]
+      real(rk), intent(in), optional :: sliver(:)
       integer :: i
 
       self%lower = lower
@@ -79,18 +83,18 @@ contains
       self%scale = [(max(-matrix(i, i), flat/self%length(i)), i=1, size(lower))]
    end subroutine begin
 
-   !> Take the excess at `place`, and set `place` to where it is to be evaluated next. It has not
-   !! moved where the tips are in equilibrium there within the tolerance.
+   !> Process the excess at `place`, and set `place` to the position to be evaluated next.
+   !! `has_moved` is false where the tips are in equilibrium at `place` within the tolerance.
    subroutine improve(self, excess, tolerance, has_moved)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) K_eq/K_IC - 1 at `place` [-]
-      real(rk), intent(in) :: tolerance  !< on the excess [-]
+      real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       logical, intent(out) :: has_moved
       integer, parameter :: evaluations_max = 16, rejected_max = 5
       logical :: is_stuck
 
       self%evaluations = self%evaluations + 1
-      if (self%evaluations > 1) call self%learn(excess)
+      if (self%evaluations > 1) call self%update_matrix(excess)
       if (.not. self%is_monotone) call self%judge(excess)
       has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance))
       if (.not. has_moved) return
@@ -111,7 +115,7 @@ contains
       end if
    end subroutine improve
 
-   !> The tips are where the conditions hold within the tolerance.
+   !> Whether a tip satisfies its complementarity condition within the tolerance.
    elemental logical function in_equilibrium(place, excess, lower, upper, tolerance)
       real(rk), intent(in) :: place, lower, upper  !< [m]
       real(rk), intent(in) :: excess, tolerance  !< [-]
@@ -125,7 +129,7 @@ contains
       end if
    end function in_equilibrium
 
-   !> Accept the evaluated place if the residual has fallen; shrink the trust region otherwise.
+   !> Accept the evaluated position if the residual has fallen; shrink the trust region otherwise.
    pure subroutine judge(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) [-]
@@ -148,10 +152,10 @@ contains
       end if
    end subroutine judge
 
-   !> Broyden update of the matrix, in lengths of the segments.
-   pure subroutine learn(self, excess)
+   !> Broyden update of the matrix, with advances scaled by the lengths of the segments.
+   pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
-      real(rk), intent(in) :: excess(:)  !< (tips) at `place` [-]
+      real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
       real(rk) :: scaled(size(excess), size(excess))
       integer :: j
 
@@ -159,19 +163,20 @@ contains
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
          end do
-         call learn_from_trial(scaled, (self%place - self%best)/length, excess - self%excess)
+         call broyden_update(scaled, (self%place - self%best)/length, excess - self%excess)
          do j = 1, size(excess)
             self%matrix(:, j) = scaled(:, j)/length(j)
          end do
       end associate
-   end subroutine learn
+   end subroutine update_matrix
 
-   !> The solution of the linear problem within the trust region around the best place. Tips that
-   !! are at an upper bound stay there if they would go back by no more than a sliver.
+   !> Solve the linear problem within the trust region around the best position. Tips at an upper
+   !! bound stay there if they would retreat by no more than `sliver`.
    subroutine propose(self, has_moved, is_stuck)
       class(advances_t), intent(inout) :: self
       logical, intent(out) :: has_moved
-      logical, intent(out) :: is_stuck  !< the linear problem leads nowhere
+      !> the solution of the linear problem is shorter than the resolution
+      logical, intent(out) :: is_stuck
       real(rk), dimension(size(self%best)) :: change, reach, to
 
       reach = self%radius*self%length
@@ -186,12 +191,13 @@ contains
       self%place = to
    end subroutine propose
 
-   !> Tips that exceed their toughness advance, tips below it go back into their brackets.
+   !> One step of the monotone search: tips with K_eq > K_IC advance, tips with K_eq < K_IC return
+   !! into their brackets.
    pure subroutine advance(self, tolerance, has_moved)
       class(advances_t), intent(inout) :: self
-      real(rk), intent(in) :: tolerance  !< on the excess [-]
+      real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       logical, intent(out) :: has_moved
-      real(rk), parameter :: growth = 2.0_rk**0.25_rk  ! of the least step
+      real(rk), parameter :: growth = 2.0_rk**0.25_rk  ! of the least step, per evaluation [-]
       real(rk) :: step, to
       integer :: i
 

@@ -1,18 +1,18 @@
-!> Tips that grow together at their toughness: corrections of their advances, and whether one of
-!! them could run ahead.
+!> Tips that grow together at their toughness: corrections of their advances, and stability of equal
+!! growth.
 !!
 !! For small changes the intensities are K_i + sum_j M_ij da_j + c_i df, with the load factor f
 !! (growth_control) and the tip interaction matrix M. Equal growth is stable where M is negative
 !! definite on the advances on which the load does no work, c^T da = 0. Otherwise there are other
-!! solutions, in which one tip runs ahead and the load unloads the rest.
+!! solutions, in which one tip runs ahead and the load on the other tips falls.
 !!
 !! Where a fluid drives the tips there is no load factor: the fluid volume is fixed, and c = 0. Then
 !! each tip has not advanced and K_i <= K_IC, or has advanced and K_i = K_IC, a linear
 !! complementarity problem. It has one solution where M is negative definite, otherwise several:
-!! here the tips that exceed their toughness most grow first, and other tips only as far as they
-!! must.
+!! here the tips with the largest excess grow first, and other tips only as far as needed to satisfy
+!! the conditions.
 !!
-!! Tip groups: equal tips advance equally, and count as one.
+!! Tip groups: equal tips advance equally, and count as one unknown.
 !!
 !! Tips that have advanced equally far, and whose intensities differ by less than their errors,
 !! advance equally as long as this holds: otherwise the errors of their meshes would separate them.
@@ -25,23 +25,24 @@ module growth_competition
    implicit none(type, external)
    private
 
-   public :: complementary_advances, learn_from_trial, likes, matrix_of_kinds, means, numbered
-   public :: of_kinds, preference
+   public :: complementary_advances, broyden_update, likes, matrix_of_groups, means, numbered
+   public :: values_of_groups, preference
 
-   ! Where a tip is within its bounds.
+   ! Position of a tip with respect to its bounds.
    integer, parameter :: at_lower = -1, is_free = 0, at_upper = 1
 
 contains
 
-   !> The changes of the advances of a group, within bounds, after which no tip that could go on
-   !! exceeds its toughness, and none that could go back is below it (principal pivoting, Cottle and
-   !! Dantzig 1968). From their lower bounds tips begin to move one after the other, first the one
-   !! that exceeds its toughness most; those that move already follow it on theirs. So of several
-   !! solutions it is the one in which those ahead grow and those behind stay.
+   !> Changes of the advances of a group, within bounds, after which no tip below its upper bound
+   !! exceeds its toughness, and no tip above its lower bound is below it (principal pivoting,
+   !! Cottle and Dantzig 1968). From their lower bounds the tips become free one after the other,
+   !! the one with the largest excess first; the tips that are free already follow at their
+   !! toughness. Of several solutions the result is therefore the one in which leading tips grow and
+   !! the others stay.
    subroutine complementary_advances(excess, matrix, lower, upper, change)
-      real(rk), intent(in) :: excess(:)  !< K_eq - K_IC [Pa m^1/2]
+      real(rk), intent(in) :: excess(:)  !< K_eq - K_IC before the changes [Pa m^1/2]
       real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
-      real(rk), intent(in) :: lower(:), upper(:)  !< on the changes [m]
+      real(rk), intent(in) :: lower(:), upper(:)  !< bounds of the changes [m]
       real(rk), intent(out) :: change(size(excess))  !< [m]
       integer :: place(size(excess)), step
       real(rk) :: left(size(excess)), least
@@ -59,13 +60,13 @@ contains
       end do
    end subroutine complementary_advances
 
-   !> Move one tip from its bound, and with it those that are free, until it is at its toughness or
+   !> Move one tip from its bound, and with it the free tips, until the tip is at its toughness or
    !! at its other bound.
    subroutine move_tip(k, matrix, lower, upper, excess, place, change)
       integer, intent(in) :: k
       real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
       real(rk), intent(in) :: lower(:), upper(:)  !< [m]
-      real(rk), intent(in) :: excess  !< of the tip [Pa m^1/2]
+      real(rk), intent(in) :: excess  !< excess of the tip [Pa m^1/2]
       integer, intent(inout) :: place(:)
       real(rk), intent(inout) :: change(:)  !< [m]
       real(rk) :: bound(size(change)), left, rate(size(change)), room, slope
@@ -98,7 +99,8 @@ contains
       end do
    end subroutine move_tip
 
-   !> How the free tips move with one that does by one, if they stay at their toughness.
+   !> Rates at which the free tips advance, at constant intensity, while one tip advances at rate 1
+   !! [-].
    function follow(k, matrix, moves) result(rate)
       integer, intent(in) :: k
       real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
@@ -120,12 +122,12 @@ contains
       if (info == 0) rate(free) = right(:, 1)
    end function follow
 
-   !> The matrix after a trial: the least change of it with which it would have told the outcome
-   !! (Broyden 1965).
-   pure subroutine learn_from_trial(matrix, change, outcome)
+   !> Broyden update of the matrix: the smallest change (Frobenius norm) with which the matrix
+   !! predicts the measured change of the intensities (Broyden 1965).
+   pure subroutine broyden_update(matrix, change, outcome)
       real(rk), intent(inout) :: matrix(:, :)  !< M [Pa m^-1/2]
-      real(rk), intent(in) :: change(:)  !< of the advances [m]
-      real(rk), intent(in) :: outcome(:)  !< change of the intensities, at one load [Pa m^1/2]
+      real(rk), intent(in) :: change(:)  !< change of the advances [m]
+      real(rk), intent(in) :: outcome(:)  !< change of the intensities at constant load [Pa m^1/2]
       real(rk) :: length, missed(size(change))
       integer :: j
 
@@ -135,11 +137,10 @@ contains
       do j = 1, size(change)
          matrix(:, j) = matrix(:, j) + missed*change(j)/length
       end do
-   end subroutine learn_from_trial
+   end subroutine broyden_update
 
-   !> How strongly a group prefers that some of it run ahead: the largest eigenvalue of M on the
-   !! advances on which the load does no work. Negative: they grow together. A group of one has
-   !! nobody to compete with.
+   !> Largest eigenvalue of M on the advances on which the load does no work. Negative: equal growth
+   !! of the group is stable. A group of one tip cannot separate: -huge.
    pure real(rk) function preference(matrix, slope)
       real(rk), intent(in) :: matrix(:, :)  !< M [Pa m^-1/2]
       real(rk), intent(in) :: slope(:)  !< c [Pa m^1/2]
@@ -149,7 +150,8 @@ contains
       n = size(slope)
       preference = -huge(1.0_rk)
       if (n < 2) return
-      ! A reflection takes the load's direction to the first axis: the rest is what it leaves.
+      ! A Householder reflection maps the load's direction onto the first axis; the other axes span
+      ! the advances on which the load does no work.
       mirror = slope/norm2(slope)
       mirror(1) = mirror(1) + sign(1.0_rk, mirror(1))
       mirror = mirror/norm2(mirror)
@@ -163,7 +165,7 @@ contains
       preference = largest_eigenvalue(turned(2:, 2:))
    end function preference
 
-   !> Of a symmetric matrix; without a number where LAPACK finds none.
+   !> Largest eigenvalue of a symmetric matrix; NaN where LAPACK does not converge.
    pure real(rk) function largest_eigenvalue(matrix)
       real(rk), intent(in) :: matrix(:, :)
       real(rk) :: a(size(matrix, 1), size(matrix, 1)), eigenvalues(size(matrix, 1))
@@ -176,8 +178,8 @@ contains
       largest_eigenvalue = merge(eigenvalues(n), ieee_value(1.0_rk, ieee_quiet_nan), info == 0)
    end function largest_eigenvalue
 
-   !> The first tip that is like each, itself if there is none before it, by what is alike in pairs
-   !! and all that follows from that.
+   !> Index of the first tip of each tip's group. A group is a connected component of the pairs of
+   !! equal tips.
    pure function likes(alike) result(first)
       logical, intent(in) :: alike(:, :)  !< (tips, tips)
       integer(ik) :: first(size(alike, 1))
@@ -195,7 +197,7 @@ contains
       end do
    end function likes
 
-   !> Marks as numbers from 1, in the order in which they come.
+   !> Groups renumbered from 1, in order of first appearance.
    pure function numbered(marks) result(number)
       integer(ik), intent(in) :: marks(:)
       integer(ik) :: number(size(marks))
@@ -213,9 +215,9 @@ contains
       end do
    end function numbered
 
-   !> The means over each kind, for all of it.
+   !> Mean over the group of each tip, one value per tip.
    pure function means(kind, values)
-      integer(ik), intent(in) :: kind(:)  !< from 1
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       real(rk), intent(in) :: values(:)
       real(rk) :: means(size(values))
       integer :: k
@@ -225,9 +227,10 @@ contains
       end do
    end function means
 
-   !> The matrix between kinds of tips, all of which go equally far.
-   pure function matrix_of_kinds(kind, matrix) result(reduced)
-      integer(ik), intent(in) :: kind(:)  !< from 1
+   !> Interaction matrix of the groups: mean change of a group's intensities per advance of all tips
+   !! of another group.
+   pure function matrix_of_groups(kind, matrix) result(reduced)
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       real(rk), intent(in) :: matrix(:, :)
       real(rk) :: reduced(maxval(kind), maxval(kind))
       integer :: i, j
@@ -239,11 +242,11 @@ contains
                                         + matrix(i, j)/count(kind == kind(i))
          end do
       end do
-   end function matrix_of_kinds
+   end function matrix_of_groups
 
-   !> A value of each kind: that of its first tip.
-   pure function of_kinds(kind, values) result(each)
-      integer(ik), intent(in) :: kind(:)  !< from 1
+   !> One value per group: that of its first tip.
+   pure function values_of_groups(kind, values) result(each)
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       real(rk), intent(in) :: values(:)
       real(rk) :: each(maxval(kind))
       integer :: k
@@ -251,6 +254,6 @@ contains
       do k = 1, size(each)
          each(k) = values(findloc(kind, k, dim=1))
       end do
-   end function of_kinds
+   end function values_of_groups
 
 end module growth_competition

@@ -1,9 +1,9 @@
-!> Length control: the advances of a tip group while the load factor follows them. One tip, the
-!! leader, advances to the end of its segment, and the load keeps it at its toughness; the others
-!! are in equilibrium at that load (growth_advances).
+!> Length control: advances of a tip group and the load factor that belongs to them. One tip, the
+!! leader, advances to the end of its segment at the load that keeps it at its toughness; the other
+!! tips are in equilibrium at that load (growth_advances).
 !!
 !! With K_i + sum_j M_ij da_j + c_i df for small changes, the leader L eliminates the load factor:
-!! the others respond with M_ij - c_i/c_L M_Lj, and exceed their toughness at the leader's load by
+!! the matrix of the other tips is M_ij - c_i/c_L M_Lj, and their excess at the leader's load is
 !! excess_i - c_i/c_L excess_L.
 module growth_control
    use base_kinds, only: ik, rk
@@ -13,11 +13,11 @@ module growth_control
 
    public :: fitted, joined_groups, length_control_t
 
-   !> A search for the advances of a group.
+   !> State of the iteration for the advances of a group.
    type :: length_control_t
       integer, private :: leader = 0  !< 0: not chosen yet
       integer, allocatable, private :: others(:)
-      type(advances_t), private :: advances  !< of the others
+      type(advances_t), private :: advances  !< search for the advances of `others`
    contains
       procedure :: improve
       procedure, private :: choose_leader
@@ -25,17 +25,17 @@ module growth_control
 
 contains
 
-   !> Better advances, with the excess at the present ones and a load at which no tip exceeds its
-   !! toughness. The tips may be groups of equal ones. They have not moved where all are in
-   !! equilibrium within the tolerance.
+   !> Next estimate of the advances, from the excess at the present advances and a load at which no
+   !! tip exceeds its toughness. The tips may be groups of equal tips. `has_moved` is false where
+   !! all tips are in equilibrium within the tolerance.
    subroutine improve(self, excess, matrix, slope, room, shortest, tolerance, advance, has_moved)
       class(length_control_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) K_eq/K_IC - 1 [-]
-      real(rk), intent(in) :: matrix(:, :)  !< first estimate of M over K_IC [1/m]
-      real(rk), intent(in) :: slope(:)  !< c over K_IC [-]
-      real(rk), intent(in) :: room(:)  !< to the ends of the segments [m]
-      real(rk), intent(in) :: shortest(:)  !< advances that the mesh can hold [m]
-      real(rk), intent(in) :: tolerance  !< on the excess [-]
+      real(rk), intent(in) :: matrix(:, :)  !< first estimate of M, over K_IC [1/m]
+      real(rk), intent(in) :: slope(:)  !< c, over K_IC [-]
+      real(rk), intent(in) :: room(:)  !< distances to the ends of the segments [m]
+      real(rk), intent(in) :: shortest(:)  !< shortest advances that the mesh resolves [m]
+      real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       real(rk), intent(inout) :: advance(:)  !< [m]
       logical, intent(out) :: has_moved
       real(rk), dimension(size(excess)) :: at_leader, before, share
@@ -65,8 +65,8 @@ contains
       has_moved = any(abs(advance - before) > 0.0_rk)
    end subroutine improve
 
-   !> The leader is the tip that has come to the end of its segment; of several, the one that needs
-   !! the least load.
+   !> The leader is the tip that has reached the end of its segment; of several such tips, the one
+   !! that needs the least load.
    subroutine choose_leader(self, excess, slope, room, advance)
       class(length_control_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:), slope(:), room(:)
@@ -92,13 +92,13 @@ contains
       if (slope(leader) > 0.0_rk) share = slope/slope(leader)
    end function share_of_load
 
-   !> In proportion, so that the first tip comes to the end of its piece; what is too short for the
-   !! mesh is none, nor what hardly changes the intensities.
+   !> Advances scaled so that the first tip reaches the end of its segment. Advances too short for
+   !! the mesh, or so short that the intensities hardly change, are set to zero.
    pure function fitted(advance, room, accepted, shortest) result(fit)
       real(rk), intent(in) :: advance(:), room(:), accepted(:)  !< [m]
-      real(rk), intent(in) :: shortest  !< of a piece, what the mesh can hold [m]
+      real(rk), intent(in) :: shortest  !< shortest segment that the mesh resolves [m]
       real(rk) :: fit(size(advance))
-      real(rk), parameter :: negligible = 1.0e-3_rk  ! of the room
+      real(rk), parameter :: negligible = 1.0e-3_rk  ! share of `room` [-]
 
       fit = room
       if (.not. maxval(advance/room) > 0.0_rk) return
@@ -107,7 +107,7 @@ contains
       where (fit > 0.999_rk*room) fit = room
    end function fitted
 
-   !> All tips of two groups, in their order.
+   !> Union of two groups of tips, in ascending order.
    pure function joined_groups(a, b) result(group)
       integer(ik), intent(in) :: a(:), b(:)
       integer(ik), allocatable :: group(:)

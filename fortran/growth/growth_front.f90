@@ -1,10 +1,10 @@
-!> The free tips of a network and their common growth: one loop for both levels.
+!> Free tips of a network and their growth by one increment, for both levels: which tips grow, how
+!! far, and in which direction.
 !!
-!! Each increment is one step of the growth law (growth_law), in the direction in which the path
-!! continues straight: the tips advance to predicted positions (growth_tip), are evaluated there,
-!! and turn until the criterion holds at the end of the increment.
+!! Each increment is one step of the growth law (growth_law). The tips first advance straight ahead
+!! to predicted positions (growth_tip) and are evaluated there; their last segments are then rotated
+!! until the direction criterion holds at the end of the increment.
 !!
-!! One increment of growth of many tips, on either level: which tips grow, and how far.
 module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -20,7 +20,7 @@ module growth_front
 
    public :: front_state_t, front_t, growth_rules_t, plan_increment, tips_at_onset
 
-   !> How tips grow.
+   !> Parameters of growth.
    type :: growth_rules_t
       real(rk) :: toughness = 0.0_rk  !< K_IC [Pa m^1/2]
       real(rk) :: increment = 0.0_rk  !< l_max, the smallest of all fractures [m]
@@ -29,11 +29,11 @@ module growth_front
       real(rk) :: exponent = 0.0_rk  !< of the energy release rate in the law of advances [-]
       !> share of the toughness that a tip may lack to grow along with one at its onset [-]
       real(rk) :: together = 0.0_rk
-      real(rk) :: reach = 0.0_rk  !< distance within which a tip has come to something [m]
-      logical :: joins = .false.  !< what it comes to; else it stops before that
-      !> The path ends on what lies straight ahead, however near: the direction of its last piece is
-      !! found half way to that. With `joins` the tip comes there in the same increment; else it is
-      !! left to the caller how.
+      real(rk) :: reach = 0.0_rk  !< distance at which a tip counts as having reached a target [m]
+      logical :: joins = .false.  !< a tip joins its target; else the tip stops before the target
+      !> The path ends on the target straight ahead, however near: the direction of the last path
+      !! segment is evaluated half way to the target. With `joins` the tip reaches the target in the
+      !! same increment; else the caller makes the connection.
       logical :: heads = .false.
       real(rk) :: near = 0.0_rk  !< ends and kinks that near to its way lie on it [m]
       real(rk), allocatable :: own_near(:)  !< (fractures) [m]; unallocated: all the same
@@ -43,15 +43,15 @@ module growth_front
       procedure :: near_of
    end type growth_rules_t
 
-   !> Tips, and the network whose ends they are: what growth changes.
+   !> State that growth changes: the network and the tips at its free ends.
    type :: front_state_t
-      type(network_t) :: network  !< as it has grown
+      type(network_t) :: network  !< present network
       type(tip_t), allocatable :: tip(:)
    end type front_state_t
 
-   !> The same with the level that evaluates the tips.
+   !> Growth state together with the procedure that evaluates the tips.
    type, abstract, extends(front_state_t) :: front_t
-      type(network_t) :: start  !< network of the scene
+      type(network_t) :: start  !< initial network, from the scene
       type(growth_rules_t) :: rules
       type(network_t), private :: network_before  !< before the last increment
    contains
@@ -64,18 +64,19 @@ module growth_front
       procedure :: increments
    end type front_t
 
-   !> How far a tip looks ahead, in increments: the last piece of a path is up to so long, and no
-   !! shorter than the rest of that.
+   !> Distance to which targets ahead of a tip are found, in increments: the last path segment is up
+   !! to 1.5 increments long, and no shorter than the remaining half [-].
    real(rk), parameter :: foresight = 1.5_rk
 
-   !> Share of the way to what lies ahead where the direction of the last piece is found.
+   !> Share of the distance to the target at which the direction of the last path segment is
+   !! evaluated [-].
    real(rk), parameter :: half_way = 0.5_rk
 
-   !> What is nearer to a tip than this, in increments, leaves no room for a try half way.
+   !> Distance, in increments, below which a target is joined without an evaluation half way [-].
    real(rk), parameter :: no_room = 0.1_rk
 
    abstract interface
-      !> Intensities, drives and rosette radii of all tips of the present network.
+      !> Evaluate intensities, drives and rosette radii of all tips of the present network.
       subroutine evaluate_tips(self, timers, error)
          import :: error_t, front_t, timers_t
          implicit none(type, external)
@@ -87,7 +88,7 @@ module growth_front
 
 contains
 
-   !> The free tips of a mesh.
+   !> Set the tips to the free tips of a mesh.
    pure subroutine find_tips(self, fracture)
       class(front_t), intent(inout) :: self
       type(fracture_mesh_t), intent(in) :: fracture
@@ -144,11 +145,11 @@ contains
       call self%grow_by(advance, any_grew, timers, error)
    end subroutine grow_tips
 
-   !> Given advances of tips that have been evaluated; all are evaluated at the new ones. With
-   !! `joins` none goes beyond the gain at which growth is over.
+   !> Grow evaluated tips by prescribed advances, and evaluates all tips at the new positions. With
+   !! `joins` no tip grows beyond the prescribed gain `stop_gain`.
    subroutine grow_by(self, wanted, any_grew, timers, error)
       class(front_t), intent(inout) :: self
-      real(rk), intent(in) :: wanted(:)  !< (tips) advances; 0: does not grow [m]
+      real(rk), intent(in) :: wanted(:)  !< (tips) advances; 0: the tip does not grow [m]
       logical, intent(out) :: any_grew
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
@@ -170,13 +171,13 @@ contains
       end do
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
-         call self%tip(i)%settle(-self%tip(i)%intensity%k2)
+         call self%tip(i)%commit(-self%tip(i)%intensity%k2)
       end do
       call join_tips(self, advance, any_joined)
       if (any_joined) call self%evaluate(timers, error)
    end subroutine grow_by
 
-   !> How far the tips have come, where that ends growth; else 0 [m].
+   !> Growth of each tip where `stop_gain` is prescribed; else 0 [m].
    pure function gains(self)
       class(front_t), intent(in) :: self
       real(rk) :: gains(size(self%tip))
@@ -189,7 +190,7 @@ contains
       end do
    end function gains
 
-   !> The tips that have come as far as growth is wanted.
+   !> Whether each tip has grown by `stop_gain`.
    pure function has_gained(self)
       class(front_t), intent(in) :: self
       logical :: has_gained(size(self%tip))
@@ -197,8 +198,8 @@ contains
       has_gained = gains(self) >= self%rules%stop_gain - same_place*self%rules%increment
    end function has_gained
 
-   !> An advance that ends where growth is over, if it would go beyond that, but is never shorter
-   !! than a mesh can hold. The one before it is shorter if it would leave too little.
+   !> Advance limited to the growth that is left, but never shorter than the mesh resolves. Where
+   !! the advance would leave too little for another increment, half of what is left is taken.
    elemental real(rk) function up_to_stop(advance, left)
       real(rk), intent(in) :: advance  !< [m]
       real(rk), intent(in) :: left  !< [m]
@@ -210,7 +211,7 @@ contains
       if (left > 0.0_rk) up_to_stop = max(least*advance, merge(0.5_rk*left, left, left > advance))
    end function up_to_stop
 
-   !> Move the tips to where their increments will probably end.
+   !> Move the tips to their predicted positions.
    subroutine advance_tips(self, advance, any_grew)
       class(front_t), intent(inout) :: self
       real(rk), intent(in) :: advance(:)  !< (tips) [m]
@@ -224,7 +225,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. advance(i) > 0.0_rk .or. self%tip(i)%arrested) cycle
          associate (tip => self%tip(i))
-            call tip%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
+            call tip%predict(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
                              kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
             if (self%rules%heads) then
@@ -237,7 +238,8 @@ contains
                call meet_target(self%rules, self%network, tip, (tip%xy), to)
             end if
             if (tip%arrested .and. .not. tip%joined) cycle
-            if (.not. norm2(to - tip%xy) > same_value*advance(i)) cycle  ! something has come to it
+            ! another path has already reached this tip
+            if (.not. norm2(to - tip%xy) > same_value*advance(i)) cycle
             call extend(self%network, tip%fracture, tip%end, to)
             call tip%move(to, kink)
             any_grew = .true.
@@ -245,10 +247,10 @@ contains
       end do
    end subroutine advance_tips
 
-   !> Turn the last advance of each tip whose direction is not yet right.
+   !> Rotate the last segment of each tip whose direction does not yet satisfy the criterion.
    subroutine turn_tips(self, advance, any_turned)
       class(front_t), intent(inout) :: self
-      real(rk), intent(in) :: advance(:)  !< (tips) where nothing lies ahead [m]
+      real(rk), intent(in) :: advance(:)  !< (tips) advances where no target lies ahead [m]
       logical, intent(out) :: any_turned
       logical :: has_turned
       real(rk) :: to(2)
@@ -274,11 +276,11 @@ contains
       end do
    end subroutine turn_tips
 
-   !> What a tip that goes straight on comes to.
+   !> Target straight ahead of a tip.
    pure subroutine look_ahead(self, network, fracture, from, direction, target, at)
       class(front_t), intent(in) :: self
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: fracture  !< the one that grows
+      integer(ik), intent(in) :: fracture  !< number of the growing fracture
       real(rk), intent(in) :: from(2)  !< [m]
       real(rk), intent(in) :: direction(2)  !< unit vector
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
@@ -291,15 +293,16 @@ contains
       end associate
    end subroutine look_ahead
 
-   !> A tip that has something ahead of it is tried half way to that only: as it was before any tip
-   !! moved where tips join in their increment, so that their order does not count, and half way to
-   !! where they meet if that is another tip on its way.
+   !> Shorten the advance of a tip with a target ahead to half the distance to the target. Where
+   !! tips join in the same increment, the network before the increment counts, so that the order of
+   !! the tips does not matter; if the target is the former position of another tip, the advance
+   !! ends half way to the meeting point.
    pure subroutine stop_half_way(self, i, from, advance, to)
       class(front_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
       real(rk), intent(in) :: from(2)  !< [m]
-      real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
-      real(rk), intent(inout) :: to(2)  !< in that direction [m]
+      real(rk), intent(in) :: advance  !< advance where no target lies ahead [m]
+      real(rk), intent(inout) :: to(2)  !< end of the advance [m]
       real(rk) :: at(2), direction(2), room
       integer(ik) :: target
 
@@ -317,7 +320,7 @@ contains
       if (abs(room - norm2(to - from)) > same_value*advance) to = from + room*direction
    end subroutine stop_half_way
 
-   !> A place is that of a tip before it went on.
+   !> Whether a point is the position of a tip of the fracture before the increment.
    pure logical function is_left(self, fracture, at)
       class(front_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
@@ -332,7 +335,7 @@ contains
       end do
    end function is_left
 
-   !> Where a tip was before the increment [m].
+   !> Position of a tip before the increment [m].
    pure function place_before(tip) result(xy)
       type(tip_t), intent(in) :: tip
       real(rk) :: xy(2)
@@ -340,12 +343,12 @@ contains
       xy = merge(tip%origin, tip%xy, tip%advance > 0.0_rk)
    end function place_before
 
-   !> What lies ahead is too near for a try half way. It, or both if that is another one, is no tip
-   !! any more.
+   !> Join a target that is too near for an evaluation half way. The tip is deactivated, and so is
+   !! the other tip if the target is a tip.
    subroutine join_at_once(self, i, to)
       class(front_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(inout) :: to(2)  !< in that direction [m]
+      real(rk), intent(inout) :: to(2)  !< end of the advance [m]
       real(rk) :: at(2), from(2)
       integer(ik) :: target
       integer :: k
@@ -356,18 +359,21 @@ contains
       to = at
       self%tip(i)%target = target
       self%tip(i)%joined = .true.
-      call self%tip(i)%cease()
+      call self%tip(i)%deactivate()
       do k = 1, size(self%tip)
-         if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) call self%tip(k)%cease()
+         if (norm2(self%tip(k)%xy - at) <= same_place*self%rules%increment) then
+            call self%tip(k)%deactivate()
+         end if
       end do
    end subroutine join_at_once
 
-   !> The tips whose directions have been found half way go the rest of it, straight on: to what lay
-   !! there before any of them moved, so that their order does not count; two that come to each
-   !! other meet half way. It, or both if that is another one, is no tip any more.
+   !> Extend the tips whose directions were evaluated half way straight to their targets in the
+   !! network before the increment, so that the order of the tips does not matter. Two tips that are
+   !! each other's targets meet half way. A tip that has joined is deactivated, and so is the other
+   !! tip if the target is a tip.
    subroutine join_tips(self, advance, any_joined)
       class(front_t), intent(inout) :: self
-      real(rk), intent(in) :: advance(:)  !< (tips) where nothing lies ahead [m]
+      real(rk), intent(in) :: advance(:)  !< (tips) advances where no target lies ahead [m]
       logical, intent(out) :: any_joined
       real(rk), dimension(2, size(self%tip)) :: at, middle
       integer(ik) :: i, k, target(size(self%tip))
@@ -385,7 +391,7 @@ contains
             if (comes_to(k, i)) then
                middle(:, i) = 0.5_rk*(self%tip(i)%origin + self%tip(k)%origin)
             else
-               call self%tip(k)%cease()
+               call self%tip(k)%deactivate()
             end if
          end do
       end do
@@ -395,7 +401,7 @@ contains
          associate (tip => self%tip(i))
             tip%target = target(i)
             tip%joined = .true.
-            call tip%cease()
+            call tip%deactivate()
             tip%xy = middle(:, i)
             tip%advance = norm2(tip%xy - tip%origin)
             call move_end(self%network, tip%fracture, tip%end, tip%xy)
@@ -404,7 +410,7 @@ contains
 
    contains
 
-      !> What a tip joins is where another one was.
+      !> Whether the target of one tip is the position of another tip before the increment.
       pure logical function comes_to(tip, other)
          integer(ik), intent(in) :: tip, other
 
@@ -415,11 +421,12 @@ contains
 
    end subroutine join_tips
 
-   !> What a tip that has grown comes to within half an increment from where it would have gone.
+   !> Target of a tip that has grown, if it is no more than half an increment beyond the full
+   !! advance.
    pure subroutine find_joint(self, i, advance, target, at)
       class(front_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: advance  !< where nothing lies ahead [m]
+      real(rk), intent(in) :: advance  !< advance where no target lies ahead [m]
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
       real(rk), intent(out) :: at(2)  !< [m]
 
@@ -436,14 +443,15 @@ contains
       end associate
    end subroutine find_joint
 
-   !> A tip that crosses another fracture or the boundary, or comes near it, joins it there, or
-   !! stops where it is.
+   !> End the path of a tip that crosses another fracture or the boundary, or comes near one: the
+   !! tip joins the target, or stops at its position.
    pure subroutine meet_target(rules, network, tip, from, to)
       type(growth_rules_t), intent(in) :: rules
       type(network_t), intent(in) :: network
       type(tip_t), intent(inout) :: tip
       real(rk), intent(in) :: from(2)  !< [m]
-      real(rk), intent(inout) :: to(2)  !< where it grows, or joins something [m]
+      !> end of the advance; point of connection where the tip joins [m]
+      real(rk), intent(inout) :: to(2)
       real(rk) :: at(2)
       integer(ik) :: target
 
@@ -455,13 +463,14 @@ contains
       if (tip%joined) to = at
    end subroutine meet_target
 
-   !> The tips that grow: those whose equivalent intensity reaches the toughness. Where one does,
-   !! those grow along that the error of their intensities does not tell from it: wings of equal
-   !! rank would otherwise drift apart by chance.
+   !> Whether each tip grows: its equivalent intensity reaches the toughness. Where one tip does, so
+   !! do the tips whose intensities differ from the toughness by less than their errors: equal wings
+   !! would otherwise separate by numerical errors.
    pure function tips_at_onset(tips, toughness, together) result(grows)
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      real(rk), intent(in) :: together  !< share of the toughness that a tip may lack [-]
+      !> relative deficit of K_eq within which other tips grow along [-]
+      real(rk), intent(in) :: together
       logical :: grows(size(tips))
 
       grows = tips%drive%intensity >= (1.0_rk - same_value)*toughness .and. .not. tips%arrested
@@ -469,8 +478,8 @@ contains
       grows = tips%drive%intensity >= (1.0_rk - together)*toughness .and. .not. tips%arrested
    end function tips_at_onset
 
-   !> How far each tip goes: as far as its energy release rate beside the largest says (model.md
-   !! section 5). Advances too short for the mesh are kept for the next increment, and their tips do
+   !> Advance of each tip, by the ratio of its energy release rate to the largest (model.md section
+   !! 5). Advances too short for the mesh are carried over to the next increment, and their tips do
    !! not grow in this one.
    pure subroutine plan_increment(tips, grows, increment, exponent, advance)
       type(tip_t), intent(inout) :: tips(:)

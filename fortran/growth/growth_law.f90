@@ -7,24 +7,25 @@ module growth_law
    public :: advances, carry_over, energy_release_rate, equivalent_intensity, growth_drive
    public :: growth_drive_t, in_grains, kink_angle, kinked_intensities, new_tip
 
-   real(rk), parameter :: smallest_advance = 0.4_rk  !< of the rosette radius; less is carried over
+   !> share of the rosette radius; shorter advances are carried over [-]
+   real(rk), parameter :: smallest_advance = 0.4_rk
 
-   !> What drives a tip.
+   !> Crack driving forces at a tip.
    type :: growth_drive_t
-      real(rk) :: angle = 0.0_rk  !< of the kink, anticlockwise positive [rad]
+      real(rk) :: angle = 0.0_rk  !< kink angle, anticlockwise positive [rad]
       real(rk) :: intensity = 0.0_rk  !< K_eq at that angle [Pa m^1/2]
       real(rk) :: energy = 0.0_rk  !< G at that angle [J/m2]
-      !> K_IC of the rock that the tip grows in over that of the scene's rock, by which all tips are
-      !! judged: the intensity is over this [-]
+      !> K_IC of the rock at the tip over K_IC of the scene; `intensity` is divided by this ratio,
+      !! so that all tips are compared with the K_IC of the scene [-]
       real(rk) :: resistance = 1.0_rk
       real(rk) :: crack_modulus = 0.0_rk  !< E' of the rock around the tip [Pa]
    end type growth_drive_t
 
 contains
 
-   !> Angle at which the tangential stress is largest (Erdogan and Sih 1963), in a form that
-   !! divides by nothing that vanishes with k2, and whose squares neither over- nor underflow. Zero
-   !! where nothing drives the tip.
+   !> Angle of the largest tangential stress (Erdogan and Sih 1963), in a form without division by
+   !! quantities that vanish with k2, and whose squares neither over- nor underflow. Zero where both
+   !! intensities vanish.
    elemental real(rk) function kink_angle(k1, k2)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
 
@@ -53,7 +54,7 @@ contains
       kinked_2 = 0.25_rk*((sin(half) + sin(triple))*k1 + (cos(half) + 3.0_rk*cos(triple))*k2)
    end subroutine kinked_intensities
 
-   !> G of a kink at the given angle [J/m2].
+   !> Energy release rate of a kink at an angle [J/m2].
    elemental real(rk) function energy_release_rate(k1, k2, angle, crack_modulus)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
       real(rk), intent(in) :: angle  !< [rad]
@@ -64,8 +65,8 @@ contains
       energy_release_rate = (kinked_1**2 + kinked_2**2)/crack_modulus
    end function energy_release_rate
 
-   !> Direction and strength of what drives a tip. A negative k1 means faces that overlap or a
-   !! solver's error at closed ones, and counts as zero.
+   !> Driving forces at a tip. A negative k1 means overlapping faces, or a numerical error at closed
+   !! faces, and counts as zero.
    elemental function growth_drive(k1, k2, crack_modulus) result(drive)
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]
@@ -94,13 +95,14 @@ contains
       where (grows .and. energy > 0.0_rk) advance = increment*(energy/largest)**exponent
    end function advances
 
-   !> An advance too short for the mesh around a tip is kept for the next time.
+   !> Add the advance carried over from earlier increments; a sum too short for the mesh around the
+   !! tip is carried over again.
    elemental subroutine carry_over(advance, carried, rosette_radius, applied, left)
-      real(rk), intent(in) :: advance  !< wanted now [m]
-      real(rk), intent(in) :: carried  !< kept from before [m]
+      real(rk), intent(in) :: advance  !< advance by the growth law [m]
+      real(rk), intent(in) :: carried  !< carried over from earlier increments [m]
       real(rk), intent(in) :: rosette_radius  !< [m]
-      real(rk), intent(out) :: applied  !< to grow by now: all or nothing [m]
-      real(rk), intent(out) :: left  !< to keep [m]
+      real(rk), intent(out) :: applied  !< the whole sum, or 0 [m]
+      real(rk), intent(out) :: left  !< to carry over [m]
 
       applied = advance + carried
       left = 0.0_rk
@@ -110,21 +112,22 @@ contains
       end if
    end subroutine carry_over
 
-   !> The nearest multiple of a grain. A mesh made for a tip that differs in its last bits may be
-   !! quite another one, with intensities that differ by their errors. Kinks and advances in grains,
-   !! far below these errors, let responses that are equal but for rounding grow to equal tips.
+   !> Value rounded to a multiple of 1e-7 units. Meshes for tips that differ in their last bits may
+   !! differ in topology, with intensities that differ by their discretization errors. The rounding
+   !! of kinks and advances is far below these errors; with it, responses that are equal except for
+   !! rounding errors lead to equal tips.
    elemental real(rk) function in_grains(value, unit)
-      real(rk), intent(in) :: value, unit  !< of one kind; a grain is a ten-millionth of the unit
+      real(rk), intent(in) :: value, unit  !< of the same dimension
       real(rk), parameter :: grain = 1.0e-7_rk
 
       in_grains = grain*unit*anint(value/(grain*unit))
    end function in_grains
 
-   !> Where a tip is after its growth [m].
+   !> Position of a tip after an increment [m].
    pure function new_tip(tip, direction, angle, advance) result(xy)
       real(rk), intent(in) :: tip(2)  !< [m]
       real(rk), intent(in) :: direction(2)  !< unit vector, ahead of the tip [-]
-      real(rk), intent(in) :: angle  !< of the kink, anticlockwise [rad]
+      real(rk), intent(in) :: angle  !< kink angle, anticlockwise [rad]
       real(rk), intent(in) :: advance  !< [m]
       real(rk) :: xy(2)
 

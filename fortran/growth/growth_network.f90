@@ -11,7 +11,7 @@ module growth_network
 
 contains
 
-   !> The scene's fractures.
+   !> Network of the scene's fractures.
    pure function network_of_scene(scene) result(network)
       type(scene_t), intent(in) :: scene
       type(network_t) :: network
@@ -61,8 +61,8 @@ contains
    pure subroutine move_end(network, fracture, end, xy)
       type(network_t), intent(inout) :: network
       integer(ik), intent(in) :: fracture
-      integer(ik), intent(in) :: end  !< 1: its first vertex, 2: its last
-      real(rk), intent(in) :: xy(2)  !< where to [m]
+      integer(ik), intent(in) :: end  !< 1: first vertex, 2: last vertex
+      real(rk), intent(in) :: xy(2)  !< new position [m]
       integer(ik) :: v
 
       v = network%first(fracture + 1) - 1
@@ -75,7 +75,7 @@ contains
       network%xy(:, v) = xy
    end subroutine move_end
 
-   !> Lengths of the last straight pieces at the starts and ends of the fractures [m].
+   !> Lengths of the first and last straight segments of the fractures [m].
    pure function end_pieces(network) result(length)
       type(network_t), intent(in) :: network
       real(rk) :: length(2, size(network%first) - 1)
@@ -104,7 +104,7 @@ contains
       end do
    end function total_length
 
-   !> By how much one end of a fracture has grown since an earlier network [m].
+   !> Growth of one end of a fracture since an earlier network [m].
    pure function end_gain(network, start, fracture, end) result(gain)
       type(network_t), intent(in) :: network, start
       integer(ik), intent(in) :: fracture, end
@@ -115,7 +115,7 @@ contains
                            - gain
    end function end_gain
 
-   !> How many vertices one end of a fracture has got since an earlier network.
+   !> Number of vertices added at one end of a fracture since an earlier network.
    pure function end_vertices(network, start, fracture, end) result(n)
       type(network_t), intent(in) :: network, start
       integer(ik), intent(in) :: fracture
@@ -132,11 +132,11 @@ contains
       end do
    end function end_vertices
 
-   !> Where one end of a fracture is [m].
+   !> Position of one end of a fracture [m].
    pure function end_place(network, fracture, end) result(xy)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture
-      integer(ik), intent(in) :: end  !< 1: at its first vertex, 2: at its last
+      integer(ik), intent(in) :: end  !< 1: at the first vertex, 2: at the last vertex
       real(rk) :: xy(2)
 
       xy = network%xy(:, end_vertex(network, fracture, end))
@@ -146,7 +146,7 @@ contains
    pure integer(ik) function end_vertex(network, fracture, end)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture
-      integer(ik), intent(in) :: end  !< 1: the first, 2: the last
+      integer(ik), intent(in) :: end  !< 1: first vertex, 2: last vertex
 
       end_vertex = merge(network%first(fracture), network%first(fracture + 1) - 1, end == 1)
    end function end_vertex
@@ -155,7 +155,7 @@ contains
    pure function end_direction(network, fracture, end) result(direction)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture
-      integer(ik), intent(in) :: end  !< 1: at its first vertex, 2: at its last
+      integer(ik), intent(in) :: end  !< 1: at the first vertex, 2: at the last vertex
       real(rk) :: direction(2)
       integer(ik) :: tip
 
@@ -164,19 +164,19 @@ contains
       direction = direction/norm2(direction)
    end function end_direction
 
-   !> Replace the last segments at one end of a fracture by a straight one; the arc lengths of the
-   !! vertices before them stay.
+   !> Replace the last segments at one end of a fracture by one straight segment; the arc lengths of
+   !! the other vertices stay.
    pure subroutine straighten_end(network, fracture, end, dropped)
       type(network_t), intent(inout) :: network
       integer(ik), intent(in) :: fracture
-      integer(ik), intent(in) :: end  !< 1: at its first vertex, 2: at its last
-      integer(ik), intent(in) :: dropped  !< vertices to leave out, next to the one at the end
+      integer(ik), intent(in) :: end  !< 1: at the first vertex, 2: at the last vertex
+      integer(ik), intent(in) :: dropped  !< number of vertices to remove, next to the end vertex
       real(rk), allocatable :: kept(:, :)
       integer(ik) :: at, k
 
       allocate (kept(2, size(network%xy, 2) - dropped))
       at = end_vertex(network, fracture, end)
-      if (end == 2) at = at - dropped - 1  ! the last vertex kept before those to drop
+      if (end == 2) at = at - dropped - 1  ! last vertex before the removed ones
       kept(:, :at) = network%xy(:, :at)
       kept(:, at + 1:) = network%xy(:, at + 1 + dropped:)
       if (end == 1) then

@@ -6,22 +6,23 @@ module growth_segment
 
    public :: segment_t, sliver
 
-   !> A piece of a path. The tip goes from its start to its end; then the next one begins.
+   !> Path segment. The tip advances from its start to its end; then the next segment begins.
    type :: segment_t
-      logical :: is_open = .false.  !< the tip is on its way along it
-      logical, private :: is_rest = .false.  !< the tip does not go along it by itself
+      logical :: is_open = .false.  !< the tip is between the start and the end of the segment
+      !> the whole segment is a ligament, which breaks at once at the toughness
+      logical, private :: is_ligament = .false.
       real(rk) :: start(2) = 0.0_rk  !< [m]
       real(rk) :: direction(2) = 0.0_rk  !< unit vector
       real(rk) :: length = 0.0_rk  !< [m]
-      real(rk), private :: shortest = 0.0_rk  !< that the tip may go along it [m]
-      real(rk) :: reached = 0.0_rk  !< how far the tip is [m]
-      real(rk) :: accepted = 0.0_rk  !< how far it was in the last accepted state [m]
-      real(rk) :: gain = 0.0_rk  !< of the whole path, in that state [m]
-      real(rk) :: slope = 0.0_rk  !< of the excess along it; 0: unknown [1/m]
-      real(rk), private :: speed = 0.0_rk  !< of the tip in the last step [m/s]
+      real(rk), private :: shortest = 0.0_rk  !< shortest advance of the tip along the segment [m]
+      real(rk) :: reached = 0.0_rk  !< distance of the tip from the start [m]
+      real(rk) :: accepted = 0.0_rk  !< distance in the last accepted state [m]
+      real(rk) :: gain = 0.0_rk  !< growth of the whole path in the last accepted state [m]
+      real(rk) :: slope = 0.0_rk  !< derivative of the excess along the segment; 0: unknown [1/m]
+      real(rk), private :: speed = 0.0_rk  !< speed of the tip in the last step [m/s]
    contains
       procedure :: open_segment
-      procedure :: leave_rest
+      procedure :: exclude_ligament
       procedure :: stop_after
       procedure :: stay_at_start
       procedure :: stays
@@ -40,19 +41,21 @@ module growth_segment
       procedure :: accept
    end type segment_t
 
-   !> Share of a segment that a tip moves by at least: next to another fracture its excess has been
-   !! seen to fall by 33 K_IC per segment, so that a thousandth is worth 3 % of it.
+   !> Shortest displacement of a tip, over the length of the segment: next to another fracture the
+   !! excess has been seen to fall by 33 K_IC per segment, so that a thousandth is worth 3 % of K_IC
+   !! [-].
    real(rk), parameter :: closest = 1.0e-4_rk
 
-   !> Share of a segment that is not left for the next step.
+   !> Distance from the end within which the tip is put onto the end, over the length of the segment
+   !! [-].
    real(rk), parameter :: sliver = 0.03_rk
 
-   !> Share of a segment that a tip goes along at least: what the mesh around it can hold.
+   !> Shortest advance that the mesh around the tip resolves, over the length of the segment [-].
    real(rk), parameter :: least = 0.05_rk
 
 contains
 
-   !> Begin a piece from where a tip is.
+   !> Begin a segment at the position of a tip.
    pure subroutine open_segment(self, start, direction, length)
       class(segment_t), intent(inout) :: self
       real(rk), intent(in) :: start(2)  !< [m]
@@ -60,7 +63,7 @@ contains
       real(rk), intent(in) :: length  !< [m]
 
       self%is_open = .true.
-      self%is_rest = .false.
+      self%is_ligament = .false.
       self%start = start
       self%direction = direction
       self%length = length
@@ -69,17 +72,17 @@ contains
       self%accepted = 0.0_rk
    end subroutine open_segment
 
-   !> The tip is to go along a share of the piece only.
-   elemental subroutine leave_rest(self, rest)
+   !> Exclude the ligament: the tip advances along the rest of the segment only.
+   elemental subroutine exclude_ligament(self, ligament)
       class(segment_t), intent(inout) :: self
-      real(rk), intent(in) :: rest  !< share that it does not go along by itself [-]
+      real(rk), intent(in) :: ligament  !< ligament, over the length of the segment [-]
 
-      self%length = (1.0_rk - rest)*self%length
+      self%length = (1.0_rk - ligament)*self%length
       self%shortest = least*self%length
       self%reached = self%shortest
-   end subroutine leave_rest
+   end subroutine exclude_ligament
 
-   !> The tip is to go along no more than a length of the piece, but as far as it has to.
+   !> Limit the length of the segment, but not below the shortest advance.
    elemental subroutine stop_after(self, length)
       class(segment_t), intent(inout) :: self
       real(rk), intent(in) :: length  !< [m]
@@ -87,24 +90,24 @@ contains
       self%length = max(self%shortest, min(self%length, length))
    end subroutine stop_after
 
-   !> The tip does not go along the piece at all by itself.
+   !> Keep the tip at the start: the whole segment is a ligament.
    elemental subroutine stay_at_start(self)
       class(segment_t), intent(inout) :: self
 
       self%is_open = .false.
-      self%is_rest = .true.
+      self%is_ligament = .true.
       self%reached = 0.0_rk
       self%slope = 0.0_rk
    end subroutine stay_at_start
 
-   !> The tip is at the start of a piece that it does not go along.
+   !> Whether the whole segment is a ligament.
    elemental logical function stays(self)
       class(segment_t), intent(in) :: self
 
-      stays = self%is_rest
+      stays = self%is_ligament
    end function stays
 
-   !> The tip is where the piece ends, and will not go on from there.
+   !> End the segment at the final position of the tip.
    pure subroutine finish(self, end)
       class(segment_t), intent(inout) :: self
       real(rk), intent(in) :: end(2)  !< [m]
@@ -112,10 +115,10 @@ contains
       self%length = norm2(end - self%start)
       self%reached = self%length
       self%is_open = .false.
-      self%is_rest = .false.
+      self%is_ligament = .false.
    end subroutine finish
 
-   !> Where the tip is [m].
+   !> Position of the tip [m].
    pure function place(self) result(xy)
       class(segment_t), intent(in) :: self
       real(rk) :: xy(2)
@@ -123,30 +126,30 @@ contains
       xy = self%start + self%reached*self%direction
    end function place
 
-   !> The tip has come to the end of the piece.
+   !> Whether the tip has reached the end of the segment.
    elemental logical function is_complete(self)
       class(segment_t), intent(in) :: self
 
       is_complete = self%reached >= self%length
    end function is_complete
 
-   !> Back to the last accepted state, for another try of the step.
+   !> Return the tip to the last accepted state, for another try of the step.
    elemental subroutine restart(self)
       class(segment_t), intent(inout) :: self
 
       self%reached = self%lowest()
    end subroutine restart
 
-   !> Begin a piece where its excess will probably vanish, by what the piece before has shown.
+   !> Put the tip where its excess is predicted to vanish, by the slope along the previous segment.
    elemental subroutine set_out(self, excess)
       class(segment_t), intent(inout) :: self
-      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the piece [-]
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the segment [-]
 
       if (.not. (self%is_open .and. self%slope < 0.0_rk)) return
       self%reached = self%within(-excess/self%slope)
    end subroutine set_out
 
-   !> Begin a step where the tip comes if it goes on as fast as in the last one.
+   !> Put the tip where its speed in the last step would take it.
    elemental subroutine keep_pace(self, dt)
       class(segment_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< length of the step [s]
@@ -154,19 +157,20 @@ contains
       if (self%is_open) self%reached = self%within(self%lowest() + self%speed*dt)
    end subroutine keep_pace
 
-   !> What an accepted step says of the tip's speed: nothing where the tip lies at the start of a
-   !! piece that it has not been driven to.
+   !> Speed of the tip in an accepted step; 0 for a tip at the start of a segment that has not
+   !! reached its toughness.
    elemental subroutine pace(self, advance, dt, is_driven)
       class(segment_t), intent(inout) :: self
       real(rk), intent(in) :: advance  !< [m]
-      real(rk), intent(in) :: dt  !< [s]; 0: what comes next has nothing to do with it
-      logical, intent(in) :: is_driven  !< it is at its toughness
+      real(rk), intent(in) :: dt  !< length of the step; 0: the next step has other conditions [s]
+      logical, intent(in) :: is_driven  !< the tip is at its toughness
 
       self%speed = 0.0_rk
       if (dt > 0.0_rk .and. is_driven) self%speed = max(0.0_rk, advance)/dt
    end subroutine pace
 
-   !> Slope of the excess, or a usual one where it is not known to fall [1/m].
+   !> Derivative of the excess along the segment, or a usual value where it is not known to be
+   !! negative [1/m].
    elemental real(rk) function falling_slope(self) result(slope)
       class(segment_t), intent(in) :: self
 
@@ -174,10 +178,10 @@ contains
       if (self%slope < -0.01_rk/self%length) slope = self%slope
    end function falling_slope
 
-   !> Go to a place, or to what is nearest to it of where the tip may be.
+   !> Move the tip to a position, limited to the admissible range.
    pure subroutine go_to(self, wanted, has_moved)
       class(segment_t), intent(inout) :: self
-      real(rk), intent(in) :: wanted  !< from the start of the piece [m]
+      real(rk), intent(in) :: wanted  !< distance from the start of the segment [m]
       logical, intent(out) :: has_moved
       real(rk) :: to
 
@@ -186,24 +190,24 @@ contains
       if (has_moved) self%reached = to
    end subroutine go_to
 
-   !> What is nearest to a place of where the tip may be [m].
+   !> Distance limited to the admissible range [m].
    elemental real(rk) function within(self, wanted)
       class(segment_t), intent(in) :: self
-      real(rk), intent(in) :: wanted  !< from the start of the piece [m]
+      real(rk), intent(in) :: wanted  !< distance from the start of the segment [m]
 
       within = min(self%length, max(self%lowest(), wanted))
       if (within > (1.0_rk - sliver)*self%length) within = self%length
    end function within
 
-   !> How far back the tip may go [m].
+   !> Smallest admissible distance from the start [m].
    elemental real(rk) function lowest(self)
       class(segment_t), intent(in) :: self
 
       lowest = max(self%accepted, self%shortest)
    end function lowest
 
-   !> Be as far along as another one, but never behind the last accepted state, and know of the
-   !! excess what that knows.
+   !> Move the tip to the same share of its segment as another tip, but not behind the last
+   !! accepted state, and take the slope of the other segment.
    pure subroutine keep_up_with(self, other, has_moved)
       class(segment_t), intent(inout) :: self
       type(segment_t), intent(in) :: other
@@ -213,7 +217,7 @@ contains
       self%slope = other%slope*(other%length/self%length)
    end subroutine keep_up_with
 
-   !> The present place is that of an accepted state.
+   !> Accept the present position.
    elemental subroutine accept(self)
       class(segment_t), intent(inout) :: self
 

@@ -12,26 +12,28 @@ module growth_targets
    integer(ik), parameter :: target_none = 0
    integer(ik), parameter :: target_boundary = -1
 
-   !> Share of the reach within which a joint is put onto a vertex that is there already.
+   !> Distance, over `reach`, within which a connection is moved to an existing vertex [-].
    real(rk), parameter :: snap = 0.3_rk
-   !> Sine of the smallest angle at which a segment may meet its target; a shallower one goes
-   !! straight to the nearest place, for the mesh library refuses angles below 3 degrees.
+   !> Sine of the smallest angle at which a segment may meet its target. A segment at a smaller
+   !! angle ends at the nearest point of the target instead, because the mesh library rejects angles
+   !! below 3 degrees.
    real(rk), parameter :: shallow = sin(5.0_rk*pi/180.0_rk)
 
 contains
 
-   !> What a new segment at the end of a fracture crosses first, or else what its end comes near.
+   !> Target of a new segment at the end of a fracture: the first intersection, or else the target
+   !! nearest to the end of the segment.
    !!
-   !! The fracture itself is a target where the new segment turns back to it: not the segments that
-   !! end where the new one begins, nor those that it leaves behind.
+   !! The fracture itself is a target where the new segment turns back to the fracture. Segments
+   !! that end at the start of the new segment, or lie behind it, are not.
    pure subroutine find_target(network, corners, fracture, from, to, reach, target, at)
       type(network_t), intent(in) :: network
-      real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
-      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) corners of the body, in order [m]
+      integer(ik), intent(in) :: fracture  !< number of the growing fracture
       real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
-      real(rk), intent(in) :: reach  !< how near is near [m]
+      real(rk), intent(in) :: reach  !< largest distance of a target from the end of the segment [m]
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
-      real(rk), intent(out) :: at(2)  !< place of the joint [m]
+      real(rk), intent(out) :: at(2)  !< point of connection [m]
       real(rk) :: best
       integer(ik) :: f, v, k, n
 
@@ -51,18 +53,18 @@ contains
       end do
    end subroutine find_target
 
-   !> What a tip that goes straight on comes to first, within a reach. Nothing beside its way is
-   !! captured, but ends and kinks that it passes nearer than a mesh can hold. A joint that would be
-   !! as near to another one is put there.
+   !> First target on the straight continuation of a path. Fractures next to the path are not
+   !! targets, except ends and kinks within a distance that a mesh cannot resolve. A connection
+   !! within this distance of an existing vertex or crossing is moved there.
    pure subroutine find_ahead(network, corners, fracture, from, way, near, target, at)
       type(network_t), intent(in) :: network
-      real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
-      integer(ik), intent(in) :: fracture  !< the one that grows
-      real(rk), intent(in) :: from(2)  !< where the tip is [m]
-      real(rk), intent(in) :: way(2)  !< from there as far as it looks [m]
-      real(rk), intent(in) :: near  !< ends and kinks nearer than that lie on the way [m]
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) corners of the body, in order [m]
+      integer(ik), intent(in) :: fracture  !< number of the growing fracture
+      real(rk), intent(in) :: from(2)  !< position of the tip [m]
+      real(rk), intent(in) :: way(2)  !< vector from the tip to the end of the search [m]
+      real(rk), intent(in) :: near  !< distance within which ends and kinks lie on the path [m]
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
-      real(rk), intent(out) :: at(2)  !< place of the joint [m]
+      real(rk), intent(out) :: at(2)  !< point of connection [m]
       real(rk) :: best
       integer(ik) :: f, k, n, v
 
@@ -85,16 +87,15 @@ contains
       if (target /= target_none) call put_on_joint(network, from, near, at)
    end subroutine find_ahead
 
-   !> What a tip comes beside where nothing lies ahead of it, nearer than a mesh can hold: it has
-   !! come to that.
+   !> Target next to the end of a segment, within a distance that a mesh cannot resolve.
    pure subroutine find_beside(network, corners, fracture, from, to, near, target, at)
       type(network_t), intent(in) :: network
-      real(rk), intent(in) :: corners(:, :)  !< (2, n) of the body, in order [m]
-      integer(ik), intent(in) :: fracture  !< the one that grows
+      real(rk), intent(in) :: corners(:, :)  !< (2, n) corners of the body, in order [m]
+      integer(ik), intent(in) :: fracture  !< number of the growing fracture
       real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
-      real(rk), intent(in) :: near  !< how near is too near [m]
+      real(rk), intent(in) :: near  !< largest distance of a target from the end of the segment [m]
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
-      real(rk), intent(out) :: at(2)  !< place of the joint [m]
+      real(rk), intent(out) :: at(2)  !< point of connection [m]
       real(rk) :: least
       integer(ik) :: f, k, n, v
 
@@ -117,11 +118,11 @@ contains
       if (target /= target_none) call put_on_joint(network, from, near, at)
    end subroutine find_beside
 
-   !> Keep a segment if a place is nearer to it than to others.
+   !> Keep a segment as the target if it is the nearest so far.
    pure subroutine keep_nearest(to, ends, candidate, least, target, at)
       real(rk), intent(in) :: to(2), ends(2, 2)  !< [m]
       integer(ik), intent(in) :: candidate
-      real(rk), intent(inout) :: least  !< distance so far [m]
+      real(rk), intent(inout) :: least  !< distance of the nearest segment so far [m]
       integer(ik), intent(inout) :: target
       real(rk), intent(inout) :: at(2)  !< [m]
 
@@ -131,10 +132,10 @@ contains
       at = nearest_place(to, ends)
    end subroutine keep_nearest
 
-   !> A joint nearer than that to a vertex or to a crossing of the network is there.
+   !> Move a connection to the nearest vertex or crossing of the network within `near`.
    pure subroutine put_on_joint(network, from, near, at)
       type(network_t), intent(in) :: network
-      real(rk), intent(in) :: from(2)  !< where the tip is, which is no place for its joint [m]
+      real(rk), intent(in) :: from(2)  !< position of the tip, where no connection is made [m]
       real(rk), intent(in) :: near  !< [m]
       real(rk), intent(inout) :: at(2)  !< [m]
       integer(ik), allocatable :: around(:)
@@ -176,12 +177,13 @@ contains
       at = place
    end subroutine put_on_joint
 
-   !> Keep a segment if the way comes to it before others. A way that meets it at too small an angle
-   !! goes to its nearest place instead.
+   !> Keep a segment as the target if the path reaches it first. A path that meets the segment at
+   !! too small an angle ends at the nearest point of the segment instead.
    pure subroutine look_at(from, way, ends, near, candidate, best, target, at)
       real(rk), intent(in) :: from(2), way(2), ends(2, 2), near  !< [m]
       integer(ik), intent(in) :: candidate
-      real(rk), intent(inout) :: best  !< share of the way to the target so far [-]
+      !> distance of the target so far, over the length of `way` [-]
+      real(rk), intent(inout) :: best
       integer(ik), intent(inout) :: target
       real(rk), intent(inout) :: at(2)  !< [m]
       real(rk) :: line(2, 2), place(2), share(2)
@@ -211,10 +213,11 @@ contains
       end do
    end subroutine look_at
 
-   !> A segment of the growing fracture from which a new one starts or which it leaves behind.
+   !> Whether a segment of the growing fracture ends at the start of the new segment, or lies behind
+   !! it.
    pure logical function is_behind(from, to, ends)
       real(rk), intent(in) :: from(2), to(2)  !< the new segment [m]
-      real(rk), intent(in) :: ends(2, 2)  !< of the old one [m]
+      real(rk), intent(in) :: ends(2, 2)  !< ends of the old segment [m]
       real(rk) :: before, after
 
       before = norm2(nearest_place(from, ends) - from)
@@ -223,12 +226,12 @@ contains
                   (after >= before .and. .not. crosses(reshape([from, to], [2, 2]), ends))
    end function is_behind
 
-   !> Keep the candidate if it comes first. Crossings rank by their share of the segment, below 1;
-   !! nearness follows after all of them.
+   !> Keep the candidate if its rank is lower. Intersections rank by their position along the
+   !! segment, below 1; targets near the end of the segment rank after all of them.
    pure subroutine try(from, to, ends, reach, candidate, best, target, at)
       real(rk), intent(in) :: from(2), to(2), ends(2, 2), reach  !< [m]
       integer(ik), intent(in) :: candidate
-      real(rk), intent(inout) :: best  !< rank of the target so far [-]
+      real(rk), intent(inout) :: best  !< rank of the present target [-]
       integer(ik), intent(inout) :: target
       real(rk), intent(inout) :: at(2)  !< [m]
       real(rk) :: place(2), share(2), rank

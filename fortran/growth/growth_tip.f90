@@ -1,13 +1,13 @@
-!> A free tip of a growing network, for both levels.
+!> A free tip of a growing network, for both levels: the position of a growing fracture end, the
+!! straight continuation of the path, and the driving force.
 !!
-!! The end of a fracture that grows, and the direction in which its path continues straight.
 !!
-!! A tip kinks by the angle of the largest tangential stress. Under a strong stress along the crack
-!! this angle is right only for steps shorter than about (K_I/T)^2 (T: the stress parallel to the
-!! crack less the one across it; Cotterell and Rice 1980): longer explicit steps overshoot to both
-!! sides, with increasing amplitude. So each step except the first kink of a fracture's end is
-!! corrected until the kink angle at the new tip vanishes, that is, until the criterion holds at
-!! the end of the step (backward Euler for the path; local symmetry).
+!! A tip kinks by the angle of the largest tangential stress. With a large T-stress this angle is
+!! right only for steps shorter than about (K_I/T)^2 (T: the stress parallel to the crack minus the
+!! stress normal to the crack; Cotterell and Rice 1980): longer explicit steps overshoot to
+!! alternate sides, with increasing amplitude. Each step except the first kink of a fracture's end
+!! is therefore corrected until the kink angle at the new tip vanishes, that is, until the criterion
+!! holds at the end of the step (backward Euler for the path; local symmetry).
 module growth_tip
    use base_kinds, only: ik, rk
    use fine_tip_types, only: intensity_t
@@ -18,41 +18,42 @@ module growth_tip
 
    public :: path_t, tip_t
 
-   !> A free tip on its way. The drive is -K_II: it has the sign of the kink angle of the criterion
-   !! and is nearly linear in the kink, also where the angle saturates: at closed faces, and under a
-   !! strong stress along the crack.
+   !> Path of a free tip. The drive is -K_II, which has the sign of the kink angle of the criterion
+   !! and is nearly linear in the kink, even where the kink angle saturates: at closed faces, and
+   !! with a large T-stress.
    type :: path_t
-      real(rk) :: xy(2) = 0.0_rk  !< where it is [m]
+      real(rk) :: xy(2) = 0.0_rk  !< position [m]
       real(rk) :: direction(2) = 0.0_rk  !< unit vector ahead
-      real(rk) :: carried = 0.0_rk  !< growth too short for the mesh, kept [m]
-      real(rk) :: advance = 0.0_rk  !< of the last increment; 0: did not grow [m]
-      real(rk) :: kink = 0.0_rk  !< of that advance, anticlockwise [rad]
-      real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk  !< tip and direction before it
-      logical :: has_wing = .false.  !< has grown before
-      ! The last two tries of `correct` [rad], [Pa sqrt(m)].
+      real(rk) :: carried = 0.0_rk  !< advance too short for the mesh, carried over [m]
+      real(rk) :: advance = 0.0_rk  !< advance in the last increment; 0: none [m]
+      real(rk) :: kink = 0.0_rk  !< kink angle of the last increment, anticlockwise [rad]
+      !> position [m] and unit vector before the last increment
+      real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk
+      logical :: has_wing = .false.  !< the fracture end has grown before
+      ! Last two iterates of `correct` [rad], [Pa sqrt(m)].
       real(rk), private :: tried_kink(2) = 0.0_rk, tried_drive(2) = 0.0_rk
       integer, private :: tries = 0
-      logical, private :: is_bracketed = .false.  !< they lie on either side of the right kink
-      ! What the increments so far have taught, for the next one.
-      real(rk), private :: falls = 0.0_rk  !< -d drive/d kink over the strength; 0: unknown [1/rad]
+      logical, private :: is_bracketed = .false.  !< the iterates bracket the root
+      ! Data of earlier increments, for the prediction of the next one.
+      real(rk), private :: falls = 0.0_rk  !< -d(drive)/d(kink) over `strength`; 0: unknown [1/rad]
       real(rk), private :: strength = 0.0_rk  !< K_eq at the start of the increment [Pa sqrt(m)]
-      real(rk), private :: start_drive = 0.0_rk  !< there [Pa sqrt(m)]
-      real(rk), private :: curvature = 0.0_rk  !< of the path [rad/m]
+      real(rk), private :: start_drive = 0.0_rk  !< drive at the start of the increment [Pa sqrt(m)]
+      real(rk), private :: curvature = 0.0_rk  !< curvature of the path [rad/m]
    contains
-      procedure :: foresee
+      procedure :: predict
       procedure :: move
       procedure :: correct
-      procedure :: settle
+      procedure :: commit
    end type path_t
 
-   !> A free tip: its way, what drives it, and what has stopped it.
+   !> A free tip: path, driving force, and target.
    type, extends(path_t) :: tip_t
       integer(ik) :: fracture = 0  !< in the network
       integer(ik) :: end = 0  !< 1: start of the polyline, 2: its end
       logical :: arrested = .false.  !< it will not grow again
       integer(ik) :: target = target_none  !< what has arrested it: a fracture, or of growth_targets
       logical :: joined = .false.  !< it has joined that; else it has stopped short of it
-      integer(ik) :: heads_for = target_none  !< what the last piece of its path ends on
+      integer(ik) :: path_target = target_none  !< what the last piece of its path ends on
       logical :: is_free = .true.  !< it is the end of a crack still; no joint has been made at it
       logical :: is_shut = .false.  !< the faces behind it stick: K = 0, without evaluation
       logical :: is_carried = .false.  !< its intensities are those of an earlier state
@@ -67,12 +68,13 @@ module growth_tip
       !> A small share of the K that the loads may bring about at the tip: a toughness below is no
       !! scale for K_eq [Pa m^1/2]
       real(rk) :: least_scale = 0.0_rk
-      type(intensity_t) :: intensity_before  !< before the last increment of any tip
+      !> stress intensity factors before the last increment of any tip
+      type(intensity_t) :: intensity_before
       type(growth_drive_t) :: drive_before
    contains
       procedure :: begin_increment
       procedure :: resist
-      procedure :: cease
+      procedure :: deactivate
       procedure :: has_just_stopped
       procedure :: scale_of
       procedure :: excess
@@ -83,16 +85,17 @@ module growth_tip
       procedure :: carry
    end type tip_t
 
-   !> By how much a kink by the criterion's angle changes that angle, where nothing is known yet: as
-   !! much for a short step under no stress along the crack, more with common steps and stresses.
+   !> Assumed change of the criterion's angle per kink by that angle, without data of earlier
+   !! increments [-]. The exact value is 2 for a short step without T-stress, more for usual steps
+   !! and stresses.
    real(rk), parameter :: usual_answer = 2.0_rk
-   real(rk), parameter :: radian = 1.0_rk  !< the unit of kinks [rad]
-   !> Kinks so near to each other tell nothing about the slope between them [rad].
+   real(rk), parameter :: radian = 1.0_rk  !< unit of kink angles [rad]
+   !> Difference of two kinks below which the slope between them is not used [rad].
    real(rk), parameter :: too_near = 0.003_rk
 
 contains
 
-   !> The tip has not grown yet, and is as before the increment.
+   !> Store the state of the tip before an increment.
    elemental subroutine begin_increment(self)
       class(tip_t), intent(inout) :: self
 
@@ -103,26 +106,26 @@ contains
       self%was_free = self%is_free
    end subroutine begin_increment
 
-   !> The rock has its own toughness: what drives the tip counts in terms of it.
+   !> Scale K_eq by the toughness of the rock at the tip.
    elemental subroutine resist(self, resistance)
       class(tip_t), intent(inout) :: self
-      real(rk), intent(in) :: resistance  !< K_IC here over that of the scene's rock [-]
+      real(rk), intent(in) :: resistance  !< K_IC at the tip over K_IC of the scene [-]
 
       self%drive%resistance = resistance
       self%drive%intensity = self%drive%intensity/resistance
    end subroutine resist
 
-   !> There is no tip any more, and no intensities are.
-   elemental subroutine cease(self)
+   !> Deactivate the tip and clear its intensities.
+   elemental subroutine deactivate(self)
       class(tip_t), intent(inout) :: self
 
       self%arrested = .true.
       self%is_free = .false.
       self%intensity = intensity_t()
       self%drive = growth_drive_t()
-   end subroutine cease
+   end subroutine deactivate
 
-   !> The intensity by which excesses over the toughness are judged [Pa m^1/2].
+   !> Scale of the excess over the toughness [Pa m^1/2].
    elemental real(rk) function scale_of(self, toughness)
       class(tip_t), intent(in) :: self
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
@@ -130,7 +133,7 @@ contains
       scale_of = max(toughness, self%least_scale)
    end function scale_of
 
-   !> K_eq less K_IC, over the scale [-].
+   !> K_eq minus K_IC, over the scale [-].
    elemental real(rk) function excess(self, toughness)
       class(tip_t), intent(in) :: self
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
@@ -149,7 +152,7 @@ contains
                        /(self%scale_of(toughness)*self%drive%resistance)
    end function relative_error
 
-   !> In the last increment it has come to something that it does not join.
+   !> Whether the tip has stopped before a target in the last increment.
    elemental logical function has_just_stopped(self)
       class(tip_t), intent(in) :: self
 
@@ -157,14 +160,14 @@ contains
                          .and. .not. self%was_arrested
    end function has_just_stopped
 
-   !> A tip with intensities to be evaluated.
+   !> Whether the intensities of the tip are to be evaluated.
    elemental logical function is_loaded(self)
       class(tip_t), intent(in) :: self
 
       is_loaded = self%is_free .and. .not. (self%is_shut .or. self%is_carried)
    end function is_loaded
 
-   !> The faces behind the tip stick, and have never moved: nothing drives it.
+   !> Set the driving force to zero: the faces behind the tip stick, and have never moved.
    elemental subroutine shut(self)
       class(tip_t), intent(inout) :: self
       real(rk) :: resistance
@@ -197,16 +200,16 @@ contains
       has_state = merge(self%was_free, self%is_free, is_before)
    end function has_state
 
-   !> The kink with which the drive will probably vanish at the end of the next increment: for what
-   !! the last one has left, and with as much curvature again as it had.
-   pure subroutine foresee(self, drive_angle, drive, strength, advance, kink)
+   !> Predict the kink with which the drive vanishes at the end of the next increment: it cancels
+   !! the remaining drive and continues the curvature of the last increment.
+   pure subroutine predict(self, drive_angle, drive, strength, advance, kink)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive_angle  !< kink angle of the criterion at the tip [rad]
-      real(rk), intent(in) :: drive  !< -K_II there [Pa sqrt(m)]
-      real(rk), intent(in) :: strength  !< K_eq there [Pa sqrt(m)]
-      real(rk), intent(in) :: advance  !< of the next increment [m]
+      real(rk), intent(in) :: drive  !< -K_II at the tip [Pa sqrt(m)]
+      real(rk), intent(in) :: strength  !< K_eq at the tip [Pa sqrt(m)]
+      real(rk), intent(in) :: advance  !< length of the next increment [m]
       real(rk), intent(out) :: kink  !< anticlockwise [rad]
-      real(rk), parameter :: most = 0.2_rk  ! that curvature may add [rad]
+      real(rk), parameter :: most = 0.2_rk  ! limit of the curvature term [rad]
 
       self%start_drive = drive
       self%strength = strength
@@ -217,9 +220,9 @@ contains
       kink = max(-abs(drive_angle), min(abs(drive_angle), kink)) &
              + max(-most, min(most, self%curvature*advance))
       kink = in_grains(kink, radian)
-   end subroutine foresee
+   end subroutine predict
 
-   !> Grow straight to a new place.
+   !> Advance straight to a new position.
    pure subroutine move(self, to, kink)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: to(2)  !< [m]
@@ -235,14 +238,14 @@ contains
       self%is_bracketed = .false.
    end subroutine move
 
-   !> Turn the last advance so that the drive at its new end vanishes: one step of the Illinois
-   !! method, which keeps the right direction between two tries. The direction is right where the
-   !! kink angle of the criterion is small, or where the slope of the drive says that the kink is
-   !! known well enough: at closed faces that angle is never small.
+   !> Rotate the last advance so that the drive at its new end vanishes: one step of the Illinois
+   !! method, which keeps a bracket of the root. The direction is accepted where the kink angle of
+   !! the criterion is small, or where the slope of the drive shows that the error of the kink is
+   !! small: at closed faces the angle of the criterion is never small.
    pure subroutine correct(self, drive_angle, drive, has_turned)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive_angle  !< kink angle of the criterion at the new end [rad]
-      real(rk), intent(in) :: drive  !< -K_II there [Pa sqrt(m)]
+      real(rk), intent(in) :: drive  !< -K_II at the new end [Pa sqrt(m)]
       logical, intent(out) :: has_turned
       real(rk), parameter :: enough = 0.035_rk  ! two degrees
       real(rk), parameter :: narrow = 0.005_rk  ! bracket [rad]
@@ -253,7 +256,7 @@ contains
       has_turned = .false.
       if (.not. (self%advance > 0.0_rk .and. self%has_wing)) return
       if (.not. abs(drive_angle) > enough) return
-      call learn(self, drive)
+      call update_slope(self, drive)
       if (self%is_bracketed .and. drive*self%tried_drive(2) > 0.0_rk) then
          self%tried_drive(1) = 0.5_rk*self%tried_drive(1)
       else
@@ -276,7 +279,7 @@ contains
             if (abs(between) > too_near) slope = (self%tried_drive(2) - self%tried_drive(1))/between
          end associate
       end if
-      ! A drive that does not fall with the kink tells nothing: then turn as the criterion says.
+      ! Where the drive does not fall with the kink, the slope of the criterion is used.
       if (.not. slope < 0.1_rk*usual_slope) slope = usual_slope
       kink = self%kink - max(-longest, min(longest, drive/slope))
       kink = in_grains(min(largest, max(-largest, kink)), radian)
@@ -287,8 +290,8 @@ contains
       has_turned = .true.
    end subroutine correct
 
-   !> How the drive answers to the kink, from the present and the last try.
-   pure subroutine learn(self, drive)
+   !> Update the derivative of the drive with respect to the kink from the last two iterates.
+   pure subroutine update_slope(self, drive)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive  !< [Pa sqrt(m)]
 
@@ -299,16 +302,16 @@ contains
             self%falls = (self%tried_drive(2) - drive)/(between*self%strength)
          end if
       end associate
-   end subroutine learn
+   end subroutine update_slope
 
-   !> The last increment stays as it is: learn from it.
-   pure subroutine settle(self, drive)
+   !> Commit the last increment, and update the curvature.
+   pure subroutine commit(self, drive)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive  !< -K_II at the new end [Pa sqrt(m)]
 
       if (.not. self%advance > 0.0_rk) return
       if (self%has_wing) then
-         call learn(self, drive)
+         call update_slope(self, drive)
          self%curvature = self%kink/self%advance
          if (self%falls > 0.0_rk) then
             self%curvature = (self%kink + (drive - self%start_drive) &
@@ -316,6 +319,6 @@ contains
          end if
       end if
       self%has_wing = .true.
-   end subroutine settle
+   end subroutine commit
 
 end module growth_tip

@@ -9,7 +9,8 @@ module mechanics_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use growth_competition, only: learn_from_trial, matrix_of_kinds, means, numbered, of_kinds, &
+   use growth_competition, only: broyden_update, matrix_of_groups, means, numbered, &
+      values_of_groups, &
                                  preference
    use growth_control, only: fitted, joined_groups, length_control_t
    use growth_tip, only: tip_t
@@ -290,7 +291,7 @@ contains
          end if
          search%is_placed = .false.
          if (updates_matrix .and. size(group) > 1) then
-            call learn_from_trial(self%matrix, search%share*search%advance - search%placed, &
+            call broyden_update(self%matrix, search%share*search%advance - search%placed, &
                                   body%tip(group)%drive%intensity - search%intensity)
          end if
          call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, &
@@ -389,8 +390,9 @@ contains
          self%preference = preference(self%matrix, search%slope(group))*body%rules%increment &
                            /body%rules%toughness
          ! Tip groups do not grow together where the difference is within the error of K.
-         self%prefers_one = preference(matrix_of_kinds(tip_group, self%matrix), &
-                                       of_kinds(tip_group, means(tip_group, search%slope(group)))) &
+         self%prefers_one = preference(matrix_of_groups(tip_group, self%matrix), &
+                                       values_of_groups(tip_group, means(tip_group, &
+                                          search%slope(group)))) &
                             *body%rules%increment > -2.0_rk*together*body%rules%toughness
       end associate
    end subroutine probe_group
@@ -405,12 +407,13 @@ contains
 
       associate (needed => needed_intensity(body), tip_group => search%tip_group, &
                  accepted => self%tries%segment(search%tip)%accepted)
-         advance = of_kinds(tip_group, search%advance)
-         excess = of_kinds(tip_group, means(tip_group, -search%lack))/needed
-         slope = of_kinds(tip_group, means(tip_group, search%slope(search%tip)))/needed
-         shortest = of_kinds(tip_group, max(0.0_rk, least*body%rules%increment - accepted))
-         call search%control%improve(excess, matrix_of_kinds(tip_group, self%matrix)/needed, &
-                                     slope, of_kinds(tip_group, search%remaining), shortest, &
+         advance = values_of_groups(tip_group, search%advance)
+         excess = values_of_groups(tip_group, means(tip_group, -search%lack))/needed
+         slope = values_of_groups(tip_group, means(tip_group, search%slope(search%tip)))/needed
+         shortest = values_of_groups(tip_group, max(0.0_rk, least*body%rules%increment - accepted))
+         call search%control%improve(excess, matrix_of_groups(tip_group, self%matrix)/needed, &
+                                     slope, values_of_groups(tip_group, search%remaining), &
+                                        shortest, &
                                      tolerance, advance, has_moved)
          search%advance = advance(tip_group)
       end associate

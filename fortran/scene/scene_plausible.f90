@@ -118,7 +118,7 @@ module scene_plausible
          "tips is several per cent off, within their stated errors")]
    !&>
 
-   !> Distance below which an end reaches a target (twolevel_pieces) [increments].
+   !> Distance below which an end reaches a target (twolevel_segments) [increments].
    real(rk), parameter :: near_end = 0.05_rk
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]

@@ -17,7 +17,7 @@ module scene_sizes
    !> Edge of a window over the length of its fracture, and the least that changes K little.
    real(rk), parameter :: usual_window = 5.0_rk, least_window = 2.0_rk
 
-   !> Larger windows, over the body's shorter edge, are the body (twolevel_doubt).
+   !> Larger windows, over the body's shorter edge, are the body (twolevel_refinement).
    real(rk), parameter :: largest_window = 0.3_rk
 
    !> Cells far from the fractures over the body's shorter edge.

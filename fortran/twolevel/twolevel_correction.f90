@@ -1,7 +1,8 @@
 !> Correction of the coarse level by the windows: a defect correction (Hackbusch 1984).
 !!
-!! Windows are more accurate than the coarse level, on the fractures and in the rock. The coarse
-!! level takes the results of all windows at once. This costs one substitution in the factors.
+!! The windows are more accurate than the coarse level, on the fractures and in the rock. The
+!! results of all windows are imposed on the coarse level together, which costs one substitution
+!! with the existing factors.
 module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -22,14 +23,14 @@ module twolevel_correction
 
 contains
 
-   !> What the coarse displacement at the nodes would be if the coarse level agreed with the
-   !! windows inside of them: jumps on the fractures are theirs, and cells all of whose neighbours
-   !! lie in the same window get the forces that make the windows' displacements fulfil their
-   !! equations.
+   !> Coarse displacement at the nodes, corrected so that the coarse level agrees with the windows
+   !! inside of the windows: the jumps on the fractures are those of the windows, and cells all of
+   !! whose neighbours lie in the same window get the forces with which the displacements of the
+   !! windows satisfy the coarse equations.
    subroutine improve(windows, tips, problem, state, displacement, gradient, error)
       type(windows_t), intent(in) :: windows
       type(tip_t), intent(in) :: tips(:)
-      type(coarse_problem_t), intent(inout) :: problem  !< its factors are used
+      type(coarse_problem_t), intent(inout) :: problem  !< with factors of its matrix
       type(state_t), intent(in) :: state
       real(rk), intent(out) :: displacement(:, :)  !< (2, n_nodes) [m]
       real(rk), intent(out) :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
@@ -58,8 +59,8 @@ contains
       end associate
    end subroutine improve
 
-   !> The window that speaks for each block of the coarse level, 0 for none: that whose tip is
-   !! nearest, of those that hold the centre of the cell, or the whole fracture cell.
+   !> Window assigned to each block of the coarse level, 0 for none: of the windows that contain the
+   !! centre of the cell, or the whole fracture cell, the one whose tip is nearest.
    pure function speakers(windows, tips, mesh) result(speaker)
       type(windows_t), intent(in) :: windows
       type(tip_t), intent(in) :: tips(:)
@@ -79,7 +80,7 @@ contains
       end associate
    end function speakers
 
-   !> Of the windows that hold both points, the one whose tip is nearest, else 0.
+   !> Of the windows that contain both points, the one whose tip is nearest, else 0.
    pure function nearest_window(windows, tips, points) result(nearest)
       type(windows_t), intent(in) :: windows
       type(tip_t), intent(in) :: tips(:)
@@ -102,7 +103,7 @@ contains
       end do
    end function nearest_window
 
-   !> Cells whose equations know nothing but what one window speaks for.
+   !> Cells whose equations contain only blocks that are assigned to the same window.
    pure function is_within(problem, speaker) result(within)
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: speaker(:)  !< (blocks)
@@ -123,7 +124,8 @@ contains
       end associate
    end function is_within
 
-   !> What the windows find where they speak, less what the coarse level has there; no pressures.
+   !> Differences of the windows' displacements and jumps from the coarse ones, in the blocks
+   !! assigned to the windows; 0 for pressures.
    subroutine find_differences(windows, tips, problem, state, speaker, difference, q, error)
       type(windows_t), intent(in) :: windows
       type(tip_t), intent(in) :: tips(:)
@@ -131,7 +133,7 @@ contains
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: speaker(:)  !< (blocks)
       real(rk), allocatable, intent(out) :: difference(:, :)  !< (3, blocks) [m]
-      real(rk), intent(out) :: q(:)  !< that of the jumps, as in coarse_condensed [m]
+      real(rk), intent(out) :: q(:)  !< difference of the jumps, as in coarse_condensed [m]
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: displacement(:, :), jump(:, :, :), xy(:, :)
       integer(ik), allocatable :: cells(:)
@@ -142,7 +144,7 @@ contains
       q = 0.0_rk
       associate (mesh => problem%mesh, condensed => problem%model%condensed)
          do w = 1, size(windows%slot, kind=ik)
-            if (.not. windows%is_asked(w, tips)) cycle
+            if (.not. windows%is_active(w, tips)) cycle
             associate (window => windows%slot(w)%window)
                cells = pack([(i, i=1, mesh%n_cells)], speaker(:mesh%n_cells) == w)
                xy = reshape([(cell_centre(mesh, cells(i)), i=1, size(cells))], [2, size(cells)])

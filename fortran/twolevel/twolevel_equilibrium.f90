@@ -1,12 +1,13 @@
 !> Growth as equilibrium (model.md section 5): at the end of a time step each tip has either not
 !! advanced and K_eq <= K_IC, or advanced so far that K_eq = K_IC.
 !!
-!! Within a step the coarse level is solved from the state before, with the tips at trial positions.
-!! The windows give the intensities there, and each tip advances until its excess vanishes. A tip
-!! lies anywhere along the last straight segment of its path. The coarse mesh has a cell for the
-!! whole segment, and tip springs represent the part of the segment behind the tip (coarse_tips).
-!! The coarse mesh therefore changes once per segment, and neither its matrix nor the fluid volume
-!! jumps. A segment begins in the direction in which K_II vanishes at its end (growth_tip).
+!! Within a step the coarse level is solved from the state at the start of the step, with the tips
+!! at trial positions. The windows give the intensities, and each tip advances until its excess
+!! vanishes. A tip lies anywhere along the last straight segment of its path. The coarse mesh has a
+!! cell for the whole segment, and tip springs represent the part of the segment behind the tip
+!! (coarse_tips). The coarse mesh therefore changes once per segment, and neither its matrix nor the
+!! fluid volume jumps. A segment begins in the direction in which K_II vanishes at its end
+!! (growth_tip).
 module twolevel_equilibrium
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -15,18 +16,18 @@ module twolevel_equilibrium
    use growth_advances, only: advances_t
    use growth_network, only: total_length
    use growth_targets, only: target_none
-   use twolevel_doubt, only: find_improvements
+   use twolevel_refinement, only: find_refinements
    use twolevel_growth_errors, only: is_uncertain
    use twolevel_excess, only: arrivals, at_joints, first_onset, onset, shared_excesses, &
                               tolerance
-   use twolevel_moves, only: is_in_play, judge_tips, keep_together, part_company
-   use twolevel_pieces, only: begin_pieces, can_join, have_come, join_targets
+   use twolevel_moves, only: is_in_play, judge_tips, keep_together, separate_tips
+   use twolevel_segments, only: begin_segments, can_join, are_at_ligaments, join_targets
    use twolevel_places, only: advances, place_tips
-   use twolevel_probe, only: lesson_t, measure_rivals
+   use twolevel_probe, only: previous_try_t, measure_interaction
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_tip_layers, only: find_tip_layers
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
    implicit none(type, external)
@@ -34,48 +35,49 @@ module twolevel_equilibrium
 
    public :: accept_equilibrium, find_equilibrium, punctual
 
-   !> Excess of K_eq over K_IC, relative to that, beyond which no segment begins in a tried step:
-   !! its direction would be that of a state that never is.
+   !> Excess K_eq/K_IC - 1 above which no segment begins in a tried step: its direction would be
+   !! that of a state that does not occur [-].
    real(rk), parameter :: excess_max = 0.2_rk
 
-   !> A step that errs this much with the tips where they were cannot be taken, whatever they do
-   !! [-].
+   !> Time error of the first try, over the tolerance, above which a step is rejected before the
+   !! tips move [-].
    real(rk), parameter :: much = 4.0_rk
 
-   !> A tip comes to a joint no earlier before the end of a step, and jumps in one no longer, than
-   !! this share of the time since the wells were switched last [-].
+   !> Largest time between the connection of a tip to its target and the end of the step, and
+   !! largest step in which a tip may jump, over the time since the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
    !> A tip whose excess in the first try of a step is below the negative of this is evaluated again
    !! in the last try only [-].
    real(rk), parameter :: lack_of_far = 0.3_rk
 
-   !> A step that is being tried.
+   !> State of the tries of a step.
    type :: search_t
       real(rk) :: dt = 0.0_rk  !< [s]
-      logical :: is_last = .false.  !< its error in time is not judged
-      logical :: may_jump = .false.  !< tips may go on from piece to piece in it
-      ! Of its tries
-      real(rk), allocatable :: unmoved(:)  !< (tips) excesses of the first one [-]
-      integer(ik), allocatable :: kind(:)  !< (tips) from 1: those of one go equally far
-      logical, allocatable :: has_begun(:)  !< (tips) a new piece
-      type(lesson_t) :: lesson
-      type(advances_t) :: advances  !< search for the places of the tips on segments
-      logical :: is_over = .false.  !< there is no more to be tried
+      logical :: is_last = .false.  !< last try: the time error is not checked
+      logical :: may_jump = .false.  !< tips may advance by several segments in the step
+      ! Data of the tries
+      real(rk), allocatable :: unmoved(:)  !< (tips) excess in the first try [-]
+      integer(ik), allocatable :: kind(:)  !< (tips) number of the tip group, from 1
+      logical, allocatable :: has_begun(:)  !< (tips) the tip has begun a new segment
+      type(previous_try_t) :: previous_try
+      type(advances_t) :: advances  !< search for the positions of the tips on their segments
+      logical :: is_over = .false.  !< the tries have ended
    end type search_t
 
 contains
 
-   !> Try a step from the last remembered state: state and tips at its end. A tip that would go on
-   !! for more than one new piece goes too far, unless it may jump: the step is so short that it
-   !! does not matter when in it that happens, or it is the last try, in which nothing but growth
-   !! happens until that arrests. Nothing is accepted yet. A step in which a tip would grow, or
-   !! might, whose intensities are not known well enough asks for better windows.
+   !> Try a step from the last stored state: find the state at its end, and the tip positions in
+   !! equilibrium. A step in which a tip would advance by more than one new segment goes too far,
+   !! unless tips may jump: then the step is so short that the time of the jump within the step does
+   !! not matter, or it is the last try, which consists of unstable growth until its arrest. Nothing
+   !! is accepted here. A step in which the intensities of a tip that grows, or might grow, are not
+   !! accurate enough returns refinements of the windows.
    subroutine find_equilibrium(self, dt, is_last, may_jump, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical, intent(in) :: is_last  !< its error in time is not judged; tips may jump
-      logical, intent(in) :: may_jump
+      logical, intent(in) :: is_last  !< last try: the time error is not checked; tips may jump
+      logical, intent(in) :: may_jump  !< tips may advance by several segments in the step
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(out) :: trial
@@ -99,7 +101,7 @@ contains
       trial%goes_too_far = .true.
    end subroutine find_equilibrium
 
-   !> Tips begin the step where they probably come.
+   !> Put the tips at their predicted positions at the end of the step.
    subroutine begin_search(self, dt, is_last, may_jump, search)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -112,24 +114,24 @@ contains
       allocate (search%kind(size(self%tip)))
       allocate (search%has_begun(size(self%tip)), source=.false.)
       associate (toughness => self%rules%toughness, segment => self%now%segment)
-         call self%now%company%find_kinds(self%tip%excess(toughness), &
+         call self%now%groups%find_groups(self%tip%excess(toughness), &
                                           self%tip%relative_error(toughness), segment%gain, &
                                           self%tip%arrested, self%increments(), &
-                                          self%now%rivals, search%kind)
+                                          self%now%interaction, search%kind)
          call segment%restart()
          if (.not. may_jump) then
             call segment%keep_pace(dt)
             call keep_together(self%now%segment, search%kind)
          end if
       end associate
-      call self%now%certainty%begin_step()
+      call self%now%stated_errors%begin_step()
    end subroutine begin_search
 
-   !> The state and the intensities with the tips where they are tried to be.
+   !> Solve the coarse level and evaluate the intensities at the trial positions of the tips.
    subroutine find_state(self, search, is_first, timers, report, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      logical, intent(in) :: is_first  !< try
+      logical, intent(in) :: is_first  !< first try of the step
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(inout) :: trial
@@ -152,66 +154,68 @@ contains
       end if
       call self%evaluate(timers, error)
       if (allocated(error)) return
-      call self%now%certainty%see_try(total_length(self%network), &
+      call self%now%stated_errors%see_try(total_length(self%network), &
                                       self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
       search%unmoved = self%tip%excess(self%rules%toughness)
       if (.not. search%is_last) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
-      if (.not. search%is_over) self%now%asked = are_asked(self)
+      if (.not. search%is_over) self%now%active = active_tips(self)
    end subroutine find_state
 
-   !> Share of the step after which the first tip that has not grown before begins to [-].
+   !> Share of the step after which a tip begins to grow for the first time [-].
    pure real(rk) function onset_of(self)
       class(two_levels_t), intent(in) :: self
 
       onset_of = first_onset(self%last%front%tip, self%tip, self%now%segment, self%rules%toughness)
    end function onset_of
 
-   !> Let the tips go where their excess will probably vanish.
+   !> Move the tips to where their excess is predicted to vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
       type(timers_t), intent(inout) :: timers
-      logical, intent(out) :: any_moves  !< or is to be asked anew where it is
-      logical, intent(out) :: wants(:)  !< (tips) a new piece
+      logical, intent(out) :: any_moves  !< a tip has moved, or is to be evaluated again
+      logical, intent(out) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(error_t), allocatable, intent(out) :: error
       logical, dimension(size(self%tip)) :: in_play, moves
 
       in_play = is_in_play(self%now%segment, self%tip%excess(self%rules%toughness))
-      call search%lesson%tell(self%now%segment, self%tip, self%rules%toughness, self%now%rivals)
-      call measure_rivals(self, in_play, search%dt, timers, any_moves, error)
+      call search%previous_try%update_interaction(self%now%segment, self%tip, &
+         self%rules%toughness, self%now%interaction)
+      call measure_interaction(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
-      call search%lesson%begin(self%now%segment, self%tip, self%rules%toughness)
-      if (any_moves) search%advances = advances_t()  ! with the influences that have been measured
-      call judge_tips(self%now%segment, self%now%rivals, shared_excesses(self), have_come(self), &
+      call search%previous_try%begin(self%now%segment, self%tip, self%rules%toughness)
+      if (any_moves) search%advances = advances_t()  ! with the measured tip interaction
+      call judge_tips(self%now%segment, self%now%interaction, shared_excesses(self), &
+         are_at_ligaments(self), &
                       self%tip%arrested, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 
-   !> All tips are at rest, or at the ends of their pieces: some leave their kind, some join what
-   !! they have come to, some begin new pieces; else the state is an equilibrium.
+   !> Continue when no tip moves within its segment: some tips leave their group, some join their
+   !! targets, some begin new segments; else the state is an equilibrium.
    subroutine go_on(self, search, wants, timers, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      logical, intent(inout) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(timers_t), intent(inout) :: timers
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
       logical :: any_parted, joins(size(self%tip))
 
-      call part_company(self%now%segment, self%now%company, self%tip, self%last%front%tip, &
+      call separate_tips(self%now%segment, self%now%groups, self%tip, self%last%front%tip, &
                         self%rules%toughness, wants, search%kind, any_parted)
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
-      ! Not while others are on their way: they may go back.
+      ! Only now: while other tips still move, they may retreat.
       if (.not. search%may_jump) trial%onset = onset_of(self)
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
       call stop_gained(self, search, wants, trial)
       if (search%is_over) return
       joins = wants .and. can_join(self)
-      wants = wants .and. self%tip%heads_for == target_none
+      wants = wants .and. self%tip%path_target == target_none
       if (.not. (trial%has_joined .or. trial%jumps)) then
          trial%time_error = self%step_error(search%dt)
       end if
@@ -224,14 +228,14 @@ contains
       end if
    end subroutine go_on
 
-   !> Tips that have come as far as growth is wanted do not go on, unless that is too early in the
-   !! step: then they would exceed their toughness by more than the tolerance, and the step is cut
-   !! to where their excess vanishes. Where tips may jump, straight lines say nothing of that: the
-   !! step is halved, until it is the last try.
+   !> Stop tips that have grown by the prescribed gain, unless they reach it too early in the step:
+   !! then K_eq would exceed the toughness by more than the tolerance, and the step is cut to the
+   !! time at which the excess vanishes. Where tips may jump, linear interpolation does not give
+   !! this time: the step is halved, until the last try.
    subroutine stop_gained(self, search, wants, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
-      logical, intent(inout) :: wants(:)  !< (tips) a new piece
+      logical, intent(inout) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(trial_t), intent(inout) :: trial
       logical :: stops(size(wants))
 
@@ -252,8 +256,8 @@ contains
       search%is_over = trial%goes_too_far .or. trial%is_late
    end subroutine stop_gained
 
-   !> Tips join what they have come to, unless that is too early in the step. The error in time is
-   !! that up to the joint: what follows is a jump.
+   !> Connect tips to their targets, unless they reach them too early in the step. The time error is
+   !! that up to the connection, which is a jump.
    subroutine join(self, search, joins, trial)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -271,11 +275,11 @@ contains
       end if
       call join_targets(self, joins)
       trial%has_joined = .true.
-      search%lesson = lesson_t()
+      search%previous_try = previous_try_t()
       search%advances = advances_t()
    end subroutine join
 
-   !> Tips begin new pieces, unless they have gone too far by that, or are not known well enough.
+   !> Begin new segments, unless the step goes too far, or the intensities are not accurate enough.
    subroutine begin_wanted(self, search, wants, timers, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -289,27 +293,27 @@ contains
       associate (toughness => self%rules%toughness, &
                  before => self%last%front%tip%excess(self%rules%toughness))
          if (any([(wants(i) .and. is_uncertain(self, i), i=1, size(wants, kind=ik))])) then
-            call find_improvements(self, self%before%time, trial%improvements)
-            search%is_over = size(trial%improvements) > 0
+            call find_refinements(self, self%before%time, trial%refinements)
+            search%is_over = size(trial%refinements) > 0
             if (search%is_over) return
          end if
          if (any(wants .and. (search%has_begun .or. &
                               self%tip%excess(toughness) > excess_max))) then
             trial%jumps = .true.
-            trial%time_error = 0.0_rk  ! what jumps has no rates
+            trial%time_error = 0.0_rk  ! jumps have no rates
          end if
          trial%goes_too_far = trial%jumps .and. .not. search%may_jump
          search%is_over = trial%goes_too_far
          if (search%is_over) then
             trial%was_beyond = any(wants .and. before > excess_max)
-            ! From where they come to the toughness on, not from the start of the step.
+            ! Onset at the time when the tips reach the toughness, not at the start of the step.
             trial%onset = onset(before, search%unmoved, wants)
             return
          end if
       end associate
       excess = self%tip%excess(self%rules%toughness)
       excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
-      call begin_pieces(self, wants, timers, error)
+      call begin_segments(self, wants, timers, error)
       if (allocated(error)) return
       if (.not. search%may_jump) then
          do i = 1, size(wants)
@@ -317,14 +321,14 @@ contains
          end do
          call keep_together(self%now%segment, search%kind)
       end if
-      ! Not those that have come to something already: nothing lies between.
+      ! Without the tips whose whole segment is a ligament.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
-      search%lesson = lesson_t()  ! of other pieces
+      search%previous_try = previous_try_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted
 
-   !> No tip is to go on. If that holds for those that have not been asked too, and all are known
-   !! well enough, the state is an equilibrium.
+   !> End the tries: no tip is to advance. If the tips that have not been evaluated do not exceed
+   !! the toughness either, and all intensities are accurate enough, the state is an equilibrium.
    subroutine conclude(self, search, timers, trial, error)
       class(two_levels_t), intent(inout) :: self
       type(search_t), intent(inout) :: search
@@ -333,7 +337,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_exceeds
 
-      call ask_others(self, any_exceeds, timers, error)
+      call evaluate_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
@@ -345,51 +349,52 @@ contains
       end if
       call estimate_coarse_errors(self, timers, error)
       if (allocated(error)) return
-      call find_improvements(self, self%before%time, trial%improvements)
+      call find_refinements(self, self%before%time, trial%refinements)
    end subroutine conclude
 
-   !> Tips that may grow in a step, as its first try shows: those that are on their way or not far
-   !! from their toughness, known as well as that is.
-   pure function are_asked(self) result(asked)
+   !> Tips that may grow in a step, according to its first try: tips on open segments, and tips that
+   !! are near their toughness within the error of their intensities.
+   pure function active_tips(self) result(active)
       class(two_levels_t), intent(in) :: self
-      logical :: asked(size(self%tip))
+      logical :: active(size(self%tip))
 
       associate (toughness => self%rules%toughness)
-         asked = self%now%segment%is_open .or. self%tip%excess(toughness) &
+         active = self%now%segment%is_open .or. self%tip%excess(toughness) &
                  + self%tip%relative_error(toughness) > -lack_of_far
       end associate
-   end function are_asked
+   end function active_tips
 
-   !> Evaluate the tips that the tries of a step have not asked for. From now on all are asked.
-   subroutine ask_others(self, any_exceeds, timers, error)
+   !> Evaluate the tips that the tries of a step have left out. All tips are evaluated from now on.
+   subroutine evaluate_others(self, any_exceeds, timers, error)
       class(two_levels_t), intent(inout) :: self
-      logical, intent(out) :: any_exceeds  !< its toughness
+      logical, intent(out) :: any_exceeds  !< one of these tips exceeds its toughness
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       logical :: others(size(self%tip))
 
       any_exceeds = .false.
-      if (.not. allocated(self%now%asked)) return
-      others = .not. self%now%asked .and. self%tip%is_free
-      self%now%asked = others
+      if (.not. allocated(self%now%active)) return
+      others = .not. self%now%active .and. self%tip%is_free
+      self%now%active = others
       if (any(others)) call self%evaluate(timers, error)
-      deallocate (self%now%asked)
+      deallocate (self%now%active)
       if (allocated(error)) return
       any_exceeds = any(others .and. self%tip%excess(self%rules%toughness) > tolerance)
-   end subroutine ask_others
+   end subroutine evaluate_others
 
-   !> The tried state is accepted.
+   !> Accept the tried state.
    subroutine accept_equilibrium(self, dt)
       class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: dt  !< of the step [s]; 0: growth that says nothing of the next one
+      !> length of the step; 0: the speeds of the tips do not apply to the next step [s]
+      real(rk), intent(in) :: dt
 
       self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
                                   self%increments())
       call self%now%segment%pace(self%tip%advance, dt, &
                                  self%tip%excess(self%rules%toughness) >= -tolerance)
-      where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! they went straight on
+      where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! straight segments
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
-      call self%now%company%accept(self%tip%excess(self%rules%toughness), &
+      call self%now%groups%accept(self%tip%excess(self%rules%toughness), &
                                    self%tip%advance, self%increments())
       call self%now%segment%accept()
    end subroutine accept_equilibrium

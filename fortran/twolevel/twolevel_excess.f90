@@ -1,27 +1,29 @@
-!> By how much tips exceed their toughness in a tried step, and the share of the step after which
-!! they reach it, or reach a target ahead of them.
+!> Excess of the tips over their toughness in a tried step, and the share of the step after which
+!! they reach the toughness or a target.
 module twolevel_excess
    use base_kinds, only: ik, rk
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
-   use twolevel_pieces, only: comes_to
+   use twolevel_segments, only: comes_to
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
    public :: arrivals, at_joints, first_onset, onset, shared_excesses, tolerance
 
-   real(rk), parameter :: tolerance = 5.0e-3_rk  !< on K_eq/K_IC of growing tips [-]
+   real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
 
-   !> What a tip may exceed its toughness by as it comes to a joint [-].
+   !> Admissible excess of a tip that reaches a target [-].
    real(rk), parameter :: at_joints = 2.0_rk*tolerance
 
-   !> A tip that lacks less than this of its toughness before a step begins to grow with it [-].
+   !> Deficit of K_eq/K_IC before a step below which a tip begins to grow at the start of the step
+   !! [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
 contains
 
-   !> Of K_eq over K_IC; a tip that another one comes to leaves its own to that [-].
+   !> Excess of K_eq over K_IC. Where the target of tip i is another tip j that does not advance,
+   !! tip i has the larger of the two excesses, and tip j -1 [-].
    pure function shared_excesses(self) result(excess)
       class(two_levels_t), intent(in) :: self
       real(rk) :: excess(size(self%tip))
@@ -38,9 +40,9 @@ contains
       end do
    end function shared_excesses
 
-   !> Share of the step after which the first tip that has not grown before begins to, as tried [-].
+   !> Share of the step after which a tip begins to grow for the first time, in the tried state [-].
    pure real(rk) function first_onset(before, tips, segments, toughness)
-      type(tip_t), intent(in) :: before(:)  !< at the start of the step
+      type(tip_t), intent(in) :: before(:)  !< tips at the start of the step
       type(tip_t), intent(in) :: tips(:)
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
@@ -49,8 +51,8 @@ contains
                           .not. (tips%arrested .or. segments%gain > 0.0_rk))
    end function first_onset
 
-   !> Share of the step after which the first tip that counts reaches the toughness; 1 where none
-   !! begins to grow, or where it does so at the end of the step.
+   !> Share of the step after which the first of the tips that count reaches the toughness; 1 where
+   !! none begins to grow, or one does at the end of the step.
    pure function onset(before, after, counts)
       real(rk), intent(in) :: before(:), after(:)  !< excesses of the tips [-]
       logical, intent(in) :: counts(:)
@@ -65,12 +67,11 @@ contains
       end do
    end function onset
 
-   !> Shares of the step after which tips at the ends of their pieces have probably come there, and
-   !! exceed their toughness by more than is allowed: they would have gone on until their excess
-   !! vanishes [-]. Tips that have nothing left to go along exceed it when their intensity has risen
-   !! so far.
+   !> Estimated shares of the step after which tips at the ends of their segments have reached them
+   !! and exceed their toughness by more than `allowed`: the tips would have advanced further until
+   !! their excess vanishes [-]. Tips on a ligament exceed it when their intensity has risen so far.
    pure function arrivals(before, tips, segments, toughness, allowed) result(share)
-      type(tip_t), intent(in) :: before(:)  !< at the start of the step
+      type(tip_t), intent(in) :: before(:)  !< tips at the start of the step
       type(tip_t), intent(in) :: tips(:)
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]

@@ -1,5 +1,4 @@
-!> Fracture faces of a window: their condition, their load, and their history of slip, from the
-!! coarse level.
+!> Fracture faces of a window: their conditions, loads and slip history, from the coarse level.
 !!
 !! The condition is one of
 !!   "contact"   the contact law, which the window solves with the coarse level's fluid pressure
@@ -23,12 +22,14 @@ module twolevel_faces
 
    public :: coarse_jumps, face_map_t, match_faces
 
-   !> Which coarse fracture cell each fracture cell of a window belongs to.
+   !> Map from the fracture cells of a window to the coarse fracture cells.
    type :: face_map_t
-      integer(ik), allocatable :: coarse_cell(:)  !< the nearest one
-      logical, allocatable :: is_inside(:)  !< it lies in it; else it has grown from it
-      real(rk), allocatable :: ends(:, :)  !< (2, fracture cells) arc lengths of that one's ends [m]
-      type(pressure_map_t) :: pressure  !< how that of the fluid follows
+      integer(ik), allocatable :: coarse_cell(:)  !< number of the nearest coarse cell
+      !> the window's cell lies in the coarse cell; else it has grown beyond it
+      logical, allocatable :: is_inside(:)
+      !> (2, fracture cells) arc lengths of the ends of the coarse cell [m]
+      real(rk), allocatable :: ends(:, :)
+      type(pressure_map_t) :: pressure  !< map of the fluid pressure
    contains
       procedure :: conditions
       procedure :: load
@@ -37,8 +38,8 @@ module twolevel_faces
 
 contains
 
-   !> The coarse fracture cell that is nearest to each fracture cell of the window, along its
-   !! fracture.
+   !> Find the nearest coarse fracture cell on the same fracture for each fracture cell of the
+   !! window.
    pure function match_faces(fine, coarse, is_grown) result(map)
       type(fine_mesh_t), intent(in) :: fine
       type(mesh_t), intent(in) :: coarse
@@ -68,12 +69,12 @@ contains
       map%pressure = match_pressure(fine, coarse, is_grown)
    end function match_faces
 
-   !> What holds on the faces.
+   !> Conditions on the faces.
    pure function conditions(self, fine, name, law) result(found)
       class(face_map_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
       character(len=*), intent(in) :: name  !< "contact", "jump" or "traction"
-      type(contact_law_t), intent(in) :: law(:)  !< of the coarse fracture cells
+      type(contact_law_t), intent(in) :: law(:)  !< (coarse fracture cells)
       type(face_conditions_t) :: found
       integer(ik) :: i
 
@@ -100,7 +101,7 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       character(len=*), intent(in) :: name  !< "contact", "jump" or "traction"
       type(state_t), intent(in) :: state
-      real(rk), intent(in) :: lowest  !< pressure that the fluid bears [Pa]
+      real(rk), intent(in) :: lowest  !< lowest pressure of the fluid [Pa]
       type(fine_loads_t), intent(inout) :: loads
       real(rk), intent(in), optional :: in_situ(:)  !< (faces) what pressures add to [Pa]
       real(rk), intent(in), optional :: viscous(:)  !< (coarse fracture cells) as on_faces has it
@@ -126,7 +127,7 @@ contains
       end do
    end subroutine load
 
-   !> Contact as the coarse level has it: its jumps as first guess, and its slip before the step.
+   !> Contact state from the coarse level: its jumps as first guess, and its slip before the step.
    pure function history(self, fine, state) result(contact)
       class(face_map_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
@@ -154,7 +155,7 @@ contains
       end do
    end function history
 
-   !> The path that a coarse cell's ends had slipped before the last step [m].
+   !> Slip path at the ends of a coarse cell before the last step [m].
    pure function path_before(state, cell) result(path)
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: cell
@@ -163,13 +164,13 @@ contains
       path = state%slip_path(:, cell) - abs(state%jump(2, :, cell) - state%slip_before(:, cell))
    end function path_before
 
-   !> The window's jumps as the coarse level would have them: in each of its cells the linear ones
-   !! with the same mean and the same first moment.
+   !> Jumps of the window projected onto the coarse fracture cells: linear in each cell, with the
+   !! same mean and the same first moment.
    pure function coarse_jumps(fine, displacement, coarse) result(jump)
       type(fine_mesh_t), intent(in) :: fine
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(mesh_t), intent(in) :: coarse
-      real(rk), allocatable :: jump(:, :, :)  !< as state_t has them [m]; 0 beyond the window
+      real(rk), allocatable :: jump(:, :, :)  !< layout of state_t [m]; 0 outside of the window
       integer(ik), parameter :: n_points = 3
       real(rk) :: at_nodes(2, 3), here(2), length, part(2), points(n_points), weights(n_points)
       real(rk) :: place, share, x
@@ -193,13 +194,14 @@ contains
                part = (min(max(ends, s(1)), s(2)) - s(1))/(s(2) - s(1))
                if (.not. part(2) > part(1)) cycle
                part = [line_parameter(part(1), tip_end), line_parameter(part(2), tip_end)]
-               length = (s(2) - s(1))/(ends(2) - ends(1))  ! of the face, in cells
+               ! length of the face, over that of the cell
+               length = (s(2) - s(1))/(ends(2) - ends(1))
                do k = 1, n_points
                   x = part(1) + points(k)*(part(2) - part(1))
                   share = line_place(x, tip_end)
                   here = matmul(at_nodes, line_shapes(x)) &
                          *weights(k)*(part(2) - part(1))*line_stretch(x, tip_end)*length
-                  ! From the middle of the cell; the jump is known at +-1/6.
+                  ! Distance from the middle of the cell; the unknown jumps are those at +-1/6.
                   place = (s(1) + share*(s(2) - s(1)) - ends(1))/(ends(2) - ends(1)) - 0.5_rk
                   jump(:, 1, j) = jump(:, 1, j) + (1.0_rk - 2.0_rk*place)*here
                   jump(:, 2, j) = jump(:, 2, j) + (1.0_rk + 2.0_rk*place)*here
@@ -209,7 +211,7 @@ contains
       end do
    end function coarse_jumps
 
-   !> Share of a face's length from its start at a parameter (fine_element).
+   !> Position along a face, over its length, at a parameter (fine_element).
    elemental real(rk) function line_place(x, tip_end) result(share)
       real(rk), intent(in) :: x  !< 0 to 1 [-]
       integer(ik), intent(in) :: tip_end
@@ -219,7 +221,7 @@ contains
       if (tip_end == 2) share = 1.0_rk - (1.0_rk - x)**2
    end function line_place
 
-   !> Its derivative by the parameter.
+   !> Derivative of line_place with respect to the parameter.
    elemental real(rk) function line_stretch(x, tip_end) result(stretch)
       real(rk), intent(in) :: x  !< 0 to 1 [-]
       integer(ik), intent(in) :: tip_end
@@ -229,12 +231,12 @@ contains
       if (tip_end == 2) stretch = 2.0_rk*(1.0_rk - x)
    end function line_stretch
 
-   !> A coarse jump at a node of a face, linear along its coarse cell, where it is known at the
-   !! third points.
+   !> Coarse jump at a node of a face, linear along the coarse cell; the unknown jumps are those at
+   !! the third points.
    pure real(rk) function at_node(self, face, s, jump)
       class(face_map_t), intent(in) :: self
       integer(ik), intent(in) :: face
-      real(rk), intent(in) :: s  !< of the node [m]
+      real(rk), intent(in) :: s  !< arc length of the node [m]
       real(rk), intent(in) :: jump(2)  !< at the start and at the end of the coarse cell [m]
       real(rk) :: t
 

@@ -1,9 +1,9 @@
 !> Consequences of the errors of the intensities for growth.
 !!
 !! An error of K_eq is an error of the pressure at which the tip reaches its toughness, and of the
-!! position at which a growing tip comes to rest (model.md, section 5). Both are compared with the
-!! scales of the scene: the pressure with that of the loads, the position with the length of the
-!! fracture. K_IC is no such scale: K of a large fracture is many times K_IC.
+!! equilibrium position of a growing tip (model.md, section 5). Both are compared with the scales of
+!! the scene: the pressure with that of the loads, the position with the length of the fracture.
+!! K_IC is no such scale: K of a large fracture is many times K_IC.
 module twolevel_growth_errors
    use base_kinds, only: ik, pi, rk
    use growth_network, only: fracture_length
@@ -18,14 +18,15 @@ module twolevel_growth_errors
    type :: growth_error_t
       real(rk) :: pressure = 0.0_rk  !< error of the pressure at which the tip grows [Pa]
       real(rk) :: position = 0.0_rk  !< error of the position of the tip; 0 before its onset [m]
-      !> The larger one of both, over the pressure of the loads and the length of the fracture [-]
+      !> the larger of the two errors, over the pressure of the loads and the length of the fracture
+      !! [-]
       real(rk) :: relative = 0.0_rk
    end type growth_error_t
 
    !> Relative error above which windows are refined [-].
    real(rk), parameter :: acceptable = 0.01_rk
 
-   !> d K_eq/d p over sqrt(pi a) of a fracture of half-length a: 1 where the faces are open, less
+   !> d K_eq/d p, over sqrt(pi a) of a fracture of half-length a: 1 where the faces are open, less
    !! where they slip under friction [-].
    real(rk), parameter :: response = 0.5_rk
 
@@ -48,8 +49,8 @@ contains
       end associate
    end function growth_error
 
-   !> A tip grows, or might within the error of its K_eq, and the error has considerable
-   !! consequences.
+   !> Whether a tip grows, or might grow within the error of its K_eq, and the error has
+   !! considerable consequences.
    pure logical function is_uncertain(self, i)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip

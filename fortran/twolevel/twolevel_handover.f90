@@ -13,17 +13,17 @@ module twolevel_handover
 
 contains
 
-   !> Give the coarse network what has grown on the fine level, once some tip's growth reaches the
-   !! threshold, or a tip has joined something. Tips with at least half of it go along. The fine
-   !! network gets the same straight segments.
+   !> Extend the coarse network by the growth of the fine level, once the growth of a tip reaches
+   !! the threshold, or a tip has joined a target. Tips with at least half of the threshold are
+   !! included. The fine network gets the same straight segments.
    pure subroutine hand_over(threshold, network, tips, coarse, centres, is_straightened)
       real(rk), intent(in) :: threshold  !< eps_p dH [m]
-      type(network_t), intent(inout) :: network  !< the fine one
+      type(network_t), intent(inout) :: network  !< fine network
       type(tip_t), intent(inout) :: tips(:)
       type(network_t), intent(inout) :: coarse
-      !> (2, n) where it has changed [m]; n may be 0
+      !> (2, n) points where the coarse network has changed [m]; n may be 0
       real(rk), allocatable, intent(out) :: centres(:, :)
-      logical, intent(out) :: is_straightened  !< the fine network has changed too
+      logical, intent(out) :: is_straightened  !< the fine network has changed as well
       real(rk) :: pending(size(tips))
       logical :: has_joined(size(tips))
       integer(ik) :: i, n

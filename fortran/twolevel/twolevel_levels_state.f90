@@ -4,12 +4,12 @@ module twolevel_levels_state
    use, intrinsic :: iso_fortran_env, only: int8
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
-   use growth_rivals, only: company_t, rivals_t
+   use growth_interaction, only: tip_groups_t, interaction_t
    use growth_front, only: front_state_t
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
-   use twolevel_certainty, only: certainty_t
+   use twolevel_errors, only: stated_errors_t
    use twolevel_trend, only: trend_t
    use twolevel_windows_state, only: windows_state_t
    implicit none(type, external)
@@ -17,44 +17,46 @@ module twolevel_levels_state
 
    public :: checkpoint_t, different_part, equal, fluid_totals_t, levels_state_t, part_t, parts
 
-   !> Where the fluid of all steps so far has gone [m2].
+   !> Fluid volumes of all steps so far [m2].
    type :: fluid_totals_t
-      real(rk) :: injected = 0.0_rk  !< less what was produced
-      real(rk) :: produced = 0.0_rk  !< that wells have drawn
+      real(rk) :: injected = 0.0_rk  !< injected minus produced
+      real(rk) :: produced = 0.0_rk  !< drawn by wells
       real(rk) :: leaked = 0.0_rk  !< from the fractures into the rock
       real(rk) :: outflow = 0.0_rk  !< through ends of fractures on the boundary
-      real(rk) :: prefilled = 0.0_rk  !< brought along by new fracture cells
-      real(rk) :: mass_error = 0.0_rk  !< what appeared or vanished
+      real(rk) :: prefilled = 0.0_rk  !< contained in new fracture cells
+      real(rk) :: mass_error = 0.0_rk  !< error of the balance
    end type fluid_totals_t
 
-   !> All but tips and network, which both ways of simulating have (growth_front).
+   !> State of both levels without tips and fine network (growth_front).
    type :: levels_state_t
-      type(state_t) :: coarse  !< of the coarse level, on its mesh
-      type(network_t) :: coarse_network  !< that this has; the fine one is ahead of it
-      integer(ik), allocatable :: grown(:)  !< fracture cells that the last growth added
-      logical :: has_new_mesh = .false.  !< since the last accepted state
+      type(state_t) :: coarse  !< coarse level, on its mesh
+      type(network_t) :: coarse_network  !< coarse network; the fine network is ahead of it
+      integer(ik), allocatable :: grown(:)  !< fracture cells added by the last growth
+      logical :: has_new_mesh = .false.  !< the mesh has changed since the last accepted state
       logical :: undrained = .false.  !< the state is the undrained response to the load
-      type(segment_t), allocatable :: segment(:)  !< (tips) that the paths end with
-      !> (tips) those that are evaluated; unallocated: all. Tries of a step need no others.
-      logical, allocatable :: asked(:)
-      type(rivals_t) :: rivals  !< how the tips act on each other
-      type(company_t) :: company  !< which of them grow as one
+      type(segment_t), allocatable :: segment(:)  !< (tips) last path segments
+      !> (tips) tips that are evaluated; unallocated: all. The tries of a step do not need the
+      !! others.
+      logical, allocatable :: active(:)
+      type(interaction_t) :: interaction  !< tip interaction matrix
+      type(tip_groups_t) :: groups  !< tip groups
       type(windows_state_t) :: windows
-      type(windows_state_t) :: reference  !< of the body as one window
+      type(windows_state_t) :: reference  !< state of the body as one window
       type(trend_t) :: trend  !< rates of the last accepted step
-      type(certainty_t) :: certainty  !< how well lengths and pressures are known
+      type(stated_errors_t) :: stated_errors  !< estimated errors of lengths and pressures
       type(fluid_totals_t) :: fluid
-      real(rk), allocatable :: given(:)  !< (controlled wells) since they were last switched [m2]
-      logical, allocatable :: at_limit(:)  !< (controlled wells) flow at less than their rate
+      real(rk), allocatable :: given(:)  !< (controlled wells) volumes since the last switch [m2]
+      !> (controlled wells) wells whose rate is reduced by a limit
+      logical, allocatable :: at_limit(:)
    end type levels_state_t
 
-   !> All of it.
+   !> Complete state of a simulation.
    type :: checkpoint_t
       type(front_state_t) :: front
       type(levels_state_t) :: levels
    end type checkpoint_t
 
-   !> A part of a state as numbers, to compare it with that of another one.
+   !> A part of a state as numbers, for comparisons.
    type :: part_t
       character(len=:), allocatable :: name
       real(rk), allocatable :: value(:)
@@ -62,14 +64,14 @@ module twolevel_levels_state
 
 contains
 
-   !> Two states are the same to the last bit.
+   !> Whether two states are equal to the last bit.
    pure logical function equal(a, b)
       type(checkpoint_t), intent(in) :: a, b
 
       equal = len(different_part(a, b)) == 0
    end function equal
 
-   !> The name of the first part in which two states differ; empty: they are the same.
+   !> Name of the first part in which two states differ; empty: the states are equal.
    pure function different_part(a, b) result(name)
       type(checkpoint_t), intent(in) :: a, b
       character(len=:), allocatable :: name
@@ -88,7 +90,7 @@ contains
       if (size(of_a) /= size(of_b)) name = "parts"
    end function different_part
 
-   !> The parts of a state, in the order of its components.
+   !> Parts of a state, in the order of its components.
    pure function parts(state) result(list)
       type(checkpoint_t), intent(in) :: state
       type(part_t), allocatable :: list(:)
@@ -101,15 +103,16 @@ contains
                  part_t("new cells", integers(now%grown)), &
                  part_t("flags", truths([now%has_new_mesh, now%undrained])), &
                  part_t("segments", bytes_of_segments(now%segment)), &
-                 part_t("tips asked", some_truths(now%asked)), &
-                 part_t("rivals", [flat(now%rivals%matrix), flat(now%rivals%measured), &
-                                   numbers(now%rivals%known_at), &
-                                   some_truths(now%rivals%is_known)]), &
-                 part_t("company", [integers(now%company%kind), numbers(now%company%usual), &
-                                    some_truths(now%company%is_alone)]), &
+                 part_t("tips active", some_truths(now%active)), &
+                 part_t("interaction", [flat(now%interaction%matrix), &
+                    flat(now%interaction%measured), &
+                                   numbers(now%interaction%known_at), &
+                                   some_truths(now%interaction%is_known)]), &
+                 part_t("groups", [integers(now%groups%kind), numbers(now%groups%usual), &
+                                    some_truths(now%groups%is_alone)]), &
                  windows_parts("windows", now%windows), &
                  windows_parts("reference", now%reference), &
-                 trend_part(now%trend), certainty_part(now%certainty), &
+                 trend_part(now%trend), certainty_part(now%stated_errors), &
                  part_t("fluid", [now%fluid%injected, now%fluid%produced, now%fluid%leaked, &
                                   now%fluid%outflow, now%fluid%prefilled, now%fluid%mass_error]), &
                  part_t("wells", [numbers(now%given), some_truths(now%at_limit)])]
@@ -187,18 +190,20 @@ contains
                               trend%least_pressure, trend%least_jump])
    end function trend_part
 
-   pure type(part_t) function certainty_part(certainty) result(part)
-      type(certainty_t), intent(in) :: certainty
+   pure type(part_t) function certainty_part(stated_errors) result(part)
+      type(stated_errors_t), intent(in) :: stated_errors
 
-      associate (course => certainty%course)
-         part = part_t("errors", [certainty%length, certainty%pressure, numbers(certainty%tip), &
-                                  real(certainty%tries, rk), [certainty%tried], &
-                                  certainty%slope, truths([course%is_followed]), course%value, &
-                                  course%rate, course%error, course%step])
+      associate (time_error => stated_errors%time_error)
+         part = part_t("errors", [stated_errors%length, stated_errors%pressure, &
+            numbers(stated_errors%tip), &
+                                  real(stated_errors%tries, rk), [stated_errors%tried], &
+                                  stated_errors%slope, truths([time_error%is_followed]), &
+                                     time_error%value, &
+                                  time_error%rate, time_error%error, time_error%step])
       end associate
    end function certainty_part
 
-   !> Tips have no components but plain ones, some of them private.
+   !> Bytes of the tips, which have only non-allocatable components, some of them private.
    pure function bytes_of_tips(tip) result(values)
       type(tip_t), allocatable, intent(in) :: tip(:)
       real(rk), allocatable :: values(:)
@@ -207,7 +212,7 @@ contains
       if (allocated(tip)) values = real(transfer(tip, [0_int8]), rk)
    end function bytes_of_tips
 
-   !> So have segments.
+   !> Bytes of the segments, which have only non-allocatable components.
    pure function bytes_of_segments(segment) result(values)
       type(segment_t), allocatable, intent(in) :: segment(:)
       real(rk), allocatable :: values(:)

@@ -23,15 +23,15 @@ module twolevel_limits
 
 contains
 
-   !> Take note of a converged step, before it is accepted.
+   !> Check the limits in a converged step, before it is accepted.
    subroutine watch_levels(watch, scene, problem, state, report, mass_error, mass_error_relative)
       type(watch_t), intent(inout) :: watch
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       type(step_report_t), intent(in) :: report
-      real(rk), intent(in) :: mass_error  !< of all steps, with this one [m2]
-      real(rk), intent(in) :: mass_error_relative  !< of all steps, with this one [-]
+      real(rk), intent(in) :: mass_error  !< accumulated error, including this step [m2]
+      real(rk), intent(in) :: mass_error_relative  !< accumulated error, including this step [-]
       character(len=:), allocatable :: when
       real(rk) :: strain(2), lost, storable
 
@@ -39,8 +39,8 @@ contains
       associate (d => scene%domain, n => problem%mesh%n_cells, u => state%unknowns)
          call watch%see(limit_forward_error, report%error_bound, when)
          call watch%see(limit_loop_flow, report%loop_flow_error, when)
-         ! A body without fractures may keep all its fluid where it is, and nothing has flown that
-         ! the error could be compared with but what the pressure would store in the rock.
+         ! In a body without fractures the fluid may not flow at all; then the error is compared
+         ! with the fluid volume that the pressure would store in the rock.
          lost = mass_error_relative
          storable = (d%x_max - d%x_min)*(d%y_max - d%y_min)*maxval(abs(u(3, :n))) &
                     /scene%material%young
@@ -59,7 +59,7 @@ contains
       end if
    end subroutine watch_levels
 
-   !> Pressure in the rock and in the fractures.
+   !> Check the pressure in the rock and in the fractures.
    subroutine watch_pressure(watch, scene, problem, state, when)
       type(watch_t), intent(inout) :: watch
       type(scene_t), intent(in) :: scene
@@ -91,7 +91,8 @@ contains
       if (scale > 0.0_rk) call watch%see(limit_pressure_load, pressure/scale, when, xy)
    end subroutine watch_pressure
 
-   !> Where the fluid is not what its law says: beyond a table, and in the rock.
+   !> Check pressures beyond the table of the fluid, and viscosity in the rock, which the law does
+   !! not change.
    subroutine watch_fluid(watch, scene, problem, state, when)
       type(watch_t), intent(inout) :: watch
       type(scene_t), intent(in) :: scene
@@ -118,7 +119,7 @@ contains
       end associate
    end subroutine watch_fluid
 
-   !> Aperture and jump of the fracture cells.
+   !> Check aperture and jump of the fracture cells.
    subroutine watch_fractures(watch, scene, problem, state, when)
       type(watch_t), intent(inout) :: watch
       type(scene_t), intent(in) :: scene
@@ -140,7 +141,7 @@ contains
       end associate
    end subroutine watch_fractures
 
-   !> Take note of a new coarse mesh.
+   !> Check a new coarse mesh.
    subroutine watch_mesh(watch, problem, time, error)
       type(watch_t), intent(inout) :: watch
       type(coarse_problem_t), intent(in) :: problem
@@ -160,13 +161,13 @@ contains
 
    end subroutine watch_mesh
 
-   !> Take note of the tips. None shall exceed the toughness once growth in a state is done.
+   !> Check the tips. None may exceed the toughness once growth in a state has ended.
    subroutine watch_windows(watch, scene, tips, time, growth_is_done)
       type(watch_t), intent(inout) :: watch
       type(scene_t), intent(in) :: scene
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: time  !< [s]
-      logical, intent(in) :: growth_is_done  !< else tips must not grow in this state
+      logical, intent(in) :: growth_is_done  !< false: tips do not grow in this state
       character(len=:), allocatable :: when
       real(rk) :: excess(size(tips))
       integer(ik) :: i

@@ -4,56 +4,59 @@ module twolevel_moves
    use base_kinds, only: ik, rk
    use growth_advances, only: advances_t
    use growth_competition, only: numbered
-   use growth_rivals, only: company_t, lags_behind, rivals_t
+   use growth_interaction, only: tip_groups_t, lags_behind, interaction_t
    use growth_segment, only: segment_t, sliver
    use growth_tip, only: tip_t
    use twolevel_excess, only: tolerance
    implicit none(type, external)
    private
 
-   public :: is_in_play, judge_tips, keep_together, part_company
+   public :: is_in_play, judge_tips, keep_together, separate_tips
 
 contains
 
-   !> Let the tips on a segment go where their excess will probably vanish; others want a segment if
-   !! they exceed the toughness. Tips of one kind take the largest of their excesses, and so go on
-   !! equally far.
-   subroutine judge_tips(segments, rivals, alone, has_come, is_arrested, kind, search, moves, wants)
+   !> Move the tips on open segments to where their excess is predicted to vanish; other tips begin
+   !! a segment if they exceed the toughness. Tips of one group take the largest of their excesses,
+   !! and so advance equally.
+   subroutine judge_tips(segments, interaction, alone, is_at_ligament, is_arrested, kind, &
+      search, moves, wants)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      type(rivals_t), intent(in) :: rivals
-      real(rk), intent(in) :: alone(:)  !< (tips) their own excesses of K_eq over K_IC [-]
-      logical, intent(in) :: has_come(:)  !< (tips) nothing but a rest lies before it
+      type(interaction_t), intent(in) :: interaction
+      real(rk), intent(in) :: alone(:)  !< (tips) excess of K_eq over K_IC of each tip [-]
+      logical, intent(in) :: is_at_ligament(:)  !< (tips) only a ligament is left ahead of the tip
       logical, intent(in) :: is_arrested(:)
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      type(advances_t), intent(inout) :: search  !< for the places of the tips on segments
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
+      !> search for the positions of the tips on their segments
+      type(advances_t), intent(inout) :: search
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
       real(rk) :: excess(size(kind))
       integer(ik) :: i
 
       excess = [(maxval(alone, mask=kind == kind(i)), i=1, size(kind))]
-      ! Nothing but a rest before them: it fails as soon as they are at the toughness, before others
-      ! go on, for which they would wait else where all are at it alike.
-      where (has_come) excess = excess + 2.0_rk*tolerance
-      call move_kinds(segments, rivals, kind, excess, search, moves)
+      ! Only the ligament is left: it breaks as soon as K_eq reaches K_IC, before other tips
+      ! advance. Without the increment, equal tips would all wait.
+      where (is_at_ligament) excess = excess + 2.0_rk*tolerance
+      call move_groups(segments, interaction, kind, excess, search, moves)
       wants = .not. (moves .or. excess <= tolerance .or. is_arrested)
       where (segments%is_open) wants = wants .and. segments%is_complete()
    end subroutine judge_tips
 
-   !> A tip on its way exceeds its toughness, or has advanced in the step.
+   !> Whether a tip on an open segment exceeds its toughness, or has advanced in the step.
    elemental logical function is_in_play(segment, excess)
       type(segment_t), intent(in) :: segment
-      real(rk), intent(in) :: excess  !< of K_eq over K_IC [-]
+      real(rk), intent(in) :: excess  !< excess of K_eq over K_IC [-]
 
       is_in_play = segment%is_open .and. (excess > -tolerance .or. &
                                           segment%reached > segment%lowest())
    end function is_in_play
 
-   !> The kinds move to where equilibrium is sought next; tips of one kind go equally far.
-   subroutine move_kinds(segments, rivals, kind, excess, search, moves)
+   !> Move the tip groups to the next iterate of the search for equilibrium; tips of one group
+   !! advance equally.
+   subroutine move_groups(segments, interaction, kind, excess, search, moves)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      type(rivals_t), intent(in) :: rivals
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      real(rk), intent(in) :: excess(:)  !< (tips) of K_eq over K_IC [-]
+      type(interaction_t), intent(in) :: interaction
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
+      real(rk), intent(in) :: excess(:)  !< (tips) excess of K_eq over K_IC [-]
       type(advances_t), intent(inout) :: search
       logical, intent(out) :: moves(:)
       integer(ik), allocatable :: leader(:), number(:), on_way(:)
@@ -67,7 +70,7 @@ contains
       if (search%evaluations == 0) then
          first = segments(leader)
          call search%begin(first%lowest(), first%length, first%reached, &
-                           rivals%matrix_for(on_way, number, first), sliver*first%length)
+                           interaction%matrix_for(on_way, number, first), sliver*first%length)
       end if
       call search%improve(excess(leader), tolerance, has_moved)
       do k = 1, size(leader, kind=ik)
@@ -83,15 +86,16 @@ contains
          call segments(on_way(k))%keep_up_with(segments(i), has_moved)
          moves(on_way(k)) = moves(i) .or. has_moved
       end do
-   end subroutine move_kinds
+   end subroutine move_groups
 
-   !> Those that are on their way, and the first one of each kind of them.
+   !> Tips on open segments, and the first tip of each group of these tips.
    pure subroutine find_leaders(segments, kind, on_way, number, leader)
       type(segment_t), intent(in) :: segments(:)  !< (tips)
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
-      integer(ik), allocatable, intent(out) :: on_way(:)  !< tips
-      integer(ik), allocatable, intent(out) :: number(:)  !< of the kind of each of these, from 1
-      integer(ik), allocatable, intent(out) :: leader(:)  !< (kinds) tips
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
+      integer(ik), allocatable, intent(out) :: on_way(:)  !< numbers of the tips on open segments
+      !> (these tips) number of the group, from 1
+      integer(ik), allocatable, intent(out) :: number(:)
+      integer(ik), allocatable, intent(out) :: leader(:)  !< (groups) number of the first tip
       integer(ik) :: i, k
 
       on_way = pack([(i, i=1, size(segments, kind=ik))], segments%is_open)
@@ -99,10 +103,11 @@ contains
       leader = [(on_way(findloc(number, k, dim=1)), k=1, maxval([number, 0_ik]))]
    end subroutine find_leaders
 
-   !> Tips of one kind begin a step, or a piece, equally far along: where the first of them does.
+   !> Put all tips of a group at the position of the first one along their segments, at the start of
+   !! a step or segment.
    pure subroutine keep_together(segments, kind)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      integer(ik), intent(in) :: kind(:)  !< of each tip, from 1
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       integer(ik), allocatable :: leader(:), number(:), on_way(:)
       logical :: has_moved
       integer(ik) :: k
@@ -117,19 +122,20 @@ contains
       end do
    end subroutine keep_together
 
-   !> Tips at rest that have gone along with their kind in the step, or want to, but lack their own
-   !! toughness: each is a kind of its own from now on, and begins anew where it was. Not those that
-   !! were on their way and at their toughness before the step: one mesh may throw them back. Nor
-   !! those that lack no more than the first of their kind does: a first piece, which kinks, may
-   !! throw all of them back.
-   subroutine part_company(segments, company, tips, before, toughness, wants, kind, any_parted)
+   !> Remove tips from their group that have advanced with the group in the step, or are to begin a
+   !! segment with it, but are below their toughness by more than the group's first tip: each is
+   !! alone from now on, and returns to its position at the start of the step. Tips that were at
+   !! their toughness on an open segment before the step stay: a single mesh may reduce their K_eq.
+   !! So do tips that are no farther below their toughness than the first of their group: a first
+   !! segment, which kinks, may reduce K_eq of all of them.
+   subroutine separate_tips(segments, groups, tips, before, toughness, wants, kind, any_parted)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
-      type(company_t), intent(inout) :: company
+      type(tip_groups_t), intent(inout) :: groups
       type(tip_t), intent(in) :: tips(:)
-      type(tip_t), intent(in) :: before(:)  !< the tips before the step
+      type(tip_t), intent(in) :: before(:)  !< tips before the step
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      logical, intent(in) :: wants(:)  !< (tips) a new piece
-      integer(ik), intent(inout) :: kind(:)  !< of each tip, from 1
+      logical, intent(in) :: wants(:)  !< (tips) the tip is to begin a new segment
+      integer(ik), intent(inout) :: kind(:)  !< (tips) number of the group, from 1
       logical, intent(out) :: any_parted
       logical :: lags(size(kind))
       real(rk) :: first(size(kind))
@@ -142,7 +148,7 @@ contains
       do i = 1, size(kind, kind=ik)
          if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
          kind(i) = maxval(kind) + 1
-         call company%part(i)
+         call groups%remove_tip(i)
          if (segments(i)%is_open) call segments(i)%restart()
          any_parted = .true.
       end do
@@ -151,11 +157,11 @@ contains
 
       pure elemental logical function lacks(tip, first)
          type(tip_t), intent(in) :: tip
-         real(rk), intent(in) :: first  !< what that of its kind lacks, as an excess [-]
+         real(rk), intent(in) :: first  !< excess of the first tip of the group, at most 0 [-]
 
          lacks = lags_behind(tip%excess(toughness) - first, tip%relative_error(toughness))
       end function lacks
 
-   end subroutine part_company
+   end subroutine separate_tips
 
 end module twolevel_moves

@@ -3,7 +3,7 @@
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
-   use growth_rivals, only: could_part, rivals_t
+   use growth_interaction, only: could_separate, interaction_t
    use growth_front, only: front_state_t
    use growth_network, only: total_length
    use growth_segment, only: segment_t
@@ -11,7 +11,7 @@ module twolevel_notes
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
    use scene_types, only: scene_t
-   use twolevel_certainty, only: tip_excess_t
+   use twolevel_errors, only: tip_excess_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
@@ -19,15 +19,19 @@ module twolevel_notes
    implicit none(type, external)
    private
 
-   public :: note_certainty, note_excess, notes_t
+   public :: note_stated_errors, note_excess, notes_t
 
-   !> What has been noted so far.
+   !> Events written so far, and the data for those to come.
    type :: notes_t
-      type(approach_t), allocatable, private :: approach(:)  !< (tips) to their first growth
-      logical, allocatable :: is_uncertain(:)  !< (tips) stated with considerable errors of growth
-      logical, private :: was_bifurcation = .false.  !< in the last step with growth
-      logical, allocatable, private :: grew_together(:, :)  !< (tips, tips) as members of one group
-      logical, allocatable, private :: has_separated(:)  !< (tips) from such a tip
+      !> (tips) data before the onset of growth
+      type(approach_t), allocatable, private :: approach(:)
+      !> (tips) considerable errors of growth have been stated
+      logical, allocatable :: is_uncertain(:)
+      logical, private :: was_bifurcation = .false.  !< tips competed in the last step with growth
+      !> (tips, tips) the two tips have grown as members of one group
+      logical, allocatable, private :: grew_together(:, :)
+      !> (tips) the tip has separated from a tip of its group
+      logical, allocatable, private :: has_separated(:)
    contains
       procedure :: begin
       procedure :: note_onsets
@@ -37,7 +41,7 @@ module twolevel_notes
 
 contains
 
-   !> No tip has grown.
+   !> Start before any growth.
    subroutine begin(self, n)
       class(notes_t), intent(out) :: self
       integer, intent(in) :: n  !< tips
@@ -47,7 +51,8 @@ contains
       allocate (self%grew_together(n, n), source=.false.)
    end subroutine begin
 
-   !> Tips have begun to grow when they reached K_IC; a first advance tells that they have.
+   !> Report the onset of growth: the time at which the tip reached K_IC, once the tip has advanced
+   !! for the first time.
    subroutine note_onsets(self, tips, segments, toughness, time, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -79,8 +84,9 @@ contains
       end do
    end subroutine note_onsets
 
-   !> The tips that the initial state leaves above their toughness. It is what the scene says, so
-   !! nothing grows in it; what it bears too much is in no equilibrium and grows at once.
+   !> Report the tips above their toughness in the initial state. Tips do not grow in the state that
+   !! the scene prescribes; above the toughness they are not in equilibrium, and grow in the first
+   !! step.
    subroutine note_excess(tips, toughness, time, chronicle)
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
@@ -98,11 +104,11 @@ contains
       end do
    end subroutine note_excess
 
-   !> Tips of which one could run ahead of the others.
-   subroutine note_competition(self, tips, rivals, increment, time, chronicle)
+   !> Report tips of which one could run ahead of the others.
+   subroutine note_competition(self, tips, interaction, increment, time, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
-      type(rivals_t), intent(in) :: rivals
+      type(interaction_t), intent(in) :: interaction
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
       real(rk), intent(in) :: time  !< [s]
       type(chronicle_t), intent(inout) :: chronicle
@@ -113,8 +119,8 @@ contains
 
       group = pack([(i, i=1, size(tips, kind=ik))], tips%advance > 0.0_rk)
       if (size(group) < 2) return
-      lead = rivals%preference_of(group)*minval(increment(group))
-      is_bifurcation = lead > could_part
+      lead = interaction%preference_of(group)*minval(increment(group))
+      is_bifurcation = lead > could_separate
       if (is_bifurcation .and. .not. self%was_bifurcation) then
          call chronicle%add_event(time, event_bifurcation, integer_text(size(group, kind=ik))// &
                                   " tips grow; a lead of one increment changes K_eq by "// &
@@ -135,11 +141,11 @@ contains
       character(len=:), allocatable :: what
       integer(ik) :: ahead, behind, i, j
 
-      if (.not. (allocated(now%company%kind) .and. allocated(now%certainty%tip))) return
+      if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
          do i = 1, j - 1
-            associate (gain => now%segment([i, j])%gain, kind => now%company%kind, &
-                       error => now%certainty%tip, shorter => minval(increment([i, j])))
+            associate (gain => now%segment([i, j])%gain, kind => now%groups%kind, &
+                       error => now%stated_errors%tip, shorter => minval(increment([i, j])))
                if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
                if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
                if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
@@ -158,8 +164,8 @@ contains
       end do
    end subroutine note_separation
 
-   !> How well length and pressure are known in the state that a step of length dt has led to.
-   subroutine note_certainty(scene, front, problem, dt, now)
+   !> Update the estimated errors of length and pressure after a step of length dt.
+   subroutine note_stated_errors(scene, front, problem, dt, now)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front
       type(coarse_problem_t), intent(in) :: problem
@@ -178,9 +184,9 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
-         call now%certainty%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
+         call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                    total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate
-   end subroutine note_certainty
+   end subroutine note_stated_errors
 
 end module twolevel_notes

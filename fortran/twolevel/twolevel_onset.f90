@@ -2,20 +2,20 @@
 !! follows from the rate.
 module twolevel_onset
    use base_kinds, only: rk
-   use twolevel_course, only: course_t
+   use twolevel_time_error, only: accumulated_error_t
    implicit none(type, external)
    private
 
    public :: approach_t
 
-   !> The last accepted state of a tip, and the error of its intensity by the steps in time.
+   !> Last accepted state of a tip, and the time error of its intensity.
    type :: approach_t
       logical :: is_over = .false.  !< the tip has grown
       real(rk) :: time = 0.0_rk  !< [s]
       logical :: has_come = .false.  !< K_eq has reached the toughness
-      real(rk) :: onset = 0.0_rk  !< when it first did [s]
-      type(course_t) :: drive  !< K_eq [Pa m^1/2]
-      real(rk) :: drive_error = 0.0_rk  !< of that, as estimated [Pa m^1/2]
+      real(rk) :: onset = 0.0_rk  !< time at which K_eq first reached the toughness [s]
+      type(accumulated_error_t) :: drive  !< K_eq [Pa m^1/2]
+      real(rk) :: drive_error = 0.0_rk  !< estimated discretization error of K_eq [Pa m^1/2]
    contains
       procedure :: follow
       procedure :: onset_before
@@ -24,17 +24,18 @@ module twolevel_onset
 
 contains
 
-   !> Take note of an accepted state.
+   !> Store an accepted state.
    elemental subroutine follow(self, time, drive, drive_error, toughness)
       class(approach_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
       real(rk), intent(in) :: drive  !< K_eq [Pa m^1/2]
-      real(rk), intent(in) :: drive_error  !< by the meshes, as estimated [Pa m^1/2]
+      real(rk), intent(in) :: drive_error  !< estimated discretization error of K_eq [Pa m^1/2]
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk) :: step
 
       step = time - self%time
-      ! What a finite increment needs, and a new mesh around the tip, may hold it back after that.
+      ! Growth may begin later: a finite increment, and a new mesh around the tip, may require a
+      ! larger K_eq.
       if (.not. self%has_come) then
          self%has_come = drive >= toughness
          self%onset = time
@@ -47,11 +48,11 @@ contains
       self%drive_error = drive_error
    end subroutine follow
 
-   !> When K_eq has reached the toughness [s]: in a followed state, else at the rate of the last
-   !! one, at the latest where the tip is found to have grown.
+   !> Time at which K_eq has reached the toughness: in an accepted state, else extrapolated with the
+   !! last rate, but no later than `time` [s].
    elemental real(rk) function onset_before(self, time, toughness)
       class(approach_t), intent(in) :: self
-      real(rk), intent(in) :: time  !< of the first state in which it has [s]
+      real(rk), intent(in) :: time  !< time of the first state in which the tip has grown [s]
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
       onset_before = self%onset
@@ -59,11 +60,11 @@ contains
       onset_before = min(time, self%time + (toughness - self%drive%value)/self%drive%rate)
    end function onset_before
 
-   !> How far the time of the onset may be off [s]: what K_eq may be off, over its rate. Huge where
-   !! it does not rise.
+   !> Error of the onset time: the error of K_eq over its rate; huge where K_eq does not increase
+   !! [s].
    elemental real(rk) function uncertainty(self, tolerance)
       class(approach_t), intent(in) :: self
-      real(rk), intent(in) :: tolerance  !< on K_eq of growing tips [Pa m^1/2]
+      real(rk), intent(in) :: tolerance  !< tolerance of K_eq of growing tips [Pa m^1/2]
 
       uncertainty = huge(1.0_rk)
       if (self%drive%rate > 0.0_rk) then

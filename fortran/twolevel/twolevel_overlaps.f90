@@ -9,11 +9,11 @@ module twolevel_overlaps
 
    public :: fracture_overlaps, overlaps_t
 
-   !> The cells before that each new one takes the place of, in their order along the fracture.
+   !> Old cells that each new cell overlaps, in their order along the fracture.
    type :: overlaps_t
-      integer(ik), allocatable :: first(:)  !< (new cells + 1) into those below
+      integer(ik), allocatable :: first(:)  !< (new cells + 1) index into `old` and `length`
       integer(ik), allocatable :: old(:)
-      real(rk), allocatable :: length(:)  !< that both share [m]
+      real(rk), allocatable :: length(:)  !< length of the overlap [m]
    contains
       procedure :: is_new
       procedure :: is_whole
@@ -23,7 +23,7 @@ module twolevel_overlaps
 
 contains
 
-   !> Compare the arc lengths of the cells.
+   !> Find the overlaps from the arc lengths of the cells.
    pure function fracture_overlaps(before, after) result(overlaps)
       type(fracture_mesh_t), intent(in) :: before, after
       type(overlaps_t) :: overlaps
@@ -47,7 +47,7 @@ contains
       end do
    end function fracture_overlaps
 
-   !> A cell takes no other's place: it has grown.
+   !> Whether a cell overlaps no old cell: the cell has been added by growth.
    elemental logical function is_new(self, cell)
       class(overlaps_t), intent(in) :: self
       integer(ik), intent(in) :: cell
@@ -55,7 +55,7 @@ contains
       is_new = self%first(cell + 1) == self%first(cell)
    end function is_new
 
-   !> A cell is one of the cells before, neither divided nor moved.
+   !> Whether a cell equals an old cell, neither divided nor moved.
    pure logical function is_whole(self, cell, before, after)
       class(overlaps_t), intent(in) :: self
       integer(ik), intent(in) :: cell
@@ -68,7 +68,7 @@ contains
       end associate
    end function is_whole
 
-   !> The cell that a cell has most of; none for a new one.
+   !> Old cell with the largest overlap; 0 for a cell added by growth.
    pure integer(ik) function main(self, cell)
       class(overlaps_t), intent(in) :: self
       integer(ik), intent(in) :: cell
@@ -79,11 +79,11 @@ contains
       end associate
    end function main
 
-   !> Mean of what the cells before have, over what they share with a cell that is not new.
+   !> Mean of values of the old cells, weighted with the overlaps, for a cell that has some.
    pure real(rk) function mean(self, cell, values)
       class(overlaps_t), intent(in) :: self
       integer(ik), intent(in) :: cell
-      real(rk), intent(in) :: values(:)  !< (cells before)
+      real(rk), intent(in) :: values(:)  !< (old cells)
 
       associate (first => self%first(cell), last => self%first(cell + 1) - 1)
          mean = sum(values(self%old(first:last))*self%length(first:last)) &

@@ -18,10 +18,10 @@ module twolevel_places
 
 contains
 
-   !> How far the tips are beyond the last accepted state [m].
+   !> Advances of the tips since the last accepted state [m].
    function advances(front, start, segments, increment)
       type(front_state_t), intent(in) :: front
-      type(network_t), intent(in) :: start  !< of the scene
+      type(network_t), intent(in) :: start  !< initial network, from the scene
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
       real(rk) :: advances(size(segments))
@@ -31,11 +31,11 @@ contains
          advances(i) = end_gain(front%network, start, front%tip(i)%fracture, front%tip(i)%end) &
                        - segments(i)%gain
       end do
-      ! Rounding is left of tips that have not moved, where the other end of their fracture has.
+      ! Rounding errors remain for tips that have not moved if the other end of their fracture has.
       where (abs(advances) <= same_place*increment) advances = 0.0_rk
    end function advances
 
-   !> Put the tips of both levels where their segments say.
+   !> Put the tips of both levels at their positions along their segments.
    subroutine place_tips(front, segments, problem)
       type(front_state_t), intent(inout) :: front
       type(segment_t), intent(in) :: segments(:)  !< (tips)
@@ -66,7 +66,7 @@ contains
       end associate
    end subroutine place_tips
 
-   !> The fracture cell that a fracture ends with at a tip; cells are stored along each fracture.
+   !> Last cell of a fracture at a tip; cells are stored along each fracture.
    pure integer(ik) function end_cell(fracture, tip)
       type(fracture_mesh_t), intent(in) :: fracture
       type(tip_t), intent(in) :: tip
@@ -74,15 +74,16 @@ contains
       end_cell = findloc(fracture%cell_fracture, tip%fracture, dim=1, back=tip%end == 2)
    end function end_cell
 
-   !> Tips whose last two coarse cells have no jump: the faces stick there as they did before the
-   !! load, and K = 0. Tips that have grown are none of them.
+   !> Whether each tip is closed: its last two coarse cells have no jump, so the faces have stuck
+   !! there since before the load, and K = 0. Tips that have grown never are.
    pure function shut_tips(tips, segments, fracture, jump) result(is_shut)
       type(tip_t), intent(in) :: tips(:)
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: jump(:, :, :)  !< (2, 2, fracture cells) [m]
       logical :: is_shut(size(tips))
-      real(rk), parameter :: rounding = 1.0e-12_rk  ! in a jump, over the largest
+      ! rounding error of a jump, over the largest jump
+      real(rk), parameter :: rounding = 1.0e-12_rk
       real(rk) :: least
       integer(ik) :: cell, i, next
 
@@ -98,7 +99,7 @@ contains
       end do
    end function shut_tips
 
-   !> Length of the coarse cell at each tip [m]; 0 where there is none any more.
+   !> Length of the coarse cell at each tip; 0 for tips that are not free [m].
    pure function tip_cell_lengths(tips, problem) result(length)
       type(tip_t), intent(in) :: tips(:)
       type(coarse_problem_t), intent(in) :: problem

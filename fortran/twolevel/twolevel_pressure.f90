@@ -19,7 +19,7 @@ module twolevel_pressure
 
    public :: match_pressure, pressure_map_t
 
-   !> Each face of a window lies between two middles, or beyond the first of them.
+   !> Interpolation from the middles of two coarse cells to each face of a window.
    type :: pressure_map_t
       integer(ik), allocatable :: cell(:, :)  !< (2, fracture cells) coarse fracture cells
       real(rk), allocatable :: weight(:)  !< of the second; negative beyond the first [-]
@@ -31,11 +31,12 @@ module twolevel_pressure
 
 contains
 
-   !> Where the faces of a window lie among the coarse cells.
+   !> Find the coarse cells and weights for the faces of a window.
    pure function match_pressure(fine, coarse, is_grown) result(map)
       type(fine_mesh_t), intent(in) :: fine
       type(mesh_t), intent(in) :: coarse
-      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells) fluid follows the tip in them
+      !> (coarse fracture cells) fluid follows the tip in these cells
+      logical, intent(in) :: is_grown(:)
       type(pressure_map_t) :: map
       real(rk) :: ends(2), middle(coarse%fracture%n_cells)
       logical :: is_tip(2), is_wet(coarse%fracture%n_cells)
@@ -60,7 +61,7 @@ contains
       end do
    end function match_pressure
 
-   !> Whether a tip lies in one of some coarse cells, and not beyond the coarse fracture.
+   !> Whether a tip lies in one of the selected coarse cells, and not beyond the coarse fracture.
    pure logical function lies_in(coarse, are_meant, tip)
       type(mesh_t), intent(in) :: coarse
       logical, intent(in) :: are_meant(:)  !< (coarse fracture cells)
@@ -72,11 +73,11 @@ contains
       end associate
    end function lies_in
 
-   !> The free tips of a fracture that the window holds.
+   !> Free tips of a fracture in the window.
    pure subroutine find_ends(fine, fracture, ends, is_tip)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: fracture
-      real(rk), intent(out) :: ends(2)  !< arc length [m]; far away where there is none
+      real(rk), intent(out) :: ends(2)  !< arc length [m]; huge without a tip
       logical, intent(out) :: is_tip(2)
       integer(ik) :: end, tip
 
@@ -96,20 +97,21 @@ contains
       end associate
    end subroutine find_ends
 
-   !> The middles of what is behind the tips of the coarse cells of a fracture.
+   !> Middles of those parts of the coarse cells of a fracture that lie behind its tips.
    pure subroutine find_middles(coarse, fracture, ends, middle, is_wet)
       type(mesh_t), intent(in) :: coarse
       integer(ik), intent(in) :: fracture
       real(rk), intent(in) :: ends(2)  !< [m]
       real(rk), intent(out) :: middle(:)  !< (coarse fracture cells) arc length [m]
-      logical, intent(out) :: is_wet(:)  !< of this fracture, and not ahead of a tip
+      logical, intent(out) :: is_wet(:)  !< cells of this fracture, except those ahead of a tip
       real(rk) :: nothing
       integer(ik) :: j
 
       do j = 1, coarse%fracture%n_cells
          associate (s => coarse%fracture%cell_s(:, j))
             middle(j) = 0.5_rk*(max(s(1), ends(1)) + min(s(2), ends(2)))
-            ! A cell that a tip has just reached, but for round-off, has nothing behind it.
+            ! A cell whose start a tip has just reached, within rounding, has no part behind the
+            ! tip.
             nothing = same_place*(s(2) - s(1))
             is_wet(j) = coarse%fracture%cell_fracture(j) == fracture .and. &
                         s(1) + nothing < ends(2) .and. s(2) - nothing > ends(1)
@@ -122,7 +124,7 @@ contains
       real(rk), intent(in) :: s(2)  !< its ends [m]
       real(rk), intent(in) :: ends(2)  !< of the fracture [m]
       logical, intent(in) :: is_tip(2)
-      real(rk), intent(in) :: middle(:)  !< of the coarse cells [m]
+      real(rk), intent(in) :: middle(:)  !< middles of the coarse cells [m]
       logical, intent(in) :: is_wet(:)
       integer(ik), intent(out) :: cell(2)
       real(rk), intent(out) :: weight  !< of the second [-]
@@ -175,7 +177,7 @@ contains
    !! fluid bears. Where pressures count beyond those in situ, what is found is the whole one.
    pure function on_faces(self, pressure, lowest, in_situ, viscous) result(found)
       class(pressure_map_t), intent(in) :: self
-      real(rk), intent(in) :: pressure(:)  !< of the coarse fracture cells [Pa]
+      real(rk), intent(in) :: pressure(:)  !< (coarse fracture cells) [Pa]
       real(rk), intent(in) :: lowest  !< [Pa]
       real(rk), intent(in), optional :: in_situ(:)  !< (faces) [Pa]
       !> (coarse fracture cells) of coarse_tip_layer where a tip lies in one, else 0 [1/m^(1/2)]

@@ -1,7 +1,7 @@
-!> Interaction of tips with a fluid: measured in a tried step by setting back one tip after the
-!! other, and improved by Broyden updates in the tries that follow.
+!> Tip interaction in scenes with a fluid: measured in a tried step by setting back one tip after
+!! the other, and improved by Broyden updates in the tries that follow.
 !!
-!! The step begins from the state before, so the fluid volume supplied by the wells is fixed. The
+!! The step begins from the previous state, so the fluid volume supplied by the wells is fixed. The
 !! coarse level keeps mesh and factors, since tips lie anywhere in their cells (coarse_tips). A tip
 !! costs one solution of the coarse level, two meshes of the windows that contain the tip, and one
 !! solution of each window.
@@ -10,7 +10,7 @@ module twolevel_probe
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: go_back, state_t, step_report_t
-   use growth_rivals, only: rivals_t
+   use growth_interaction, only: interaction_t
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use twolevel_places, only: place_tips
@@ -18,26 +18,26 @@ module twolevel_probe
    implicit none(type, external)
    private
 
-   public :: lesson_t, measure_rivals
+   public :: previous_try_t, measure_interaction
 
-   !> How far a tip is set back, as a share of its piece: the intensities of new windows differ by
-   !! some tenths of a per cent.
+   !> Distance by which a tip is set back, over the length of its segment: the intensities of new
+   !! meshes differ by some tenths of a per cent [-].
    real(rk), parameter :: probe = 0.4_rk
 
-   !> A try, from which the next one teaches.
-   type :: lesson_t
-      real(rk), allocatable :: reached(:)  !< (tips) along their pieces [m]
-      real(rk), allocatable :: excess(:)  !< (tips) over the toughness [-]
+   !> Data of a try for the Broyden update in the next one.
+   type :: previous_try_t
+      real(rk), allocatable :: reached(:)  !< (tips) positions along their segments [m]
+      real(rk), allocatable :: excess(:)  !< (tips) excesses over the toughness [-]
    contains
       procedure :: begin
-      procedure :: tell
-   end type lesson_t
+      procedure :: update_interaction
+   end type previous_try_t
 
 contains
 
-   !> Measure what is not known of the tips in play, if there are several. Windows and coarse level
-   !! have to be asked anew then.
-   subroutine measure_rivals(self, in_play, dt, timers, has_measured, error)
+   !> Measure missing columns of the tip interaction matrix, if several tips are in play. If columns
+   !! have been measured, the coarse level and the windows are to be evaluated again.
+   subroutine measure_interaction(self, in_play, dt, timers, has_measured, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: in_play(:)  !< (tips)
       real(rk), intent(in) :: dt  !< [s]
@@ -48,19 +48,20 @@ contains
       type(tip_t) :: tip(size(self%tip))
       type(step_report_t) :: report
       real(rk) :: shift
-      integer(ik), allocatable :: asked(:)
+      integer(ik), allocatable :: columns(:)
       integer(ik) :: i, k
 
       has_measured = .false.
       if (count(in_play) < 2) return
-      asked = self%now%rivals%has_to_ask(pack([(i, i=1, size(self%tip, kind=ik))], in_play), &
+      columns = self%now%interaction%columns_to_measure(pack([(i, i=1, size(self%tip, &
+         kind=ik))], in_play), &
                                          self%now%segment)
-      has_measured = size(asked) > 0
+      has_measured = size(columns) > 0
       if (.not. has_measured) return
       state = self%now%coarse
       tip = self%tip
-      do k = 1, size(asked, kind=ik)
-         associate (segment => self%now%segment(asked(k)))
+      do k = 1, size(columns, kind=ik)
+         associate (segment => self%now%segment(columns(k)))
             shift = -probe*segment%length
             segment%reached = segment%reached + shift
             call place_tips(self%front_state_t, self%now%segment, self%problem)
@@ -70,7 +71,7 @@ contains
             if (report%converged) then
                call self%evaluate(timers, error)
                if (allocated(error)) return
-               call self%now%rivals%note(asked(k), shift, &
+               call self%now%interaction%store_column(columns(k), shift, &
                                          tip%excess(self%rules%toughness), &
                                          self%tip%excess(self%rules%toughness), segment)
             end if
@@ -80,11 +81,11 @@ contains
       call place_tips(self%front_state_t, self%now%segment, self%problem)
       self%tip = tip
       call go_back(self%now%coarse, state)
-   end subroutine measure_rivals
+   end subroutine measure_interaction
 
-   !> Remember a try.
+   !> Store a try.
    subroutine begin(self, segments, tips, toughness)
-      class(lesson_t), intent(out) :: self
+      class(previous_try_t), intent(out) :: self
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
@@ -93,17 +94,17 @@ contains
       self%excess = tips%excess(toughness)
    end subroutine begin
 
-   !> What the last try has shown beside the one before.
-   subroutine tell(self, segments, tips, toughness, rivals)
-      class(lesson_t), intent(in) :: self
+   !> Broyden update of the tip interaction matrix with the changes since the last try.
+   subroutine update_interaction(self, segments, tips, toughness, interaction)
+      class(previous_try_t), intent(in) :: self
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      type(rivals_t), intent(inout) :: rivals
+      type(interaction_t), intent(inout) :: interaction
 
       if (.not. allocated(self%reached)) return
-      call rivals%learn(segments%reached - self%reached, &
+      call interaction%update(segments%reached - self%reached, &
                         tips%excess(toughness) - self%excess)
-   end subroutine tell
+   end subroutine update_interaction
 
 end module twolevel_probe

@@ -24,28 +24,31 @@ module twolevel_problem
 
    public :: cell_heights, coarse_problem_t, coarse_values_t, discard
 
-   !> What windows take from the coarse level.
+   !> Coarse values that windows use.
    type :: coarse_values_t
-      real(rk), allocatable :: of(:, :)  !< the unknowns that the following are of [m], [m], [Pa]
+      !> unknowns from which the following values are computed [m], [m], [Pa]
+      real(rk), allocatable :: of(:, :)
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
-      !> For interpolation that is exact for quadratic fields (nodal_fields)
+      !> Displacement and gradient for an interpolation that is exact for quadratic fields
+      !! (nodal_fields)
       real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
-      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) of it [-]
+      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
       type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
       logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
       !> (coarse fracture cells) of coarse_tip_layer where a tip lies in one, else 0 [1/m^(1/2)]
       real(rk), allocatable :: viscous(:)
    end type coarse_values_t
 
-   !> What belongs to one mesh.
+   !> Coarse mesh, its model, and the wells on it.
    type :: coarse_problem_t
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
-      real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) likewise [-]
-      integer(ik), allocatable :: rock_cell(:)  !< (wells) of those in the rock; 0: of the others
-      type(coarse_values_t) :: values  !< of the state that tips were evaluated in last
+      real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) of each well's rate [-]
+      !> (wells) cells of the wells in the rock; 0: other wells
+      integer(ik), allocatable :: rock_cell(:)
+      type(coarse_values_t) :: values  !< values of the state in which tips were evaluated last
    contains
       procedure :: feed_wells
       procedure :: rest_wells
@@ -62,7 +65,7 @@ module twolevel_problem
 
 contains
 
-   !> A problem is not needed any more.
+   !> Release a problem.
    subroutine discard(problem)
       type(coarse_problem_t), allocatable, intent(inout) :: problem
 
@@ -71,7 +74,7 @@ contains
       deallocate (problem)
    end subroutine discard
 
-   !> What the wells feed on the present mesh.
+   !> Find the cells and joints that the wells supply on the present mesh.
    subroutine feed_wells(self, scene, error)
       class(coarse_problem_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -101,9 +104,9 @@ contains
       end associate
    end subroutine feed_wells
 
-   !> Where several wells keep to pressures in one and the same place and lose nothing on their way
-   !! there, nothing says which of them gives what: each loses a thousandth of what half a cell
-   !! takes.
+   !> Where several wells prescribe pressures at the same place without losses in the wells, their
+   !! single flows are undetermined: each gets a loss of a thousandth of the resistance of half a
+   !! cell.
    pure subroutine part_twins(self, scene)
       class(coarse_problem_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -133,7 +136,7 @@ contains
       end associate
    end subroutine part_twins
 
-   !> Those in the rock whose rate depends on pressures.
+   !> Cells and well indices of the wells in the rock whose rate depends on pressures.
    pure subroutine place_rock_wells(self, scene, error)
       class(coarse_problem_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -152,12 +155,13 @@ contains
                              "narrower than its cell: use a smaller radius or larger cells")
             return
          end if
-         ! What is lost in the well is another resistance on the way.
+         ! The loss in the well is a resistance in series.
          rock%index = 1.0_rk/(1.0_rk/rock%index + wells%friction(wells%n + 1:))
       end associate
    end subroutine place_rock_wells
 
-   !> Nothing flows in wells, whose heads have the pressure of what they feed.
+   !> Set the flow in the wells to zero, and their head pressures to those of the cells and joints
+   !! that they supply.
    pure subroutine rest_wells(self, state)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(inout) :: state
@@ -172,7 +176,7 @@ contains
       end associate
    end subroutine rest_wells
 
-   !> Ask the wells for what the scene says of a step from a time on, of length dt.
+   !> Set the rates and controls of the wells for a step of length dt that begins at a time.
    pure subroutine ask(self, scene, time, dt)
       class(coarse_problem_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -188,17 +192,17 @@ contains
       call ask_wells(scene%injections, time, dt, self%model%wells)
    end subroutine ask
 
-   !> One step of a state, which changes only if that converges.
+   !> Advance a state by one step; the state changes only if the step converges.
    subroutine advance(self, scene, dt, state, timers, report, error, held, control)
       class(coarse_problem_t), intent(inout) :: self
-      type(scene_t), intent(inout) :: scene  !< its sides follow their courses
+      type(scene_t), intent(inout) :: scene  !< the values of its sides change with time
       real(rk), intent(in) :: dt  !< [s]
       type(state_t), intent(inout) :: state
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), intent(in), optional :: held  !< a controlled well that is controlled otherwise
-      integer(ik), intent(in), optional :: control  !< of coarse_wells: how that one is
+      integer(ik), intent(in), optional :: held  !< controlled well with another control
+      integer(ik), intent(in), optional :: control  !< its control, a constant of coarse_wells
 
       if (any(self%model%sides%changes())) then
          call follow_sides(scene, state%time + dt, state%time)
@@ -210,7 +214,7 @@ contains
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
 
-   !> What windows take from a state, unless it is that which was asked for last.
+   !> Compute the values that windows use, unless they are those of this state already.
    subroutine find_values(self, state)
       class(coarse_problem_t), intent(inout) :: self
       type(state_t), intent(in) :: state
@@ -259,8 +263,9 @@ contains
       end do
    end subroutine feed_rock
 
-   !> Mean pressure at the wells; 0 without any [Pa]. That of a cell is at its middle; a well
-   !! between two cells is half a cell away, which the fluid that it gives to the cell has to flow.
+   !> Mean pressure at the wells; 0 without any [Pa]. The pressure of a cell is that at its middle;
+   !! a well between two cells is half a cell away, and the pressure loss of the flow over this
+   !! distance is added.
    pure real(rk) function well_pressure(self, scene, state)
       class(coarse_problem_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
@@ -285,11 +290,11 @@ contains
                                     self%joint_pressure(state))
    end function well_pressure
 
-   !> The pressure in situ at a well: at its point, or the mean of the fracture that it feeds [Pa].
+   !> Pressure in situ at a well: at its point, or the mean over the fracture that it supplies [Pa].
    pure real(rk) function well_in_situ(self, scene, well) result(pressure)
       class(coarse_problem_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
-      integer(ik), intent(in) :: well  !< of the scene
+      integer(ik), intent(in) :: well  !< number of the well in the scene
 
       pressure = 0.0_rk
       if (.not. allocated(self%model%in_situ)) return
@@ -302,7 +307,7 @@ contains
       end associate
    end function well_in_situ
 
-   !> The whole pressure in the cells, of which the state has what is beyond that in situ [Pa].
+   !> Total pressure in the cells; that of the state is relative to the state in situ [Pa].
    pure function rock_pressure(self, state) result(pressure)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
@@ -314,7 +319,7 @@ contains
       end if
    end function rock_pressure
 
-   !> The whole pressure in the fracture cells [Pa].
+   !> Total pressure in the fracture cells [Pa].
    pure function fracture_pressure(self, state) result(pressure)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
@@ -326,7 +331,7 @@ contains
       end if
    end function fracture_pressure
 
-   !> The whole pressure in the joints [Pa].
+   !> Total pressure in the joints [Pa].
    pure function joint_pressure(self, state) result(pressure)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
@@ -338,8 +343,8 @@ contains
       end if
    end function joint_pressure
 
-   !> How much more pressure a flow takes in the fracture cells than at the viscosity of the scene,
-   !! where that follows pressure [-].
+   !> Ratio of the viscosity in the fracture cells to that of the scene, where the viscosity depends
+   !! on pressure [-].
    pure function thickness(self, state)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
@@ -351,7 +356,7 @@ contains
       end if
    end function thickness
 
-   !> Where the middles of the cells are above y = 0 [m].
+   !> Heights y of the centres of the cells [m].
    pure function cell_heights(mesh) result(y)
       type(mesh_t), intent(in) :: mesh
       real(rk) :: y(mesh%n_cells)

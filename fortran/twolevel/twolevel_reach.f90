@@ -1,4 +1,4 @@
-!> Connected parts of a network of fractures: the graph of its cells, which meet in its points.
+!> Connected parts of a fracture network: the graph of its cells, which meet in its points.
 !!
 !! The connectivity of a network follows from the ends of the branches between its points. B
 !! branches have N free ends and, over all points where d >= 3 of them meet, sum(d) connected ones:
@@ -7,7 +7,7 @@
 !! goes from 0, isolated fractures, to 2 (Sanderson and Nixon 2015, The use of topology in fracture
 !! network characterization, J. Struct. Geol. 72: C_B, there with d = 3 at Y and 4 at X).
 !!
-!! Parts of fractures are given by arc lengths, which do not depend on the mesh.
+!! Parts of fractures are stated by arc lengths, which do not depend on the mesh.
 module twolevel_reach
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
@@ -15,26 +15,26 @@ module twolevel_reach
    implicit none(type, external)
    private
 
-   public :: cluster_count, connections_per_branch, reached_cells, stretches_t
+   public :: cluster_count, connections_per_branch, reached_cells, intervals_t
 
-   !> Stretches that neither touch nor overlap.
-   type :: stretches_t
+   !> Intervals of arc length on fractures, which neither touch nor overlap.
+   type :: intervals_t
       integer(ik), allocatable :: fracture(:)
-      real(rk), allocatable :: s(:, :)  !< (2, n) from and to [m]
+      real(rk), allocatable :: s(:, :)  !< (2, n) start and end [m]
    contains
       procedure :: clear
       procedure :: add
       procedure :: length
       procedure :: covers
-   end type stretches_t
+   end type intervals_t
 
 contains
 
-   !> The cells that can be reached from some of them through cells that let pass.
+   !> Cells that are connected with the start cells through cells that conduct.
    pure function reached_cells(fracture, starts, passes) result(reached)
       type(fracture_mesh_t), intent(in) :: fracture
-      logical, intent(in) :: starts(:)  !< (cells) those of them that let pass
-      logical, intent(in) :: passes(:)  !< (cells)
+      logical, intent(in) :: starts(:)  !< (cells) start cells; only those that conduct count
+      logical, intent(in) :: passes(:)  !< (cells) cells that conduct
       logical :: reached(fracture%n_cells)
       logical :: is_reached(fracture%n_points)
       integer(ik), allocatable :: number(:)
@@ -51,7 +51,7 @@ contains
       end do
    end function reached_cells
 
-   !> How many groups of fractures there are that hang together.
+   !> Number of connected groups of fractures.
    pure integer(ik) function cluster_count(fracture) result(n)
       type(fracture_mesh_t), intent(in) :: fracture
       logical :: all_pass(fracture%n_cells), is_met(fracture%n_points)
@@ -67,10 +67,10 @@ contains
       n = count(is_met, kind=ik)
    end function cluster_count
 
-   !> The numbers of the groups of points that cells which let pass join.
+   !> Number of the group of each point; cells that conduct connect their points.
    pure function groups_of_points(fracture, passes) result(number)
       type(fracture_mesh_t), intent(in) :: fracture
-      logical, intent(in) :: passes(:)  !< (cells)
+      logical, intent(in) :: passes(:)  !< (cells) cells that conduct
       integer(ik), allocatable :: number(:)
       type(groups_t) :: groups
       integer(ik) :: cell
@@ -99,19 +99,19 @@ contains
       connections = 2.0_rk*real(connected, rk)/real(max(connected + free, 1_ik), rk)
    end function connections_per_branch
 
-   !> None.
+   !> Remove all intervals.
    pure subroutine clear(self)
-      class(stretches_t), intent(inout) :: self
+      class(intervals_t), intent(inout) :: self
 
       self%fracture = [integer(ik) ::]
       self%s = reshape([real(rk) ::], [2, 0])
    end subroutine clear
 
-   !> Add a stretch; it takes in those that it meets.
+   !> Add an interval, merged with the intervals that it touches or overlaps.
    pure subroutine add(self, fracture, s)
-      class(stretches_t), intent(inout) :: self
+      class(intervals_t), intent(inout) :: self
       integer(ik), intent(in) :: fracture
-      real(rk), intent(in) :: s(2)  !< from and to [m]; nothing is added unless from < to
+      real(rk), intent(in) :: s(2)  !< start and end [m]; nothing is added unless start < end
       logical :: stays(size(self%fracture))
       real(rk) :: whole(2)
       integer(ik) :: i, n
@@ -125,16 +125,16 @@ contains
       self%fracture = [pack(self%fracture, stays), fracture]
    end subroutine add
 
-   !> Length of all of them [m].
+   !> Total length [m].
    pure real(rk) function length(self)
-      class(stretches_t), intent(in) :: self
+      class(intervals_t), intent(in) :: self
 
       length = sum(self%s(2, :) - self%s(1, :))
    end function length
 
-   !> A place of a fracture lies in one of them.
+   !> Whether a point of a fracture lies in an interval.
    pure logical function covers(self, fracture, s)
-      class(stretches_t), intent(in) :: self
+      class(intervals_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
       real(rk), intent(in) :: s  !< arc length [m]
 

@@ -28,7 +28,7 @@ module twolevel_results
 
 contains
 
-   !> One state for a cell from those of its two ends: open or stick where both are, else slip.
+   !> Contact state of a cell from those of its two ends: open or stick where both are, else slip.
    pure function cell_state(ends) result(state)
       integer(ik), intent(in) :: ends(2)
       integer(ik) :: state
@@ -36,7 +36,7 @@ contains
       state = merge(ends(1), state_slip, ends(1) == ends(2))
    end function cell_state
 
-   !> The contact states of all fracture cells.
+   !> Contact states of all fracture cells.
    pure function cell_states(state) result(states)
       type(state_t), intent(in) :: state
       integer(ik) :: states(size(state%contact, 2))
@@ -45,12 +45,12 @@ contains
       states = [(cell_state(state%contact(:, i)), i=1, size(states))]
    end function cell_states
 
-   !> The row of history.csv; the caller adds what concerns the step.
+   !> Row of history.csv; the caller adds the quantities of the step.
    function history_of_levels(levels) result(row)
       class(two_levels_t), intent(in) :: levels
       type(history_row_t) :: row
       type(fracture_mesh_t) :: fracture
-      real(rk) :: fluid  ! that the mass error is compared with [m2]
+      real(rk) :: fluid  ! reference volume of the mass error [m2]
       integer(ik), allocatable :: states(:)
 
       associate (state => levels%now%coarse, totals => levels%now%fluid, problem => levels%problem)
@@ -81,7 +81,7 @@ contains
       end associate
    end function history_of_levels
 
-   !> What the pressures would store in rock that is not strained, with that in situ [m2].
+   !> Fluid volume that the pressures, including those in situ, would store in unstrained rock [m2].
    pure real(rk) function content_in_situ(problem, state) result(content)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -94,7 +94,8 @@ contains
       end associate
    end function content_in_situ
 
-   !> Fluid in the fractures but for its compression; roughness holds none [m2].
+   !> Fluid volume in the fractures, without compression of the fluid and without the roughness of
+   !! new faces [m2].
    pure real(rk) function fracture_volume(problem, state) result(volume)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -105,7 +106,7 @@ contains
       end associate
    end function fracture_volume
 
-   !> Slip of each fracture cell in the last step, without its sign, times its length [m2].
+   !> Magnitude of the slip of each fracture cell in the last step, times its length [m2].
    pure function slip_potency(length, state) result(potency)
       real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
       type(state_t), intent(in) :: state
@@ -114,7 +115,7 @@ contains
       potency = 0.5_rk*length*sum(abs(state%jump(2, :, :) - state%slip_before), dim=1)
    end function slip_potency
 
-   !> Displacement, stress and pressure at points, each from the cells around its own.
+   !> Displacement, stress and pressure at points, interpolated in the cells that contain them.
    subroutine probes_of_levels(points, problem, state, row, error)
       type(probe_t), intent(in) :: points(:)
       type(coarse_problem_t), intent(in) :: problem
@@ -146,7 +147,7 @@ contains
             row%pressure(i) = value(3)
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             if (.not. allocated(model%in_situ)) cycle
-            ! What is in situ is known at the point itself.
+            ! The state in situ is exact at the point itself.
             row%pressure(i) = row%pressure(i) + model%in_situ%pressure_at(xy(2, i))
             row%stress(:, i) = row%stress(:, i) + model%in_situ%stress_at(xy(2, i))
          end do
@@ -169,7 +170,8 @@ contains
       end do
    end function stresses_of
 
-   !> Displacement, pressure, stress, where the scene wants them, and what the fracture faces do.
+   !> Displacement, pressure and stress, where the scene requires them, and the state of the
+   !! fracture faces.
    function snapshot_of_levels(scene, problem, state) result(snapshot)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -195,7 +197,7 @@ contains
          fracture%void = state%void
          fracture%state = cell_states(state)
          fracture%flow = fracture_flow(problem, state)
-         ! Those to come are not shown.
+         ! Without joints that no crack has reached yet.
          shown = pack([(k, k=1, joints%n)], [(.not. any(joints%is_shut(joints%branches%of(k))), &
                                               k=1, joints%n)])
          snapshot%intersection%point = joints%point(shown)
@@ -208,7 +210,7 @@ contains
    function rock_fields(problem, state, has_regions) result(fields)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      logical, intent(in) :: has_regions  !< of other rock
+      logical, intent(in) :: has_regions  !< the scene has regions of other rock
       type(matrix_fields_t) :: fields
       real(rk), allocatable :: nodal(:, :)
 
@@ -246,7 +248,7 @@ contains
       end associate
    end function fracture_flow
 
-   !> The points inside the body where fractures meet.
+   !> Whether each point is an intersection of fractures inside the body.
    pure function is_intersection(fracture)
       type(fracture_mesh_t), intent(in) :: fracture
       logical :: is_intersection(fracture%n_points)
@@ -256,8 +258,9 @@ contains
                                                          point_boundary]), i=1, fracture%n_points)]
    end function is_intersection
 
-   !> With growth in equilibrium, let the cells at the ends of fractures end where their tips are:
-   !! those of the coarse mesh go on beyond them, closed, and may end at a joint to come.
+   !> With growth in equilibrium, end the last cells of the fractures at the tips: the cells of the
+   !! coarse mesh extend beyond the tips, closed, and may end at a joint that the crack has not
+   !! reached.
    pure subroutine end_at_tips(scene, network, tips, fracture)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
@@ -286,8 +289,8 @@ contains
       end do
    end subroutine end_at_tips
 
-   !> A fracture whose last cell ends at a joint, but whose tip has not come to it, gets a tip point
-   !! of its own there, and the joint one branch less.
+   !> Give a fracture whose last cell ends at a joint, but whose tip has not reached the joint, a
+   !! separate tip point there, and remove its branch from the joint.
    pure subroutine detach_tip(tip, fracture)
       type(tip_t), intent(in) :: tip
       type(fracture_mesh_t), intent(inout) :: fracture
@@ -311,7 +314,7 @@ contains
          n = n + 1
       end associate
       fracture%cell_points(tip%end, cell) = fracture%n_points
-      ! What is left may be no joint any more.
+      ! The remaining branches may not form a joint any more.
       associate (others => fracture%cell_fracture(cells))
          if (size(cells) == 0) fracture%point_kind(point) = point_interior
          if (size(cells) == 2) then
@@ -332,7 +335,7 @@ contains
       end associate
    end subroutine detach_tip
 
-   !> Unknowns by block, for run.json.
+   !> Numbers of unknowns by block, for run.json.
    subroutine count_unknowns(levels, summary)
       class(two_levels_t), intent(in) :: levels
       type(summary_t), intent(inout) :: summary

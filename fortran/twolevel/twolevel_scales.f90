@@ -10,9 +10,9 @@ module twolevel_scales
 
 contains
 
-   !> The largest pressure that can be expected in a scene: that of its loads or of its state before
-   !! them, stress in situ included, and with growth what opens the longest fracture against its
-   !! toughness [Pa]; 0 if it has none of these.
+   !> Largest pressure expected in a scene [Pa]: that of its loads or of its initial state, stress
+   !! in situ included, and with growth the pressure at which the longest fracture reaches its
+   !! toughness; 0 without any of these.
    pure real(rk) function pressure_scale(scene) result(scale)
       type(scene_t), intent(in) :: scene
       real(rk), parameter :: half_pi = 0.5_rk*pi

@@ -10,7 +10,7 @@ module twolevel_schedule
 
 contains
 
-   !> Give the sides the values of a time, to which a step leads from an earlier one.
+   !> Set the values of the sides for a step from `since` to `time`.
    elemental subroutine follow_sides(scene, time, since)
       type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: time  !< [s]
@@ -20,8 +20,8 @@ contains
       if (allocated(scene%parts)) call scene%parts%set_time(time, since)
    end subroutine follow_sides
 
-   !> The last time at which a stage of a well began or one ended, a course of a side turned, or the
-   !! scene began [s].
+   !> Last time at which a stage of a well began or ended, a time-dependent side value had a corner,
+   !! or the scene began [s].
    pure real(rk) function last_switch(scene, now) result(time)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: now  !< [s]
@@ -31,8 +31,8 @@ contains
       end associate
    end function last_switch
 
-   !> The next time at which a stage of a well begins or one ends, a course of a side turns, or the
-   !! scene ends [s].
+   !> Next time at which a stage of a well begins or ends, a time-dependent side value has a corner,
+   !! or the scene ends [s].
    pure real(rk) function next_switch(scene, now) result(time)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: now  !< [s]
@@ -42,7 +42,7 @@ contains
       end associate
    end function next_switch
 
-   !> All of them, in any order [s].
+   !> All these times, in any order [s].
    pure function switch_times(scene) result(times)
       type(scene_t), intent(in) :: scene
       real(rk), allocatable :: times(:)

@@ -11,33 +11,34 @@ module twolevel_simulation
    use scene_types, only: scene_t
    use report_simulation, only: snapshot_t
    use report_slip, only: slip_step_t
-   use twolevel_doubt, only: find_improvements, improve_windows, note_uncertain_tips
+   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
-   use twolevel_notes, only: note_certainty, note_excess
+   use twolevel_notes, only: note_stated_errors, note_excess
    use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
    use twolevel_steps, only: stepping_levels_t
-   use twolevel_stepping, only: improvement_t
+   use twolevel_stepping, only: refinement_t
    use twolevel_stimulation, only: stimulation_t
-   use twolevel_trust, only: estimate_coarse_errors
-   use twolevel_well_rows, only: well_books_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_well_rows, only: well_results_t
    implicit none(type, external)
    private
 
    public :: twolevel_simulation_t
 
-   ! What the log calls it that fractures meet, or do not.
+   ! Names of the feature in the log.
    character(len=*), parameter :: meeting = "intersections: flow from fracture to fracture "// &
                                   "or out of the body"
    character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
 
-   !> The scene in progress.
+   !> Simulation of a scene.
    type, extends(stepping_levels_t) :: twolevel_simulation_t
-      logical :: has_begun = .false.  !< the first state has been asked for
+      logical :: has_begun = .false.  !< the first state has been requested
       logical :: is_initial = .false.  !< the present state is the one before the first step
       type(stimulation_t) :: stimulation
-      type(well_books_t) :: well_books
-      real(rk) :: seismic_moment = 0.0_rk  !< of all steps, per metre of thickness [N m]
+      type(well_results_t) :: well_results
+      !> seismic moment of all steps, per metre of thickness [N m]
+      real(rk) :: seismic_moment = 0.0_rk
    contains
       procedure :: begin
       procedure :: next_state
@@ -51,7 +52,7 @@ module twolevel_simulation
 
 contains
 
-   !> Mesh both levels; nothing is loaded yet.
+   !> Mesh both levels, without load.
    subroutine begin(self, scene, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -69,7 +70,7 @@ contains
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
 
-   !> What the scene uses and does without.
+   !> Report the features that the scene uses, and those that it does not use.
    subroutine note_features(self)
       class(twolevel_simulation_t), intent(inout) :: self
 
@@ -99,8 +100,8 @@ contains
       end associate
    end subroutine note_features
 
-   !> The initial state first, if the scene wants fractures in equilibrium; then a time step. What
-   !! fails leaves the last good state.
+   !> Compute the initial state first, if the scene requires fractures in equilibrium; then one time
+   !! step per call. After an error the last accepted state is restored.
    subroutine next_state(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -118,7 +119,7 @@ contains
       else
          if (is_first) then
             call self%stimulation%begin(self%problem, self%now%coarse)
-            call self%well_books%begin(self%scene, self%problem, self%now%coarse)
+            call self%well_results%begin(self%scene, self%problem, self%now%coarse)
          end if
          call self%take_step(timers, error)
       end if
@@ -147,12 +148,12 @@ contains
       call note_state(self, row%mass_error_relative)
    end subroutine next_state
 
-   !> What the last step adds to the stimulation and to the slip; that of the initial state is no
-   !! event.
+   !> Add the last step to the stimulation, the slip catalogue and the seismic moment; the slip of
+   !! the initial state is no event.
    subroutine book_change(self)
       class(twolevel_simulation_t), intent(inout) :: self
       type(fracture_mesh_t) :: fracture
-      real(rk), parameter :: rounding = 1.0e-12_rk  ! in slip, relative
+      real(rk), parameter :: rounding = 1.0e-12_rk  ! relative rounding error of slip
       real(rk), allocatable :: potency(:), shear(:)
 
       if (self%is_initial) then
@@ -164,13 +165,13 @@ contains
       if (fracture%n_cells == 0) return
       call end_at_tips(self%scene, self%network, self%tip, fracture)
       potency = slip_potency(self%problem%model%condensed%length, self%now%coarse)
-      ! Cells wholly ahead of a tip are rock still.
+      ! Cells ahead of a tip are intact rock.
       where (.not. fracture%cell_s(2, :) > fracture%cell_s(1, :)) potency = 0.0_rk
       shear = shear_beside(self%problem%model%rock, self%problem%mesh)
       self%seismic_moment = self%seismic_moment + sum(shear*potency)
       associate (traction => 0.5_rk*sum(self%now%coarse%traction(2, :, :), dim=1), &
                  largest => maxval(abs(self%now%coarse%jump(2, :, :))))
-         ! Faces at the bound of friction that do not move are moved by rounding.
+         ! Faces at the friction limit that do not move have slip within rounding errors.
          where (potency <= rounding*largest*self%problem%model%condensed%length) potency = 0.0_rk
          if (self%is_initial) then
             call self%catalogue%remember(fracture, traction)
@@ -182,7 +183,7 @@ contains
       end associate
    end subroutine book_change
 
-   !> The state before the first step.
+   !> Find the state before the first step.
    subroutine find_initial_state(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -199,22 +200,22 @@ contains
                        "above 1")
    end subroutine find_initial_state
 
-   !> What the wells have done.
+   !> Add the rows of the wells.
    subroutine note_well_rows(self)
       class(twolevel_simulation_t), intent(inout) :: self
       type(well_row_t), allocatable :: rows(:)
 
       if (size(self%scene%injections) == 0) return
-      if (self%is_initial) call self%well_books%begin(self%scene, self%problem, self%now%coarse)
-      call self%well_books%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
+      if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+      call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                 merge(0.0_rk, self%dt, self%is_initial), rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
    end subroutine note_well_rows
 
-   !> An accepted state: contact and the run's largest values.
+   !> Update contact events and the extreme values of the run with an accepted state.
    subroutine note_state(self, mass_error_relative)
       class(twolevel_simulation_t), intent(inout) :: self
-      real(rk), intent(in) :: mass_error_relative  !< of all steps [-]
+      real(rk), intent(in) :: mass_error_relative  !< accumulated error of all steps [-]
       logical :: always(size(self%scene%fractures))
 
       always = .true.
@@ -236,7 +237,7 @@ contains
       end associate
    end subroutine note_state
 
-   !> Evaluate the tips, and let them grow until none does or the coarse level has to follow.
+   !> Evaluate the tips, and let them grow until none grows or the coarse mesh has to be updated.
    subroutine grow(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -272,7 +273,8 @@ contains
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
-      if (states_errors(self)) call note_certainty(self%scene, self%front_state_t, self%problem, &
+      if (states_errors(self)) call note_stated_errors(self%scene, self%front_state_t, &
+         self%problem, &
                                                    self%dt, self%now)
       if (may_grow .and. self%is_equilibrium()) then
          call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
@@ -283,25 +285,26 @@ contains
       end if
    end subroutine grow
 
-   !> Intensities in a state that tips do not grow in, known well enough to grow after it.
+   !> Evaluate the intensities in a state without growth, with refined windows where growth after it
+   !! requires this.
    subroutine evaluate_tips(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(improvement_t), allocatable :: improvements(:)
+      type(refinement_t), allocatable :: refinements(:)
 
       do
          call self%evaluate(timers, error)
          if (allocated(error)) return
          call estimate_coarse_errors(self, timers, error)
          if (allocated(error) .or. .not. self%is_equilibrium()) return
-         call find_improvements(self, self%now%coarse%time, improvements)
-         if (size(improvements) == 0) return
-         call improve_windows(self, improvements)
+         call find_refinements(self, self%now%coarse%time, refinements)
+         if (size(refinements) == 0) return
+         call refine_windows(self, refinements)
       end do
    end subroutine evaluate_tips
 
-   !> What has grown in the step that led to the present state.
+   !> Report the growth of the last step.
    subroutine note_equilibrium(self, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -315,15 +318,15 @@ contains
       call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
    end subroutine note_equilibrium
 
-   !> Errors of length and pressure are estimated: not with increments of a given law.
+   !> Whether errors of length and pressure are estimated: not with increments of prescribed length.
    pure logical function states_errors(self)
       class(twolevel_simulation_t), intent(in) :: self
 
       states_errors = self%is_equilibrium() .or. .not. self%scene%growth%enabled
    end function states_errors
 
-   !> Increment by increment. Where the last one has changed the coarse mesh, the state on that is
-   !! still to be found.
+   !> Grow by increments. If the last one changes the coarse mesh, the state on the new mesh has
+   !! still to be computed.
    subroutine follow_tips(self, timers, error)
       class(twolevel_simulation_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -350,7 +353,7 @@ contains
       end do
    end subroutine follow_tips
 
-   !> The network, and the coarse mesh with it: tips in equilibrium are within its last cells.
+   !> Network and coarse mesh; with growth in equilibrium the last cells end at the tips.
    subroutine present_network(self, network, mesh)
       class(twolevel_simulation_t), intent(in) :: self
       type(network_t), intent(out) :: network
@@ -363,7 +366,7 @@ contains
       call end_at_tips(self%scene, self%network, self%tip, mesh%fracture)
    end subroutine present_network
 
-   !> The accepted state in a row of history.csv.
+   !> Row of history.csv of the accepted state.
    function history(self) result(row)
       class(twolevel_simulation_t), intent(in) :: self
       type(history_row_t) :: row
@@ -381,8 +384,8 @@ contains
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
       if (.not. states_errors(self)) return
-      row%length_error = self%now%certainty%length
-      row%well_pressure_error = self%now%certainty%pressure
+      row%length_error = self%now%stated_errors%length
+      row%well_pressure_error = self%now%stated_errors%pressure
    end function history
 
    !> Displacement, stress and pressure at the probes.
@@ -394,7 +397,7 @@ contains
       call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
    end subroutine probes
 
-   !> Fields of the last good state, unless there is none or the coarse mesh is ahead of it.
+   !> Fields of the last accepted state, if there is one.
    subroutine snapshot(self, fields)
       class(twolevel_simulation_t), intent(in) :: self
       type(snapshot_t), allocatable, intent(out) :: fields
@@ -404,7 +407,7 @@ contains
       end if
    end subroutine snapshot
 
-   !> The time of the present state [s].
+   !> Time of the present state [s].
    pure real(rk) function time(self)
       class(twolevel_simulation_t), intent(in) :: self
 

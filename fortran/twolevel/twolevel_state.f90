@@ -33,29 +33,32 @@ module twolevel_state
 
    public :: coarse_spec, two_levels_t
 
-   real(rk), parameter :: undrained_share = 1.0e-6_rk  !< of a step: no fluid moves noticeably in it
+   !> share of the longest step: within this time no fluid moves noticeably [-]
+   real(rk), parameter :: undrained_share = 1.0e-6_rk
 
-   !> Share of the toughness that tips may lack to grow together with the first: the two methods for
-   !! the intensities differ by about as much.
+   !> Relative deficit of K_eq within which tips grow along with the first: the two methods for the
+   !! intensities differ by about as much [-].
    real(rk), parameter :: together = 0.01_rk
 
-   !> Ends and kinks lie on the way of a tip that passes them nearer than that, in increments and in
-   !! cells: no mesh of good shape fits between.
+   !> Distance from the path within which ends and kinks of fractures lie on the path, in increments
+   !! and in cells: no mesh of good quality fits between [-].
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
-   !> Both levels; `network` is that of the fine one, which is ahead of the coarse one. A step
-   !! changes tips, network and `now`; a try of it is taken back by `put_back` and nowhere else.
+   !> Both levels; `network` is the fine network, which is ahead of the coarse one. A step changes
+   !! tips, network and `now`; a rejected try is undone by `put_back` and nowhere else.
    type, abstract, extends(simulation_t) :: two_levels_t
       type(levels_state_t) :: now
-      type(checkpoint_t) :: last  !< what a step begins from
-      type(state_t) :: before  !< the coarse part of that, on the present mesh
-      ! Beside the state
+      type(checkpoint_t) :: last  !< state at the start of the step
+      type(state_t) :: before  !< coarse part of `last`, on the present mesh
+      ! Not part of the state
       type(coarse_problem_t), allocatable :: problem
-      type(coarse_problem_t), allocatable :: kept_problem  !< of `last`, where a try has a new mesh
+      !> problem of `last`, where a try has a new mesh
+      type(coarse_problem_t), allocatable :: kept_problem
       type(windows_t) :: windows
-      type(windows_t) :: reference  !< the body as one window, against which these are held
-      real(rk) :: load_pressure = 0.0_rk  !< largest pressure expected by the loads [Pa]
-      integer(ik) :: reference_most = 800  !< coarse fracture cells up to which they are
+      type(windows_t) :: reference  !< the body as one window, with which the windows are compared
+      real(rk) :: load_pressure = 0.0_rk  !< largest pressure expected from the loads [Pa]
+      !> largest number of coarse fracture cells for this comparison
+      integer(ik) :: reference_most = 800
    contains
       procedure :: mesh_levels
       procedure, private :: set_scales
@@ -111,7 +114,7 @@ contains
       end associate
       call self%set_scales()
       if (scene%growth%intensities) then
-         ! The body beside windows has elements as large as the coarse cells: at the tips, where it
+         ! The body as reference has elements as large as the coarse cells; at the tips, where this
          ! matters, they are those of the windows.
          associate (coarser => 1.0_rk/scene%discretization%fine_ratio, &
                     is_body => scene%discretization%window_is_body)
@@ -122,12 +125,12 @@ contains
          end associate
       end if
       allocate (self%now%grown(0), self%now%segment(size(self%tip)))
-      call self%now%rivals%begin(size(self%tip))
+      call self%now%interaction%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
 
-   !> Pressure of the loads, and the least scale of K_eq of each tip: a share of what that pressure
-   !! would bring about in its fracture.
+   !> Set the pressure of the loads, and the least scale of K_eq of each tip: a share of K at this
+   !! pressure in its fracture.
    pure subroutine set_scales(self)
       class(two_levels_t), intent(inout) :: self
       real(rk), parameter :: share = 0.01_rk
@@ -142,7 +145,7 @@ contains
       end do
    end subroutine set_scales
 
-   !> A step is tried from now on: contact in the windows is accepted as it was evaluated last.
+   !> Begin a step: accept contact in the windows as evaluated last.
    subroutine begin_step(self)
       class(two_levels_t), intent(inout) :: self
 
@@ -153,7 +156,7 @@ contains
       call self%remember()
    end subroutine begin_step
 
-   !> The present state is the one that tries begin from, and go back to.
+   !> Store the present state as the start of the tries.
    subroutine remember(self)
       class(two_levels_t), intent(inout) :: self
 
@@ -165,7 +168,7 @@ contains
       call self%reference%begin_step()
    end subroutine remember
 
-   !> A try is rejected: the state that it began from is the present one again, to the last bit.
+   !> Undo a rejected try: restore the stored state, to the last bit.
    subroutine put_back(self)
       class(two_levels_t), intent(inout) :: self
 
@@ -183,7 +186,7 @@ contains
       call self%reference%coarse_changed()
    end subroutine put_back
 
-   !> All that a step changes.
+   !> Copy of all quantities that a step changes.
    function present_state(self) result(state)
       class(two_levels_t), intent(in) :: self
       type(checkpoint_t) :: state
@@ -192,7 +195,7 @@ contains
       state%levels = self%now
    end function present_state
 
-   !> Nothing flows in wells.
+   !> Set the flow in the wells to zero.
    subroutine rest_wells(self)
       class(two_levels_t), intent(inout) :: self
 
@@ -203,7 +206,8 @@ contains
       call self%problem%rest_wells(self%now%coarse)
    end subroutine rest_wells
 
-   !> Rates are known from now on: none at rest, else those of the next step.
+   !> Begin the estimate of the time error: with zero rates at rest, else with those of the next
+   !! step.
    subroutine follow_trend(self, at_rest)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: at_rest
@@ -218,8 +222,8 @@ contains
                                 self%scene%material%young, length)
    end subroutine follow_trend
 
-   !> How tips grow: they join what lies ahead of them, by the law of advances at once, as they come
-   !! near to it.
+   !> Parameters of growth: with increments of prescribed length tips join targets at once, in
+   !! equilibrium once the ligament breaks.
    pure function rules_of_scene(scene) result(rules)
       type(scene_t), intent(in) :: scene
       type(growth_rules_t) :: rules
@@ -244,7 +248,7 @@ contains
                              near_in_mesh*scene%cell_size_of(f)), f=1, n)]
    end function rules_of_scene
 
-   !> What to mesh.
+   !> Specification of the coarse mesh.
    pure function coarse_spec(scene) result(spec)
       type(scene_t), intent(in) :: scene
       type(mesh_spec_t) :: spec
@@ -259,7 +263,7 @@ contains
       if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
    end function coarse_spec
 
-   !> Law and residual aperture of the scene's fracture cells.
+   !> Contact law and residual aperture of the fracture cells of the scene.
    pure subroutine first_cells(scene, fracture, cells)
       type(scene_t), intent(in) :: scene
       type(fracture_mesh_t), intent(in) :: fracture
@@ -281,7 +285,7 @@ contains
       end if
    end subroutine first_cells
 
-   !> Joints fit each other under the stress in situ: what it closes them by is no jump.
+   !> Joints are closed under the stress in situ without a jump: subtract this closure.
    pure subroutine rest_joints(in_situ, fracture, cells)
       type(in_situ_state_t), intent(in) :: in_situ
       type(fracture_mesh_t), intent(in) :: fracture
@@ -314,7 +318,7 @@ contains
       call rest_wells(self)
    end subroutine equilibrate
 
-   !> One step of the coarse level, not yet accepted. Nothing changes unless it converges.
+   !> Try one step of the coarse level. Nothing changes unless it converges.
    subroutine try_step(self, dt, timers, report, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -328,7 +332,7 @@ contains
       if (report%converged) self%now%undrained = .false.
    end subroutine try_step
 
-   !> Put the reason why a step is not solved in the words of the scene.
+   !> State the reason why a step is not solved, in the terms of the scene.
    subroutine explain(self, dt, report)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -342,7 +346,7 @@ contains
       end associate
    end subroutine explain
 
-   !> Error in time of the state that a step of length dt has led to, relative [-].
+   !> Relative time error of a step of length dt to the present state [-].
    function step_error(self, dt) result(error)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -363,9 +367,9 @@ contains
       end associate
    end function step_error
 
-   !> What a well has given is taken for at least this, when its error in a step of length dt is
-   !! judged: a small share of what the well that gives most has given since the last switch, and
-   !! more than the rounding of the fluid that is there [m2].
+   !> Least volume of a well for the relative error of its flow in a step of length dt: a small
+   !! share of the largest volume of a well since the last switch, and more than the rounding error
+   !! of the fluid volume [m2].
    pure real(rk) function least_volume(self, dt) result(least)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -382,7 +386,7 @@ contains
       least = max(share*most, trace*fluid)
    end function least_volume
 
-   !> The error of a step is larger than the scene tolerates.
+   !> Whether the time error of a step exceeds the tolerance of the scene.
    pure logical function errs(self, error)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: error  !< relative [-]
@@ -392,14 +396,14 @@ contains
       end associate
    end function errs
 
-   !> The fluid of an accepted step.
+   !> Add the fluid volumes of an accepted step.
    subroutine book_step(self, dt)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
       real(rk) :: flow(size(self%scene%injections))
 
       associate (fluid => self%now%fluid, state => self%now%coarse, model => self%problem%model)
-         ! Not what the model has as its sources: that is from its last try.
+         ! The sources of the model are not used: they are those of its last try.
          flow = rate(self%scene%injections, self%before%time, dt)
          if (model%wells%n_all > 0) then
             flow(model%wells%number) = state%well_flow
@@ -414,18 +418,18 @@ contains
       end associate
    end subroutine book_step
 
-   !> Stress intensity factors of the tips asked for, in windows on the present network.
+   !> Stress intensity factors of the active tips, in windows on the present network.
    subroutine evaluate(self, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: asked(size(self%tip))
+      logical :: active(size(self%tip))
       integer(ik) :: i
 
       call timers%heed(error)
       if (allocated(error)) return
-      asked = .true.
-      if (allocated(self%now%asked)) asked = self%now%asked
+      active = .true.
+      if (allocated(self%now%active)) active = self%now%active
       associate (now => self%now)
          call follow_sides(self%scene, now%coarse%time, now%coarse%time)
          call timers%start(phase_tips)
@@ -436,9 +440,9 @@ contains
                                          now%coarse%jump)
          end if
          call carry_intensities(self)
-         asked = asked .and. self%tip%is_loaded()
+         active = active .and. self%tip%is_loaded()
          call self%problem%find_values(now%coarse)
-         call self%windows%evaluate(self%scene, self%network, self%tip, asked, &
+         call self%windows%evaluate(self%scene, self%network, self%tip, active, &
                                     self%has_reference(), self%problem, now%coarse, &
                                     now%undrained, now%windows, error)
          call timers%stop(phase_tips)
@@ -449,7 +453,7 @@ contains
             call now%windows%tip(i)%forget_coarse_error()
          end do
          do i = 1, size(self%tip, kind=ik)
-            if (.not. asked(i)) cycle
+            if (.not. active(i)) cycle
             now%windows%tip(i)%jump_then = tip_jump(self, i)
             now%windows%tip(i)%place_then = self%tip(i)%xy
          end do
@@ -501,8 +505,8 @@ contains
                       self%problem%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
 
-   !> Let the coarse level follow what the tips have grown, if that has reached its threshold, or if
-   !! nothing is to grow after it.
+   !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if no
+   !! growth follows.
    subroutine grow_coarse(self, grew, timers, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(out) :: grew
@@ -526,8 +530,7 @@ contains
       call discard(self%kept_problem)
    end subroutine grow_coarse
 
-   !> A mesh of the coarse network, new around the places where that has grown; the state goes
-   !! along.
+   !> Remesh the coarse network around the points where it has changed, and transfer the state.
    subroutine remesh_coarse(self, centres, timers, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]
@@ -570,7 +573,7 @@ contains
       self%now%has_new_mesh = .true.
    end subroutine remesh_coarse
 
-   !> Carry cells, wells and state over to a new coarse mesh.
+   !> Transfer cells, wells and state to a new coarse mesh.
    subroutine transfer_levels(scene, old, map, new, now)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: old

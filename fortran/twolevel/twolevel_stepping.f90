@@ -29,81 +29,81 @@ module twolevel_stepping
    implicit none(type, external)
    private
 
-   public :: improve_by_body, improve_edge, improve_elements, improvement_t, stepper_t, trial_t
+   public :: improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t, trial_t
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
 
-   !> First step with a tolerance, as a share of the scene's time: so short that little happens.
+   !> First step with a tolerance, over the time of the scene: so short that little happens [-].
    real(rk), parameter :: first_share = 1.0e-7_rk
 
-   !> Share of a segment that a tip goes along in a step at most.
+   !> Largest advance of a tip in a step, over the length of its segment [-].
    real(rk), parameter :: most = 0.75_rk
 
-   ! What makes a window better.
-   integer, parameter :: improve_elements = 1  !< smaller ones
-   integer, parameter :: improve_edge = 2  !< one farther away
-   integer, parameter :: improve_by_body = 3  !< no edge
+   ! Kinds of window refinement.
+   integer, parameter :: improve_elements = 1  !< smaller elements
+   integer, parameter :: improve_edge = 2  !< larger window
+   integer, parameter :: improve_by_body = 3  !< body as window
 
-   !> A better window for a tip.
-   type :: improvement_t
+   !> Refinement of the window of a tip.
+   type :: refinement_t
       integer(ik) :: tip = 0
       integer :: kind = improve_elements
-   end type improvement_t
+   end type refinement_t
 
-   !> What a tried step has shown.
+   !> Result of a tried step.
    type :: trial_t
-      logical :: converged = .false.  !< its equations are solved
-      logical :: goes_too_far = .false.  !< tips would grow for more than a new segment
-      logical :: jumps = .false.  !< they do, and may
-      logical :: was_beyond = .false.  !< one of these was, of its toughness, before it
-      logical :: has_joined = .false.  !< a tip has joined something in it
+      logical :: converged = .false.  !< the equations are solved
+      logical :: goes_too_far = .false.  !< tips would advance by more than one new segment
+      logical :: jumps = .false.  !< tips advance by more than one new segment, and may
+      logical :: was_beyond = .false.  !< one of these tips exceeded its toughness before the step
+      logical :: has_joined = .false.  !< a tip has joined a target in the step
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
-      logical :: is_late = .false.  !< a tip comes to a joint long before the end of the step
-      logical :: gains_all = .false.  !< it comes not to a joint, but as far as growth is wanted
-      real(rk) :: arrival = 1.0_rk  !< share of the step after which it does [-]
-      real(rk) :: moment = 0.0_rk  !< length of a step in which it does not matter when it does [s]
-      real(rk) :: switch = 1.0_rk  !< share of the step after which a well comes to its limit [-]
-      real(rk) :: time_error = 0.0_rk  !< of the step, relative [-]
-      real(rk) :: advance = 0.0_rk  !< largest of the tips, over the length of a segment [-]
-      character(len=:), allocatable :: reason  !< why the equations were not solved
-      !> Better windows that it needs, to be tried again then; unallocated or none: it does not
-      type(improvement_t), allocatable :: improvements(:)
+      logical :: is_late = .false.  !< a tip reaches a target long before the end of the step
+      logical :: gains_all = .false.  !< a tip reaches the prescribed gain instead of a target
+      real(rk) :: arrival = 1.0_rk  !< share of the step after which the tip does [-]
+      real(rk) :: moment = 0.0_rk  !< length of a step within which this time does not matter [s]
+      real(rk) :: switch = 1.0_rk  !< share of the step after which a well reaches its limit [-]
+      real(rk) :: time_error = 0.0_rk  !< relative time error [-]
+      real(rk) :: advance = 0.0_rk  !< largest advance of a tip, over the length of a segment [-]
+      character(len=:), allocatable :: reason  !< reason why the equations were not solved
+      !> refinements of windows before the step is tried again; unallocated or empty: none
+      type(refinement_t), allocatable :: refinements(:)
    contains
       procedure :: needs_windows
       procedure :: why_cut
    end type trial_t
 
-   !> Share of a step that it is cut to at least lest a tip come to a joint too early in it.
+   !> Smallest share to which a step is cut where a tip reaches a target early in the step [-].
    real(rk), parameter :: soonest = 0.05_rk
 
-   !> Cuts of a step to where something happens in it: those by the share that straight lines tell,
-   !! and all.
+   !> Numbers of cuts of a step to an event within it: those by linear interpolation, and all.
    integer, parameter :: plain_cuts = 3, location_cuts = 6
 
-   !> Steps are not cut to less than this share of the shortest one [-].
+   !> Shortest length to which steps are cut, over the shortest step of the scene [-].
    real(rk), parameter :: floor_share = 2.0_rk**(-6)
 
-   !> A run ends after this many steps that were cut, none of them longer than so many shortest
-   !! ones, in which no tip grew.
+   !> A run ends after `most_in_vain` cut steps without growth, none of them longer than `headway`
+   !! times the shortest step.
    integer, parameter :: most_in_vain = 300
    real(rk), parameter :: headway = 100.0_rk
 
-   !> What decides about the next step.
+   !> Control of the step length.
    type :: stepper_t
-      real(rk) :: next = 0.0_rk  !< to try [s]
+      real(rk) :: next = 0.0_rk  !< next step to try [s]
       real(rk) :: longest = huge(1.0_rk)  !< [s]
-      real(rk) :: shortest = 0.0_rk  !< below it a step is too short [s]
-      real(rk) :: after_growth = 0.0_rk  !< after an increment of growth [s]
-      real(rk) :: tolerance = 0.0_rk  !< on the error of a step; 0: not judged [-]
-      integer :: in_vain = 0  !< cuts of the present step after which tips still grew too far
-      integer :: onset_cuts = 0  !< of the present step, to where a tip begins to grow
-      integer :: arrival_cuts = 0  !< to where one comes to a joint
+      real(rk) :: shortest = 0.0_rk  !< shorter steps are too short [s]
+      real(rk) :: after_growth = 0.0_rk  !< step after an increment of growth [s]
+      real(rk) :: tolerance = 0.0_rk  !< tolerance of the time error of a step; 0: not checked [-]
+      integer :: in_vain = 0  !< cuts of the present step after which tips still advanced too far
+      integer :: onset_cuts = 0  !< cuts of the present step to an onset of growth
+      integer :: arrival_cuts = 0  !< cuts of the present step to the arrival at a target
       integer :: at_switches = 0  !< cuts of the present step at limits of wells
-      integer :: without_headway = 0  !< such steps since the last one that was longer
-      logical :: was_cut = .false.  !< the present step
+      integer :: without_headway = 0  !< number of such steps since the last longer one
+      logical :: was_cut = .false.  !< the present step has been cut
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
-      real(rk), allocatable :: pressure(:)  !< of the new cells after the last short step [Pa]
+      !> pressure of the new cells after the last short step [Pa]
+      real(rk), allocatable :: pressure(:)
    contains
       procedure :: begin
       procedure :: step_to
@@ -117,7 +117,7 @@ module twolevel_stepping
 
 contains
 
-   !> From the scene's choices.
+   !> Set the control from the time settings of the scene.
    subroutine begin(self, time)
       class(stepper_t), intent(out) :: self
       type(time_t), intent(in) :: time
@@ -130,17 +130,18 @@ contains
       if (self%tolerance > 0.0_rk) self%next = min(self%longest, first_share*time%end)
    end subroutine begin
 
-   !> The step to try, so that none straddles a switch of the wells.
+   !> Length of the step to try; no step straddles a switch of the wells.
    pure real(rk) function step_to(self, left)
       class(stepper_t), intent(in) :: self
       real(rk), intent(in) :: left  !< time to the next switch [s]
 
       step_to = min(self%next, left)
-      ! No tiny step before a switch, and no more step sizes, thus factorizations, than needed.
+      ! No very short step before a switch, and few different lengths, each of which costs a
+      ! factorization.
       if (left < step_to*(1.0_rk + same_value)) step_to = left
    end function step_to
 
-   !> A tried step may be accepted.
+   !> Whether a tried step may be accepted.
    pure logical function takes(self, trial)
       class(stepper_t), intent(in) :: self
       type(trial_t), intent(in) :: trial
@@ -150,7 +151,7 @@ contains
       if (self%tolerance > 0.0_rk) takes = takes .and. trial%time_error <= self%tolerance
    end function takes
 
-   !> A step is not taken: try a shorter one, unless that is too short.
+   !> Cut a rejected step, unless it becomes too short.
    pure subroutine cut(self, trial, dt, is_too_short)
       class(stepper_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
@@ -163,7 +164,8 @@ contains
       if (trial%converged .and. trial%onset < 1.0_rk) then
          call cut_to(max(0.01_rk, trial%onset), 0.5_rk*self%shortest, self%onset_cuts, dt)
       else if (trial%converged .and. trial%switch < 1.0_rk) then
-         ! Pressures that have all but settled pass a limit long before a straight line does.
+         ! A pressure that is nearly constant passes a limit long before linear interpolation
+         ! predicts.
          share = trial%switch
          if (self%at_switches >= 3) share = min(share, 0.5_rk)
          dt = max(0.01_rk, share)*dt
@@ -174,8 +176,8 @@ contains
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
       else if (trial%converged) then
-         ! No tinier than the shortest step is when halves lead to it; to there at once if it does
-         ! not matter how much flows in the step.
+         ! Not below half the shortest step; to this length at once where the volume that flows in
+         ! the step does not matter.
          share = 0.0_rk
          if (.not. trial%was_beyond) share = next_share(self%in_vain)
          dt = max(min(0.5_rk*dt, 0.5_rk*self%shortest), share*dt)
@@ -188,12 +190,12 @@ contains
       self%next = dt
    end subroutine cut
 
-   !> Cut a step to the share of it after which something happens; at the last such cut to where
-   !! that does not matter.
+   !> Cut a step to the share after which an event happens; the last such cut leads to a length
+   !! within which the time of the event does not matter.
    pure subroutine cut_to(share, least, cuts, dt)
       real(rk), intent(in) :: share  !< [-]
       real(rk), intent(in) :: least  !< [s]
-      integer, intent(inout) :: cuts  !< of the step for the same reason
+      integer, intent(inout) :: cuts  !< cuts of the step for the same reason
       real(rk), intent(inout) :: dt  !< [s]
 
       cuts = cuts + 1
@@ -204,15 +206,15 @@ contains
       end if
    end subroutine cut_to
 
-   !> Share of a step that is left by a cut, so that after n of them it is 2**(-2**(n-1)) [-].
+   !> Share of a step that a cut leaves, so that the share after n cuts is 2**(-2**(n-1)) [-].
    pure real(rk) function next_share(n)
-      integer, intent(in) :: n  !< cuts before
-      integer, parameter :: most_cuts = 6  ! there is no shorter step
+      integer, intent(in) :: n  !< number of cuts before
+      integer, parameter :: most_cuts = 6  ! the shortest step is reached
 
       next_share = 2.0_rk**(-2**max(0, min(n, most_cuts) - 1))
    end function next_share
 
-   !> A step of length dt has been accepted.
+   !> Set the next step after an accepted step of length dt.
    pure subroutine step_done(self, trial, dt)
       class(stepper_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
@@ -241,19 +243,19 @@ contains
       self%was_cut = .false.
    end subroutine step_done
 
-   !> Time makes no headway any more.
+   !> Whether steps have remained too short for progress in time.
    pure logical function is_stuck(self)
       class(stepper_t), intent(in) :: self
 
       is_stuck = self%without_headway >= most_in_vain
    end function is_stuck
 
-   !> By how many powers of two a step should be longer than one that has shown this.
+   !> Power of two by which the next step should be longer than a step with this result.
    pure integer function powers(self, trial)
       class(stepper_t), intent(in) :: self
       type(trial_t), intent(in) :: trial
       integer, parameter :: any_number = 60
-      real(rk), parameter :: aim = 0.5_rk  ! share of the tolerance
+      real(rk), parameter :: aim = 0.5_rk  ! share of the tolerance [-]
 
       powers = any_number
       if (self%tolerance > 0.0_rk .and. trial%time_error > 0.0_rk) then
@@ -262,7 +264,7 @@ contains
       if (trial%advance > 0.0_rk) powers = min(powers, lower_power(most/trial%advance))
    end function powers
 
-   !> The largest power of two that is not above a ratio.
+   !> Exponent of the largest power of two that does not exceed a ratio.
    pure integer function lower_power(ratio)
       real(rk), intent(in) :: ratio  !< [-]
       integer, parameter :: largest = 60
@@ -270,10 +272,11 @@ contains
       lower_power = floor(log(max(2.0_rk**(-largest), min(2.0_rk**largest, ratio)))/log(2.0_rk))
    end function lower_power
 
-   !> After a step with growth by increments: are the pressures of the new cells at rest?
+   !> After a step with growth by increments: return to long steps once the pressures of the new
+   !! cells are constant.
    pure subroutine settle(self, pressure)
       class(stepper_t), intent(inout) :: self
-      real(rk), intent(in) :: pressure(:)  !< of the cells that the last growth has added [Pa]
+      real(rk), intent(in) :: pressure(:)  !< pressure of the cells added by the last growth [Pa]
 
       if (.not. self%is_short) return
       if (allocated(self%pressure)) then
@@ -284,7 +287,7 @@ contains
       self%next = merge(self%after_growth, self%longest, self%is_short)
    end subroutine settle
 
-   !> An increment of growth has added fracture cells.
+   !> Take short steps after an increment of growth.
    pure subroutine network_grew(self)
       class(stepper_t), intent(inout) :: self
 
@@ -293,15 +296,15 @@ contains
       if (allocated(self%pressure)) deallocate (self%pressure)
    end subroutine network_grew
 
-   !> Better windows are needed, to try the step again.
+   !> Whether windows are to be refined before the step is tried again.
    pure logical function needs_windows(self)
       class(trial_t), intent(in) :: self
 
-      needs_windows = allocated(self%improvements)
-      if (needs_windows) needs_windows = size(self%improvements) > 0
+      needs_windows = allocated(self%refinements)
+      if (needs_windows) needs_windows = size(self%refinements) > 0
    end function needs_windows
 
-   !> Why a step was not taken.
+   !> Reason of a cut, as text.
    pure function why_cut(self) result(words)
       class(trial_t), intent(in) :: self
       character(len=:), allocatable :: words

@@ -9,12 +9,12 @@ module twolevel_steps
    use coarse_state, only: step_report_t
    use report_rows, only: event_step_cut, event_unstable
    use report_limits, only: limit_time_error
-   use twolevel_doubt, only: improve_windows
+   use twolevel_refinement, only: refine_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_notes, only: notes_t
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: improvement_t, stepper_t, trial_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_stepping, only: refinement_t, stepper_t, trial_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
    implicit none(type, external)
@@ -22,16 +22,16 @@ module twolevel_steps
 
    public :: stepping_levels_t
 
-   !> Both levels, the last step, and how the next one is chosen.
+   !> Both levels with the control of the time steps.
    type, abstract, extends(two_levels_t) :: stepping_levels_t
-      logical :: is_after_switch = .false.  !< of a well: the last step
-      logical :: ends_at_switch = .false.  !< the last step
+      logical :: is_after_switch = .false.  !< the last step began at a switch of a well
+      logical :: ends_at_switch = .false.  !< the last step ended at a switch of a well
       logical :: is_unstable = .false.  !< tips grew without equilibrium in the last step
-      real(rk) :: dt = 0.0_rk  !< of the last step [s]
-      type(step_report_t) :: report  !< of it
+      real(rk) :: dt = 0.0_rk  !< length of the last step [s]
+      type(step_report_t) :: report  !< report of the last step
       type(stepper_t) :: stepper
-      character(len=:), allocatable :: why_cut  !< the last step that was
-      type(notes_t) :: notes  !< of growth in equilibrium
+      character(len=:), allocatable :: why_cut  !< reason of the last cut
+      type(notes_t) :: notes  !< event log of growth in equilibrium
    contains
       procedure :: take_step
       procedure :: is_equilibrium
@@ -40,17 +40,17 @@ module twolevel_steps
 
 contains
 
-   !> Tips grow in equilibrium, else by the law of advances at the ends of steps.
+   !> Whether tips grow in equilibrium; else by the growth law at the ends of steps.
    pure logical function is_equilibrium(self)
       class(stepping_levels_t), intent(in) :: self
 
       is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
    end function is_equilibrium
 
-   !> One accepted step from the remembered state, cut as often as it takes. Where tips find no
-   !! equilibrium in a step that is short beside the time since the wells were switched, or in the
-   !! shortest one, in which errors in time are not judged either, growth is unstable: nothing but
-   !! that happens, until it arrests.
+   !> Take one step from the stored state, cut as often as necessary. Growth is unstable where tips
+   !! find no equilibrium in a step that is short compared with the time since the wells were
+   !! switched, or in the shortest step, whose time error is not checked: then the step consists of
+   !! this growth alone, until its arrest.
    subroutine take_step(self, timers, error)
       class(stepping_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -77,7 +77,7 @@ contains
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
          if (trial%needs_windows()) then
-            call try_better_windows(self, trial%improvements, timers, error)
+            call try_better_windows(self, trial%refinements, timers, error)
             if (allocated(error)) return
             cycle
          end if
@@ -101,7 +101,7 @@ contains
       if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
    end subroutine take_step
 
-   !> What a user may do about a step whose equations are not solved however short it is.
+   !> Advice for the user where the equations are not solved in the shortest step.
    pure function way_out(trial) result(words)
       type(trial_t), intent(in) :: trial
       character(len=:), allocatable :: words
@@ -111,7 +111,7 @@ contains
          ": fluid or sides may act faster; &time smallest_factor allows shorter steps"
    end function way_out
 
-   !> The present step is so short that it does not matter when in it tips jump.
+   !> Whether the present step is so short that the time of a jump within it does not matter.
    pure logical function is_moment(self)
       class(stepping_levels_t), intent(in) :: self
 
@@ -120,23 +120,23 @@ contains
       end associate
    end function is_moment
 
-   !> The equations are solved and tips in equilibrium, whatever the error in time.
+   !> Whether the equations are solved with the tips in equilibrium, whatever the time error.
    pure logical function solves(trial)
       type(trial_t), intent(in) :: trial
 
       solves = trial%converged .and. .not. trial%goes_too_far
    end function solves
 
-   !> Windows become better ones in the state that the step begins from. Onsets are looked for from
-   !! what tips have there, and errors known from there; before the first step it has no tractions.
-   subroutine try_better_windows(self, improvements, timers, error)
+   !> Refine windows and evaluate the tips again in the state at the start of the step, from which
+   !! onsets are interpolated; before the first step this state has no tractions.
+   subroutine try_better_windows(self, refinements, timers, error)
       class(stepping_levels_t), intent(inout) :: self
-      type(improvement_t), intent(in) :: improvements(:)
+      type(refinement_t), intent(in) :: refinements(:)
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
       call self%put_back()
-      call improve_windows(self, improvements)
+      call refine_windows(self, refinements)
       if (allocated(self%now%coarse%tractions)) then
          call self%evaluate(timers, error)
          if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
@@ -145,7 +145,7 @@ contains
       call self%remember()
    end subroutine try_better_windows
 
-   !> Try a step of the present length. The last try is taken if its equations are solved.
+   !> Try a step of the present length. The last try is accepted if its equations are solved.
    subroutine try_length(self, is_last, may_jump, trial, timers, error)
       class(stepping_levels_t), intent(inout) :: self
       logical, intent(in) :: is_last, may_jump
@@ -171,7 +171,7 @@ contains
       end if
    end subroutine try_length
 
-   !> A tried step was not taken.
+   !> Cut a rejected step.
    subroutine cut_step(self, trial, is_too_short)
       class(stepping_levels_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
@@ -185,7 +185,7 @@ contains
                                     //brief_text(self%dt, 4)//" s: "//self%why_cut)
    end subroutine cut_step
 
-   !> A tried step is taken.
+   !> Accept a tried step.
    subroutine accept_step(self, trial, is_unstable)
       class(stepping_levels_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
@@ -198,23 +198,24 @@ contains
       self%is_unstable = is_unstable
       self%tip%advance = 0.0_rk
       if (self%is_equilibrium()) then
-         ! Nor does the speed of tips in a step in which cracks join, or without equilibrium.
+         ! The speed of the tips does not apply to the next step if cracks have joined, or without
+         ! equilibrium.
          call accept_equilibrium(self, merge(0.0_rk, self%dt, is_unstable .or. trial%has_joined))
-         call self%notes%note_competition(self%tip, self%now%rivals, self%increments(), &
+         call self%notes%note_competition(self%tip, self%now%interaction, self%increments(), &
                                           self%now%coarse%time, self%chronicle)
       end if
       call self%stepper%step_done(trial, self%dt)
       call self%now%trend%accept(self%before, self%now%coarse, self%dt)
-      ! The rates of a step in which cracks have joined mean nothing for the next.
+      ! The rates of a step in which cracks have joined do not apply to the next step.
       if (trial%has_joined) call self%follow_trend(at_rest=.false.)
       if (.not. is_unstable) return
       call self%chronicle%add_event(self%now%coarse%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")
-      ! The rates of such a step mean nothing for the next.
+      ! The rates of unstable growth do not apply to the next step.
       call self%follow_trend(at_rest=.false.)
    end subroutine accept_step
 
-   !> The time of the last good state.
+   !> Time of the last accepted state, as text.
    pure function last_state(self) result(words)
       class(stepping_levels_t), intent(in) :: self
       character(len=:), allocatable :: words

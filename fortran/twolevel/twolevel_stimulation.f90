@@ -16,7 +16,7 @@ module twolevel_stimulation
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: history_row_t
    use scene_regime, only: dimensionless_leakoff, dimensionless_toughness
-   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
+   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: end_at_tips, fracture_volume
    use twolevel_state, only: two_levels_t
@@ -26,16 +26,19 @@ module twolevel_stimulation
 
    public :: stimulation_t
 
-   !> Since the start.
+   !> Stimulated faces, and sums since the start.
    type :: stimulation_t
-      type(stretches_t), private :: faces  !< that have moved, of the scene's fractures
-      type(fracture_mesh_t), private :: fracture  !< at the start
-      real(rk), allocatable, private :: jump(:, :)  !< (2, cells) then, normal and tangential [m]
-      real(rk), private :: rock_pressure = 0.0_rk  !< around the wells at the start [Pa]
-      real(rk), private :: fracture_volume = 0.0_rk  !< at the start [m2]
-      real(rk), private :: content = 0.0_rk  !< of the rock at the start [m2]
-      real(rk), private :: compressed = 0.0_rk  !< fluid that pressure added to the fractures [m2]
-      real(rk), private :: rock_outflow = 0.0_rk  !< out of the rock [m2]
+      type(intervals_t), private :: faces  !< faces of the scene's fractures that have moved
+      type(fracture_mesh_t), private :: fracture  !< fracture cells at the start
+      !> (2, cells) jump at the start, normal and tangential [m]
+      real(rk), allocatable, private :: jump(:, :)
+      real(rk), private :: rock_pressure = 0.0_rk  !< pressure around the wells at the start [Pa]
+      !> fluid volume in the fractures at the start [m2]
+      real(rk), private :: fracture_volume = 0.0_rk
+      real(rk), private :: content = 0.0_rk  !< fluid content of the rock at the start [m2]
+      !> fluid added to the fractures by compression of the fluid [m2]
+      real(rk), private :: compressed = 0.0_rk
+      real(rk), private :: rock_outflow = 0.0_rk  !< outflow from the rock [m2]
    contains
       procedure :: begin
       procedure :: follow
@@ -44,7 +47,7 @@ module twolevel_stimulation
 
 contains
 
-   !> The present state is that before the injection.
+   !> Store the present state as that before the injection.
    subroutine begin(self, problem, state)
       class(stimulation_t), intent(out) :: self
       type(coarse_problem_t), intent(in) :: problem
@@ -59,11 +62,11 @@ contains
       self%rock_pressure = pressure_around_wells(problem, state)
    end subroutine begin
 
-   !> A step that has been accepted.
+   !> Update with an accepted step.
    subroutine follow(self, levels, compressed, rock_outflow)
       class(stimulation_t), intent(inout) :: self
       class(two_levels_t), intent(in) :: levels
-      real(rk), intent(in) :: compressed, rock_outflow  !< fluid of the step [m2]
+      real(rk), intent(in) :: compressed, rock_outflow  !< fluid volumes of the step [m2]
       real(rk), allocatable :: jump(:, :)
       real(rk) :: whole
       integer(ik) :: i
@@ -83,13 +86,13 @@ contains
       end associate
    end subroutine follow
 
-   !> A cell's faces have moved since the start by as much as counts.
+   !> Whether the faces of a cell have moved by more than `stimulated_jump` since the start.
    pure logical function has_moved(self, levels, f, s, jump)
       type(stimulation_t), intent(in) :: self
       class(two_levels_t), intent(in) :: levels
       integer(ik), intent(in) :: f  !< fracture
       real(rk), intent(in) :: s(2)  !< arc lengths of the cell's ends [m]
-      real(rk), intent(in) :: jump(2)  !< now [m]
+      real(rk), intent(in) :: jump(2)  !< present jump [m]
       integer(ik) :: i
 
       has_moved = .false.
@@ -104,7 +107,7 @@ contains
       end associate
    end function has_moved
 
-   !> Into a row of history.csv.
+   !> Fill in the columns of a row of history.csv.
    pure subroutine describe(self, levels, row)
       class(stimulation_t), intent(in) :: self
       class(two_levels_t), intent(in) :: levels
@@ -152,7 +155,7 @@ contains
       row%connected_stimulated = sum(length, mask=is_connected .and. is_stimulated)
    end subroutine describe
 
-   !> A place of a fracture is stimulated: it has moved, or is new.
+   !> Whether a point of a fracture is stimulated: its faces have moved, or are new.
    pure logical function counts(self, levels, f, s)
       type(stimulation_t), intent(in) :: self
       class(two_levels_t), intent(in) :: levels
@@ -162,10 +165,10 @@ contains
       counts = s < 0.0_rk .or. s > fracture_length(levels%start, f) .or. self%faces%covers(f, s)
    end function counts
 
-   !> The cells that wells feed, or that reach joints that these feed.
+   !> Whether each cell is supplied by wells, directly or through a joint.
    pure function fed_cells(problem, fracture) result(is_fed)
       type(coarse_problem_t), intent(in) :: problem
-      type(fracture_mesh_t), intent(in) :: fracture  !< cells end where tips are
+      type(fracture_mesh_t), intent(in) :: fracture  !< the last cells end at the tips
       logical, allocatable :: is_fed(:)
       integer(ik) :: j
 
@@ -184,7 +187,7 @@ contains
       jump = 0.5_rk*sum(state%jump, dim=2)
    end function mean_jump
 
-   !> Mean pore pressure of the triangles along the fracture cells that wells feed [Pa].
+   !> Mean pore pressure of the triangles along the fracture cells that wells supply [Pa].
    pure real(rk) function pressure_around_wells(problem, state) result(pressure)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state

@@ -18,24 +18,25 @@ module twolevel_thin_layers
 
    public :: layer_t, layer_at_tip, thin_layer_errors
 
-   !> The rock and its pressure at the end of a fracture.
+   !> Data of the layer at the end of a fracture.
    type :: layer_t
-      real(rk) :: cell = 0.0_rk  !< length of the coarse fracture cell there [m]
+      real(rk) :: cell = 0.0_rk  !< length of the coarse fracture cell at the tip [m]
       real(rk) :: diffusivity = 0.0_rk  !< c [m2/s]
       real(rk) :: drained_tip = 1.0_rk  !< (1 - nu_u)/(1 - nu) [-]
       real(rk) :: eta = 0.0_rk  !< poroelastic stress coefficient [-]
-      real(rk) :: jump = 0.0_rk  !< fluid's pressure beyond the rock's own at the faces [Pa]
+      !> pressure of the fluid minus the rock's own pressure at the faces [Pa]
+      real(rk) :: jump = 0.0_rk
    end type layer_t
 
 contains
 
-   !> The layer at an end of a fracture; without effect if the fracture has no cells.
+   !> Layer at an end of a fracture; without effect if the fracture has no cells.
    pure function layer_at_tip(mesh, rock, state, own_pressure, fracture, end) result(layer)
       type(mesh_t), intent(in) :: mesh  !< coarse
       type(rock_t), intent(in) :: rock
       type(state_t), intent(in) :: state
-      real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) of the rock [Pa]
-      integer(ik), intent(in) :: fracture  !< in the network
+      real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) pressure of the rock [Pa]
+      integer(ik), intent(in) :: fracture  !< number of the fracture in the network
       integer(ik), intent(in) :: end  !< 1: start of the polyline, 2: its end
       type(layer_t) :: layer
       integer(ik) :: at, cell, i, side
@@ -64,12 +65,12 @@ contains
       end associate
    end function layer_at_tip
 
-   !> How far K_I and K_II may be off by what the cells do not resolve [Pa m^1/2].
+   !> Possible errors of K_I and K_II by layers that the cells do not resolve [Pa m^1/2].
    pure function thin_layer_errors(layer, k, is_closed, age) result(errors)
       type(layer_t), intent(in) :: layer
       real(rk), intent(in) :: k(2)  !< K_I, K_II [Pa m^1/2]
-      logical, intent(in) :: is_closed  !< the faces touch at the tip, and K_I is none
-      real(rk), intent(in) :: age  !< of the layer [s]
+      logical, intent(in) :: is_closed  !< the faces touch at the tip: K_I = 0
+      real(rk), intent(in) :: age  !< age of the layer [s]
       real(rk) :: errors(2)
       real(rk) :: factor, unresolved
 

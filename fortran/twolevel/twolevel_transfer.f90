@@ -1,11 +1,11 @@
-!> Transfer from the coarse mesh before growth to the one after it.
+!> Transfer from the coarse mesh before an increment of growth to the mesh after it.
 !!
 !! The fluid content of the rock is transferred by overlapping areas, which conserves the fluid. Old
 !! fracture cells keep their state. Where a joint has divided cells or moved a node between two
-!! cells, jumps are those of the old cells there, linear along each cell, and the fluid is that of
-!! the parts. A new fracture cell is closed, without slip, at the pressure of the cell that it grew
-!! from. Its residual aperture is the roughness of its faces, which conducts fluid but has a
-!! negligible volume ("conserved"), or it is open and filled with fluid from the start
+!! cells, the jumps are those of the old cells at the same place, linear along each cell, and the
+!! fluid is that of the parts. A new fracture cell is closed, without slip, at the pressure of the
+!! nearest old cell. Its residual aperture is the roughness of its faces, which conducts fluid but
+!! has a negligible volume ("conserved"), or it is open and filled with fluid from the start
 !! ("prefilled").
 module twolevel_transfer
    use base_kinds, only: ik, rk
@@ -26,7 +26,7 @@ contains
       type(mesh_t), intent(in) :: mesh_before, mesh
       type(fracture_cells_t), intent(in) :: before
       real(rk), intent(in) :: new_aperture  !< residual aperture of new cells [m]
-      logical, intent(in) :: is_prefilled  !< it holds fluid from the start
+      logical, intent(in) :: is_prefilled  !< new cells contain fluid from the start
       type(fracture_cells_t), intent(out) :: after
       type(overlaps_t) :: overlaps
       integer(ik) :: i, old
@@ -57,11 +57,12 @@ contains
       end do
    end subroutine transfer_cells
 
-   !> The state on the new mesh. `prefilled` is the volume of fluid that new cells bring along [m2].
+   !> Transfer the state to the new mesh. `prefilled` is the fluid volume contained in new cells
+   !! [m2].
    subroutine transfer_state(map, mesh_before, mesh, cells, is_prefilled, before, after, prefilled)
       type(mesh_map_t), intent(in) :: map
       type(mesh_t), intent(in) :: mesh_before, mesh
-      type(fracture_cells_t), intent(in) :: cells  !< those of the new mesh
+      type(fracture_cells_t), intent(in) :: cells  !< cells of the new mesh
       logical, intent(in) :: is_prefilled
       type(state_t), intent(in) :: before
       type(state_t), intent(out) :: after
@@ -110,7 +111,8 @@ contains
       end do
    end subroutine transfer_state
 
-   !> Cells of the rock, by overlapping areas: fluid content as a sum, unknowns as means.
+   !> Transfer the cells of the rock by overlapping areas: fluid content as a sum, unknowns as
+   !! means.
    subroutine transfer_rock(map, mesh_before, mesh, before, after)
       type(mesh_map_t), intent(in) :: map
       type(mesh_t), intent(in) :: mesh_before, mesh
@@ -138,9 +140,9 @@ contains
       end do
    end subroutine transfer_rock
 
-   !> A fracture cell keeps its state.
+   !> Copy the state of a fracture cell.
    pure subroutine keep_cell(old, before, i, after)
-      integer(ik), intent(in) :: old, i  !< its number before and after
+      integer(ik), intent(in) :: old, i  !< number before and after
       type(state_t), intent(in) :: before
       type(state_t), intent(inout) :: after
 
@@ -160,8 +162,8 @@ contains
       after%injection(i) = before%injection(old)
    end subroutine keep_cell
 
-   !> A cell that consists of parts of others. Their fluid goes along with them: the volume, and as
-   !! the pressure is the mean by volume, the mass.
+   !> Transfer the state to a cell that consists of parts of old cells, with their fluid volume and,
+   !! since the pressure is the mean by volume, their mass.
    pure subroutine transfer_parts(overlaps, cell, fracture_before, fracture, before, after)
       type(overlaps_t), intent(in) :: overlaps
       integer(ik), intent(in) :: cell
@@ -213,11 +215,11 @@ contains
       end do
    end subroutine transfer_parts
 
-   !> How much the jumps at the start and the end of a cell count at a place, which are known at the
-   !! third points and linear between [-].
+   !> Weights of the jumps of a cell at a point: the jumps are those at the third points, and linear
+   !! between [-].
    pure function shares(s, ends) result(weight)
       real(rk), intent(in) :: s  !< [m]
-      real(rk), intent(in) :: ends(2)  !< of the cell [m]
+      real(rk), intent(in) :: ends(2)  !< ends of the cell [m]
       real(rk) :: weight(2)
       real(rk) :: t
 
@@ -225,7 +227,7 @@ contains
       weight = [1.0_rk - t, t]
    end function shares
 
-   !> The old cell that is nearest to a new one along its fracture.
+   !> Nearest old cell on the fracture of a new one.
    pure integer(ik) function nearest_old(before, after, cell)
       type(fracture_mesh_t), intent(in) :: before, after
       integer(ik), intent(in) :: cell

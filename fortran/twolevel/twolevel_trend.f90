@@ -1,4 +1,4 @@
-!> The rate of change of a state, and the error of a time step.
+!> Rates of change of a state, and the time error of a step.
 !!
 !! Backward Euler with a step h has the error h**2/2 times the second derivative, which follows from
 !! the rate of the step and the rate of the step before, of length h_b: the error of each step is
@@ -15,20 +15,21 @@ module twolevel_trend
 
    public :: trend_t
 
-   !> Ranges are taken to be at least this share of what the loads would make [-].
+   !> Least range of a quantity, over the range that the loads would cause [-].
    real(rk), parameter :: least = 1.0e-2_rk
 
-   !> Rates of the last accepted step, of length `dt`; false where the rate is not known.
+   !> Rates of the last accepted step, of length `dt`, and ranges of the quantities.
    type :: trend_t
       real(rk) :: dt = 0.0_rk  !< [s]
-      real(rk), allocatable :: rock(:)  !< (cells) of the pressure [Pa/s]
-      real(rk), allocatable :: fracture(:)  !< (fracture cells) of the pressure [Pa/s]
-      real(rk), allocatable :: jump(:, :)  !< (2, fracture cells) mean opening, slip [m/s]
+      real(rk), allocatable :: rock(:)  !< (cells) rate of the pressure [Pa/s]
+      real(rk), allocatable :: fracture(:)  !< (fracture cells) rate of the pressure [Pa/s]
+      !> (2, fracture cells) rates of mean opening and slip [m/s]
+      real(rk), allocatable :: jump(:, :)
       logical, allocatable :: knows_rock(:), knows_fracture(:)
       real(rk) :: pressure(2) = 0.0_rk  !< lowest and highest so far [Pa]
       real(rk) :: jumps(2) = 0.0_rk  !< lowest and highest so far [m]
-      real(rk) :: least_pressure = 0.0_rk  !< that ranges are taken for at least [Pa]
-      real(rk) :: least_jump = 0.0_rk  !< [m]
+      real(rk) :: least_pressure = 0.0_rk  !< least range of the pressure [Pa]
+      real(rk) :: least_jump = 0.0_rk  !< least range of the jumps [m]
    contains
       procedure :: begin
       procedure :: is_known
@@ -41,14 +42,14 @@ module twolevel_trend
 
 contains
 
-   !> A state of rest, or one of which no rate is known.
+   !> Begin with zero rates in a state of rest, or without known rates.
    subroutine begin(self, state, at_rest, pressure_scale, stiffness, length)
       class(trend_t), intent(out) :: self
       type(state_t), intent(in) :: state
-      logical, intent(in) :: at_rest  !< else the load acts from the first step on
-      real(rk), intent(in) :: pressure_scale  !< of the loads [Pa]
-      real(rk), intent(in) :: stiffness  !< of the rock [Pa]
-      real(rk), intent(in) :: length  !< of the fractures [m]
+      logical, intent(in) :: at_rest  !< false: the load acts from the first step on
+      real(rk), intent(in) :: pressure_scale  !< pressure of the loads [Pa]
+      real(rk), intent(in) :: stiffness  !< Young's modulus of the rock [Pa]
+      real(rk), intent(in) :: length  !< length of the fractures [m]
 
       associate (n => size(state%content), m => size(state%pressure))
          allocate (self%rock(n), self%fracture(m), self%jump(2, m), source=0.0_rk)
@@ -60,14 +61,14 @@ contains
       if (at_rest) call see(self, state)
    end subroutine begin
 
-   !> There has been a step to compare with.
+   !> Whether the rates of a previous step are known.
    pure logical function is_known(self)
       class(trend_t), intent(in) :: self
 
       is_known = self%dt > 0.0_rk
    end function is_known
 
-   !> How much the pressure has risen, from its lowest to its highest value so far [Pa].
+   !> Difference of the highest and the lowest pressure so far [Pa].
    pure real(rk) function pressure_rise(self)
       class(trend_t), intent(in) :: self
 
@@ -75,13 +76,14 @@ contains
       if (self%pressure(2) > self%pressure(1)) pressure_rise = width(self%pressure)
    end function pressure_rise
 
-   !> Error of a step from `before` to `after`, relative to the ranges [-]; 0 where none is known.
+   !> Time error of a step from `before` to `after`, relative to the ranges; 0 where no rate is
+   !! known [-].
    pure real(rk) function step_error(self, before, after, dt, area, length)
       class(trend_t), intent(in) :: self
       type(state_t), intent(in) :: before, after
       real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: area(:)  !< of the cells [m2]
-      real(rk), intent(in) :: length(:)  !< of the fracture cells [m]
+      real(rk), intent(in) :: area(:)  !< areas of the cells [m2]
+      real(rk), intent(in) :: length(:)  !< lengths of the fracture cells [m]
       real(rk) :: error
       type(trend_t) :: seen
       integer(ik) :: n
@@ -103,14 +105,15 @@ contains
       step_error = dt/(dt + self%dt)*step_error
    end function step_error
 
-   !> Error of the fluid that wells give in a step, relative to all since they were switched [-]:
-   !! in a step of length h after one of length h_b it is h/(h + h_b) h times the flow's change.
+   !> Error of the fluid volume of wells in a step, relative to their volumes since the last switch
+   !! [-]: in a step of length h after one of length h_b it is h/(h + h_b) h times the change of the
+   !! flow.
    pure real(rk) function volume_error(self, before, after, given, dt, least)
       class(trend_t), intent(in) :: self
       real(rk), intent(in) :: before(:), after(:)  !< (wells) flow [m2/s]
-      real(rk), intent(in) :: given(:)  !< (wells) before the step [m2]
+      real(rk), intent(in) :: given(:)  !< (wells) volumes before the step [m2]
       real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: least  !< that what they have given is taken for [m2]
+      real(rk), intent(in) :: least  !< least volume of a well [m2]
       real(rk) :: all(size(given)), error(size(given))
 
       error = dt/(dt + self%dt)*dt*abs(after - before)
@@ -119,7 +122,7 @@ contains
       if (any(all > 0.0_rk)) volume_error = maxval(error/all, mask=all > 0.0_rk)
    end function volume_error
 
-   !> A step has been accepted.
+   !> Update rates and ranges after an accepted step.
    pure subroutine accept(self, before, after, dt)
       class(trend_t), intent(inout) :: self
       type(state_t), intent(in) :: before, after
@@ -137,7 +140,7 @@ contains
       call see(self, after)
    end subroutine accept
 
-   !> Carry the rates over to a new mesh; those of its new cells are not known.
+   !> Transfer the rates to a new mesh; those of its new cells are not known.
    pure subroutine transfer(self, map)
       class(trend_t), intent(inout) :: self
       type(mesh_map_t), intent(in) :: map
@@ -157,7 +160,7 @@ contains
       end associate
    end subroutine transfer
 
-   !> Widen the ranges by those of a state.
+   !> Extend the ranges by the values of a state.
    pure subroutine see(self, state)
       class(trend_t), intent(inout) :: self
       type(state_t), intent(in) :: state
@@ -185,7 +188,7 @@ contains
       width = bounds(2) - bounds(1)
    end function width
 
-   !> Mean magnitude of what is known; 0 if nothing is.
+   !> Mean magnitude of the values that count; 0 if none does.
    pure real(rk) function average(values, weight, counts)
       real(rk), intent(in) :: values(:), weight(:)
       logical, intent(in) :: counts(:)
@@ -194,7 +197,7 @@ contains
       if (any(counts)) average = sum(weight*abs(values), mask=counts)/sum(weight, mask=counts)
    end function average
 
-   !> An error in terms of a scale; 0 if there is neither.
+   !> Error relative to a scale; 0 if both are zero.
    pure real(rk) function relative(error, scale)
       real(rk), intent(in) :: error, scale
 

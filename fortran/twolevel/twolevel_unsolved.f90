@@ -13,14 +13,14 @@ module twolevel_unsolved
 
 contains
 
-   !> The reason in a report, in the words of the scene.
+   !> Reason in a report, in the terms of the scene.
    pure function why_unsolved(report, network, fracture, wells, share, rate) result(words)
       type(step_report_t), intent(in) :: report  !< not converged
       type(network_t), intent(in) :: network
       type(fracture_mesh_t), intent(in) :: fracture
       type(injection_t), intent(in) :: wells(:)
       real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) of each well's flow [-]
-      real(rk), intent(in) :: rate(:)  !< (wells) asked for now [m2/s]
+      real(rk), intent(in) :: rate(:)  !< (wells) prescribed rates [m2/s]
       character(len=:), allocatable :: words
       character(len=:), allocatable :: name, place
       integer(ik) :: w
@@ -42,7 +42,7 @@ contains
       end if
    end function why_unsolved
 
-   !> What a fracture is called.
+   !> Name of a fracture, as text.
    pure function name_of(network, number) result(name)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: number
@@ -52,7 +52,7 @@ contains
       if (allocated(network%names)) name = "fracture '"//trim(network%names(number)%text)//"'"
    end function name_of
 
-   !> Where the middle of a cell is.
+   !> Centre of a cell, as text.
    pure function place_of(fracture, cell) result(place)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: cell
@@ -63,7 +63,7 @@ contains
       place = "("//brief_text(middle(1), 4)//", "//brief_text(middle(2), 4)//") m"
    end function place_of
 
-   !> The well that draws most from a cell, or else from its fracture; 0: none does.
+   !> Well with the largest extraction from a cell, or else from its fracture; 0: none.
    pure integer(ik) function drawing_well(fracture, cell, share, rate) result(well)
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: cell

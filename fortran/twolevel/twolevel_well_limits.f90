@@ -3,8 +3,8 @@
 !!
 !! Within a step such a well flows at its rate, or at the rate that its pressure limit allows,
 !! whichever is less (coarse_well_flow). A step in which this changes is tried once more with the
-!! control of the well fixed as before: the quantity that passes its limit then gives the share of
-!! the step at which the control changes.
+!! previous control of the well: the share of the step at which the control changes then follows
+!! from the quantity that passes its limit.
 module twolevel_well_limits
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -22,12 +22,12 @@ module twolevel_well_limits
 
    public :: note_wells, share_before_switch
 
-   !> A step whose end, or all of it but this share, lies beyond the switch straddles nothing [-].
+   !> Share of a step at its start or end within which a switch needs no cut of the step [-].
    real(rk), parameter :: negligible = 0.01_rk
 
 contains
 
-   !> Wells that flow at less than their rate now, (controlled wells).
+   !> (controlled wells) Whether each well is limited by its pressure in the present state.
    pure function are_at_limit(self) result(at_limit)
       class(two_levels_t), intent(in) :: self
       logical :: at_limit(self%problem%model%wells%n_all)
@@ -39,7 +39,8 @@ contains
       end associate
    end function are_at_limit
 
-   !> Those that did before a step of length dt: none in a stage that begins with it.
+   !> (controlled wells) Whether each well was limited before a step of length dt; none at the start
+   !! of a stage.
    pure function were_at_limit(self, dt) result(were)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
@@ -53,13 +54,13 @@ contains
       end associate
    end function were_at_limit
 
-   !> The share of a tried step, from the state before to the present one, after which the first
-   !! well reaches or leaves its limit; 1: none does, or so near to an end of the step, or the step
-   !! is so short beside the time since the wells were switched, that it does not matter.
+   !> Share of a tried step after which the first well reaches or leaves its limit; 1 if none does,
+   !! or if this is near an end of the step, or the step is short compared with the time since the
+   !! wells were switched.
    subroutine share_before_switch(self, dt, punctual, share, timers, error)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: punctual  !< share of that time [-]
+      real(rk), intent(in) :: punctual  !< share of the time since the last switch [-]
       real(rk), intent(out) :: share  !< [-]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
@@ -82,12 +83,12 @@ contains
           punctual*(self%before%time - last_switch(self%scene, self%before%time))) share = 1.0_rk
    end subroutine share_before_switch
 
-   !> A step of length dt is accepted: which wells have begun a stage, and which have come to their
-   !! limits or left them, with its end or in it.
+   !> Report the wells after an accepted step of length dt: stages that have begun, and limits that
+   !! wells have reached or left in the step.
    subroutine note_wells(self, dt, any_changed)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical, intent(out) :: any_changed  !< at a limit
+      logical, intent(out) :: any_changed  !< a well has reached or left a limit
       logical :: at_limit(self%problem%model%wells%n_all)
       character(len=:), allocatable :: words
       integer(ik) :: stage, stage_before, w
@@ -124,10 +125,10 @@ contains
       self%now%at_limit = at_limit
    end subroutine note_wells
 
-   !> What begins with a stage of a well, in words.
+   !> Description of a stage of a well, as text.
    pure function what_begins(well, stage) result(words)
       type(injection_t), intent(in) :: well
-      integer(ik), intent(in) :: stage  !< 0: it is shut
+      integer(ik), intent(in) :: stage  !< 0: the well is shut
       character(len=:), allocatable :: words
 
       words = trim(well%name)//" is shut"
@@ -138,7 +139,8 @@ contains
       if (allocated(well%pressure)) words = words//" "//brief_text(well%pressure(stage), 4)//" Pa"
    end function what_begins
 
-   !> Try the step with one well held as it was, beside the state.
+   !> Find the share of the step after which the control of a well changes: try the step with the
+   !! previous control, on a copy of the state.
    subroutine find_share(self, w, was_at_limit, dt, share, timers, error)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: w  !< controlled well
@@ -163,7 +165,7 @@ contains
                share = part(before%well_rate(w), wells%rate(w), held%well_rate(w))
             else
                share = part(head_at_rate(self, w), wells%pressure(w), held%well_head(w))
-               ! Right after a switch pressures rise as the root of time does.
+               ! Right after a switch pressures rise with the square root of time.
                if (.not. before%time > last_switch(self%scene, before%time)) share = share**2
             end if
          end if
@@ -171,7 +173,7 @@ contains
       end associate
    end subroutine find_share
 
-   !> A well that begins to flow at its rate is at its limit at once, or beyond it.
+   !> Whether a well that begins to flow at its rate is at its limit at once, or beyond it.
    pure logical function is_beyond(self, w)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: w  !< controlled well
@@ -181,8 +183,8 @@ contains
       end associate
    end function is_beyond
 
-   !> The pressure at the head of a well when it has just begun to flow at its rate [Pa]: what it
-   !! loses is there at once, unless the well itself takes the fluid.
+   !> Head pressure of a well that has just begun to flow at its rate: the losses act at once,
+   !! unless the storage of the well takes the fluid [Pa].
    pure real(rk) function head_at_rate(self, w) result(head)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: w  !< controlled well
@@ -197,7 +199,7 @@ contains
       end associate
    end function head_at_rate
 
-   !> How far a value on its way from one to another is when it passes a bound [-].
+   !> Share of a change from one value to another at which a bound is passed [-].
    pure real(rk) function part(from, bound, to)
       real(rk), intent(in) :: from, bound, to  !< [the same unit]
 

@@ -11,22 +11,22 @@ module twolevel_well_rows
    implicit none(type, external)
    private
 
-   public :: well_books_t, well_flows, well_pressures
+   public :: well_results_t, well_flows, well_pressures
 
-   !> Sums and first values, (wells).
-   type :: well_books_t
-      real(rk), allocatable, private :: injected(:)  !< at their heads so far [m2]
-      real(rk), allocatable, private :: first_pressure(:)  !< [Pa]
+   !> (wells) Sums, and values of the first state.
+   type :: well_results_t
+      real(rk), allocatable, private :: injected(:)  !< injected at their heads so far [m2]
+      real(rk), allocatable, private :: first_pressure(:)  !< pressure before the first step [Pa]
    contains
       procedure :: begin
       procedure :: book
-   end type well_books_t
+   end type well_results_t
 
 contains
 
-   !> The state before the first step.
+   !> Begin with the state before the first step.
    subroutine begin(self, scene, problem, state)
-      class(well_books_t), intent(out) :: self
+      class(well_results_t), intent(out) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -38,9 +38,9 @@ contains
       end associate
    end subroutine begin
 
-   !> The state after a step of length dt; dt = 0: there has been none.
+   !> Rows of the state after a step of length dt; dt = 0: before the first step.
    subroutine book(self, scene, problem, state, at_limit, dt, rows)
-      class(well_books_t), intent(inout) :: self
+      class(well_results_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -80,12 +80,12 @@ contains
       end associate
    end subroutine book
 
-   !> What has flowed out of each well into fracture or rock in the step that led to the present
-   !! state [m2/s]; nothing before the first one.
+   !> Flow out of each well into fracture or rock in the step to the present state; 0 before the
+   !! first step [m2/s].
    pure function well_flows(scene, problem, since, state) result(flow)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: since  !< when the step began [s]
+      real(rk), intent(in) :: since  !< start of the step [s]
       type(state_t), intent(in) :: state
       real(rk) :: flow(size(scene%injections))
 
@@ -95,12 +95,12 @@ contains
       if (problem%model%wells%n_all > 0) flow(problem%model%wells%number) = state%well_flow
    end function well_flows
 
-   !> The pressure where each well meets fracture or rock [Pa]; in a fracture that feeds all of its
-   !! cells, their mean.
+   !> Pressure where each well meets fracture or rock; for a well that supplies all cells of a
+   !! fracture, their mean [Pa].
    pure function well_pressures(scene, problem, since, state) result(pressure)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: since  !< when the step began [s]
+      real(rk), intent(in) :: since  !< start of the step [s]
       type(state_t), intent(in) :: state
       real(rk) :: pressure(size(scene%injections))
       real(rk) :: flow(size(pressure))
@@ -114,7 +114,7 @@ contains
       end if
    end function well_pressures
 
-   !> What is an unknown of wells whose rate depends on pressures.
+   !> Fill in the columns that are unknowns, for a well whose rate depends on pressures.
    pure subroutine set_controlled(scene, problem, state, at_limit, w, row)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -137,8 +137,8 @@ contains
       end associate
    end subroutine set_controlled
 
-   !> The pressure where a well meets fracture or rock [Pa]: that of the cells or the joint that it
-   !! feeds, by their shares, and what the flow loses from there to the middle of its cell.
+   !> Pressure where a well meets fracture or rock: that of the cells or the joint that it supplies,
+   !! weighted by its shares, plus the loss of the flow up to the middle of the cell [Pa].
    pure real(rk) function pressure_at(scene, problem, state, w, flow) result(pressure)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -160,7 +160,7 @@ contains
                     + dot_product(problem%joint_share(:, w), state%joint_pressure)
          between = between_cells(scene%injections, problem%share)
          if (.not. between(w)) return
-         ! Not the lengths of the condensed matrix: before the first step there may be none.
+         ! The lengths of the condensed matrix may not exist before the first step.
          pressure = pressure + flow*6.0_rk*problem%model%settings%viscosity &
                     *sum(share**2*(s(2, :) - s(1, :))/state%aperture**3*problem%thickness(state))
       end associate

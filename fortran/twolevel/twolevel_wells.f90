@@ -18,9 +18,9 @@ module twolevel_wells
 
 contains
 
-   !> The share of each well's rate that each fracture cell takes: all of it the cell nearest to the
-   !! well's point, or half of it each of two that are equally near, or every cell of its fracture
-   !! by its length.
+   !> Share of each well's rate in each fracture cell: 1 in the cell nearest to the well's point, or
+   !! one half in each of two cells at the same distance, or in every cell of the fracture by its
+   !! length.
    pure subroutine share_wells(wells, fracture, share)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture
@@ -38,7 +38,7 @@ contains
                share(i, w) = fracture%cell_s(2, i) - fracture%cell_s(1, i)
                distance(i) = norm2(fracture_cell_centre(fracture, i) - [well%x, well%y])
             end do
-            ! Between two cells: else the last bits of the mesh would decide which way fluid goes.
+            ! Between two cells rounding errors of the mesh would select one of them.
             if (well%at_point) share(:, w) = merge(1.0_rk, 0.0_rk, distance &
                                                    <= minval(distance)*(1.0_rk + same_value))
             share(:, w) = share(:, w)/sum(share(:, w))
@@ -46,7 +46,7 @@ contains
       end do
    end subroutine share_wells
 
-   !> Wells whose point is where their fracture meets others feed the joint itself, and no cell.
+   !> Assign wells at an intersection of fractures to the joint itself, and to no cell.
    pure subroutine feed_joints(wells, fracture, joints, share, joint_share)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture
@@ -75,7 +75,7 @@ contains
       end do
    end subroutine feed_joints
 
-   !> Wells that stand between two cells.
+   !> Whether each well lies between two cells.
    pure function between_cells(wells, share) result(between)
       type(injection_t), intent(in) :: wells(:)
       real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
@@ -84,8 +84,9 @@ contains
       between = wells%at_point .and. count(share > 0.0_rk, dim=1) == 2
    end function between_cells
 
-   !> The shares on a new mesh: the wells go on feeding the cells that they fed. Where those have
-   !! been divided, each part gets its share, or that part all of it where the well stands.
+   !> Shares on a new mesh: the wells supply the same cells as before. Where these have been
+   !! divided, each part gets its share, or for a well at a point the part that contains the point
+   !! gets the whole.
    pure function transfer_shares(wells, fracture_before, fracture, before) result(after)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture_before, fracture
@@ -120,8 +121,8 @@ contains
       end do
    end function transfer_shares
 
-   !> Rate of a well in the step that begins at a time; steps do not straddle its stages. That of
-   !! one whose rate depends on pressures is none of these.
+   !> Prescribed rate of a well in the step that begins at a time; steps do not straddle its stages.
+   !! 0 for a well whose rate depends on pressures.
    elemental function rate(well, time, dt) result(q)
       type(injection_t), intent(in) :: well
       real(rk), intent(in) :: time, dt  !< [s]
@@ -134,7 +135,7 @@ contains
       if (stage > 0) q = well%rate(stage)
    end function rate
 
-   !> The wells whose rate depends on pressures: what they feed, and what they are.
+   !> Data of the wells whose rate depends on pressures.
    pure subroutine control_wells(given, share, joint_share, wells)
       type(injection_t), intent(in) :: given(:)
       real(rk), intent(in) :: share(:, :)  !< (fracture cells, given) [-]
@@ -163,7 +164,7 @@ contains
       wells%pressure = wells%rate
    end subroutine control_wells
 
-   !> What these wells are asked for in the step that begins at a time.
+   !> Set the prescribed rates and pressures of these wells in the step that begins at a time.
    pure subroutine ask_wells(given, time, dt, wells)
       type(injection_t), intent(in) :: given(:)
       real(rk), intent(in) :: time, dt  !< [s]
@@ -175,7 +176,7 @@ contains
             stage = well%stage_at(time + 0.5_rk*dt)
             wells%rate(w) = 0.0_rk
             control = control_shut
-            ! What a well holds goes on flowing after its end, as in a stage of rate 0.
+            ! The fluid stored in a well flows on after its end, as in a stage of rate 0.
             if (well%storage > 0.0_rk .and. time + 0.5_rk*dt >= well%end) control = control_rate
             if (stage == 0) cycle
             control = control_pressure
@@ -188,13 +189,13 @@ contains
             if (.not. allocated(well%rate)) cycle
             wells%rate(w) = well%rate(stage)
             control = control_rate
-            ! A stage without a rate has no limit: nothing is driven.
+            ! A stage of rate 0 has no limit: the well drives no flow.
            if (allocated(well%pressure) .and. abs(wells%rate(w)) > 0.0_rk) control = control_limited
          end associate
       end do
    end subroutine ask_wells
 
-   !> Mean pressure of the cells and joints that wells feed; 0 without any [Pa].
+   !> Mean pressure of the cells and joints that wells supply; 0 without any [Pa].
    pure real(rk) function mean_pressure(share, pressure, joint_share, joint_pressure) result(mean)
       real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
       real(rk), intent(in) :: pressure(:)  !< (fracture cells) [Pa]

@@ -1,8 +1,8 @@
 !> A window: a part of the network on a fine mesh, loaded by the coarse level. It is a square around
 !! one tip, or the whole body with all tips.
 !!
-!! The edge takes the coarse displacement, or, where it lies on a side of the body, the conditions
-!! of the scene there (so the whole body takes nothing on its edge). The rock takes the coarse
+!! The edge takes the coarse displacement, or, on a side of the body, the conditions that the scene
+!! prescribes there (so the whole body takes nothing on its edge). The rock takes the coarse
 !! pressure as initial stress, and the fracture faces take the conditions of twolevel_faces.
 module twolevel_window
    use base_errors, only: error_t
@@ -37,43 +37,45 @@ module twolevel_window
 
    public :: window_t
 
-   !> What the mesh of a window was made for, or has followed since.
+   !> Network and tips for which the mesh of a window was made, or to which it has been moved.
    type :: made_for_t
-      type(network_t) :: network  !< that it was made for
-      integer(ik), allocatable :: kept(:)  !< its vertices that the mesh has
-      real(rk), allocatable :: place(:, :)  !< (2, tips) [m]
-      logical, allocatable :: is_free(:)  !< (tips) had not joined anything
-      logical :: is_projected = .false.  !< its place in the coarse mesh is known
+      type(network_t) :: network  !< network for which the mesh was made
+      integer(ik), allocatable :: kept(:)  !< vertices of the network that are in the mesh
+      real(rk), allocatable :: place(:, :)  !< (2, tips) positions of the tips [m]
+      logical, allocatable :: is_free(:)  !< (tips) free crack ends
+      logical :: is_projected = .false.  !< the position in the coarse mesh is known
    end type made_for_t
 
-   !> One window. All of it follows from the scene, the network and the coarse state, and from when
-   !! it was meshed; what it remembers is in its window_history_t.
+   !> One window. Its data follow from the scene, the network and the coarse state, and from the
+   !! time of its meshing; its history is in window_history_t.
    type :: window_t
-      integer(ik), allocatable :: serves(:)  !< the tips that it is for
-      logical :: is_body = .false.  !< as the scene says; a square that has become so large is not
+      integer(ik), allocatable :: serves(:)  !< tips evaluated in the window
+      !> body window; not a square that has become as large as the body
+      logical :: is_body = .false.
       real(rk) :: lower(2) = 0.0_rk, upper(2) = 0.0_rk  !< corners [m]
       real(rk) :: coarser = 1.0_rk  !< its elements along fractures, over what its tips ask for [-]
       real(rk) :: element_size = 0.0_rk  !< at the fractures [m]
       real(rk) :: usual_edge = 0.0_rk  !< as the scene says [m]
       integer :: times_larger = 0  !< than that
       type(mesher_t) :: mesher
-      type(mesher_t) :: as_made  !< the mesh before tips moved in it, if they have
+      type(mesher_t) :: as_made  !< mesh before its tips were moved, if they were
       type(mesh_t) :: mesh
-      type(made_for_t), allocatable :: made  !< unallocated: there is no mesh
-      logical :: has_moved = .false.  !< the mesh is another one than was made
-      logical :: follows_other = .false.  !< which another window has
+      type(made_for_t), allocatable :: made  !< unallocated: no mesh
+      logical :: has_moved = .false.  !< the mesh has been moved since it was made
+      logical :: follows_other = .false.  !< the unmoved mesh is in another window
       type(fine_model_t) :: model
-      integer(ik), allocatable :: at(:)  !< (tips served) numbers in the mesh; 0: is not free
-      !> (tips served) what finds their intensities, as long as the model stays the same
+      integer(ik), allocatable :: at(:)  !< (tips served) numbers in the mesh; 0: not free
+      !> (tips served) interaction integrals, valid as long as the model stays the same
       type(tip_probe_t), allocatable :: probe(:)
       type(fine_loads_t) :: loads
       type(window_sides_t) :: sides
-      !> (2, n_nodes) loads beside those of sides, where these change with time [N/m]
+      !> (2, n_nodes) loads other than those of the sides, where these change with time [N/m]
       real(rk), allocatable :: force_in_situ(:, :)
-      real(rk), allocatable :: pressure_in_situ(:)  !< (fracture cells) if the scene has any [Pa]
-      real(rk), allocatable :: displacement(:, :)  !< of the last solution [m]
+      !> (fracture cells) if the scene has a state in situ [Pa]
+      real(rk), allocatable :: pressure_in_situ(:)
+      real(rk), allocatable :: displacement(:, :)  !< displacement of the last solution [m]
       logical :: undrained = .false.  !< the model's constants are the undrained ones
-      type(window_map_t) :: map  !< where it lies in the coarse mesh
+      type(window_map_t) :: map  !< position in the coarse mesh
       type(face_map_t) :: faces
    contains
       procedure :: build
@@ -93,8 +95,8 @@ module twolevel_window
 
 contains
 
-   !> A window that is to follow the tips, as another one has been made; that keeps its mesh, but
-   !! not its matrix.
+   !> Prepare a window that follows the tips with the mesh of another window, which keeps its mesh,
+   !! but not its matrix.
    subroutine take_plan(self, other)
       class(window_t), intent(inout) :: self
       type(window_t), intent(inout) :: other
@@ -118,9 +120,9 @@ contains
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
-      type(window_tip_t), intent(in) :: tips(:)  !< of the network
-      !> Its intensities are held against those of the whole body, which shows what its elements
-      !! make wrong.
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
+      !> The intensities are compared with those of the whole body, which shows the error of the
+      !! elements.
       logical, intent(in) :: is_beside_body
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
@@ -147,13 +149,13 @@ contains
       call set_up(self, scene, tips, error)
    end subroutine build
 
-   !> Let the nodes of the mesh that was made follow tips that have gone on along the last pieces of
-   !! their paths. The window stays where it is. Where this does not go, it has to be built anew.
+   !> Move the nodes of the original mesh with tips that have advanced along their last segments.
+   !! The window stays at its position. Where this fails, the window has to be built again.
    subroutine follow(self, scene, network, tips, as_made, is_done, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
-      type(window_tip_t), intent(in) :: tips(:)  !< of the network
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
       type(mesher_t), intent(in) :: as_made
       logical, intent(out) :: is_done
       type(error_t), allocatable, intent(out) :: error
@@ -173,11 +175,11 @@ contains
       is_done = .not. allocated(error)
    end subroutine follow
 
-   !> The model and the loads of a new mesh.
+   !> Set up the model and the loads of a new mesh.
    subroutine set_up(self, scene, tips, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(window_tip_t), intent(in) :: tips(:)  !< of the network
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
 
@@ -193,7 +195,7 @@ contains
       call self%sides%add_loads(self%model%mesh, self%loads%force)
    end subroutine set_up
 
-   !> Take what the sides have now, in the course of time.
+   !> Update the time-dependent values of the sides.
    pure subroutine follow_sides(self, scene)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -203,7 +205,8 @@ contains
       call self%sides%add_loads(self%model%mesh, self%loads%force)
    end subroutine follow_sides
 
-   !> The state in situ and the weight. The tractions that hold the one count where nothing is held.
+   !> Set the loads by the state in situ and by weight. The tractions in equilibrium with the stress
+   !! in situ act where no displacement is prescribed.
    pure subroutine load_in_situ(self, scene)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -232,7 +235,8 @@ contains
       edge_length = 2.0_rk**self%times_larger*self%usual_edge
    end function edge_length
 
-   !> The corners: those of the body, or of a square around the tip as far as the body reaches.
+   !> Set the corners: those of the body, or of a square around the tip, cut off at the body's
+   !! sides.
    pure subroutine place(self, scene, network, tips)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -254,7 +258,8 @@ contains
       end associate
    end subroutine place
 
-   !> E' of the rock around a tip of the window's mesh [Pa]; 0: it is not free.
+   !> E' of the rock around a tip of the window's mesh; with tip = 0 (not free) that of the window's
+   !! main rock [Pa].
    pure real(rk) function crack_modulus(self, tip)
       class(window_t), intent(in) :: self
       integer(ik), intent(in) :: tip
@@ -266,16 +271,16 @@ contains
       crack_modulus = frame%rock%crack_modulus()
    end function crack_modulus
 
-   !> It is not the whole body yet.
+   !> Whether the window is smaller than the body.
    pure logical function can_be_larger(self)
       class(window_t), intent(in) :: self
 
       can_be_larger = .not. all(self%sides%on_body)
    end function can_be_larger
 
-   !> Elastic constants: drained, or undrained for the response to a load in which no fluid moves.
-   !! There the pore pressure follows the strain, alpha p = alpha p_0 - alpha^2/S div u, and has the
-   !! tip's own singularity, which no pressure handed down from the coarse level could show.
+   !> Set the elastic constants: drained, or undrained for the response to a load in which no fluid
+   !! moves. In the undrained case the pore pressure follows the strain, alpha p = alpha p_0 -
+   !! alpha^2/S div u, with the singularity of the tip, which the coarse pressure does not contain.
    subroutine set_rock(self, scene, undrained, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -298,7 +303,8 @@ contains
       self%undrained = undrained
    end subroutine set_rock
 
-   !> Find where the window lies in the coarse mesh: to be done again whenever that has changed.
+   !> Find the position of the window in the coarse mesh; required again whenever the coarse mesh
+   !! has changed.
    subroutine project(self, mesher, coarse, values, error)
       class(window_t), intent(inout) :: self
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
@@ -362,7 +368,7 @@ contains
       end do
    end subroutine find_intensities
 
-   !> What finds the intensities of the tips.
+   !> Compute the interaction integrals of the tips.
    subroutine find_probes(self, error)
       class(window_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -377,8 +383,8 @@ contains
       self%probe = probe
    end subroutine find_probes
 
-   !> The window's edge with the coarse level's displacements, quadratic in each of its cells; on
-   !! sides of the body those of the scene, where it gives them. Zero at other nodes.
+   !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on sides
+   !! of the body those that the scene prescribes. Zero at other nodes.
    pure function curved_edge(self, coarse, displacement, gradient) result(edge)
       class(window_t), intent(in) :: self
       type(mesh_t), intent(in) :: coarse
@@ -390,15 +396,17 @@ contains
       call self%sides%take_given(self%model%mesh, edge)
    end function curved_edge
 
-   !> K_I and K_II under the last solution's loads with other displacements on the edge, or another
-   !! pressure in the rock. Nothing is remembered of it.
+   !> K_I and K_II under the loads of the last solution with other displacements on the edge, or
+   !! another pressure in the rock. The window does not change.
    subroutine intensities_with(self, history, k, error, edge, pressure)
       class(window_t), intent(inout) :: self
       type(window_history_t), intent(in) :: history
-      real(rk), intent(inout) :: k(:, :)  !< (2, tips), where the window serves them [Pa m^1/2]
+      real(rk), intent(inout) :: k(:, :)  !< (2, tips) set for the tips served [Pa m^1/2]
       type(error_t), allocatable, intent(out) :: error
-      real(rk), intent(in), optional :: edge(:, :)  !< (2, n_nodes), used where they are given [m]
-      real(rk), intent(in), optional :: pressure(:)  !< (coarse cells) that of the cell around [Pa]
+      !> (2, n_nodes) used where displacements are prescribed [m]
+      real(rk), intent(in), optional :: edge(:, :)
+      !> (coarse cells) pressure, constant in each cell [Pa]
+      real(rk), intent(in), optional :: pressure(:)
       type(fine_loads_t) :: loads
       type(contact_t) :: contact
       type(intensity_t) :: result
@@ -425,7 +433,7 @@ contains
       end do
    end subroutine intensities_with
 
-   !> Points lie in the window, edges included.
+   !> Whether points lie in the window, edges included.
    pure logical function holds(self, points)
       class(window_t), intent(in) :: self
       real(rk), intent(in) :: points(:, :)  !< (2, n) [m]
@@ -434,7 +442,7 @@ contains
               all(maxval(points, dim=2) <= self%upper)
    end function holds
 
-   !> The displacement of the last solution at points of the window.
+   !> Displacement of the last solution at points of the window.
    subroutine displacement_at(self, xy, displacement, error)
       class(window_t), intent(in) :: self
       real(rk), intent(in) :: xy(:, :)  !< (2, n) [m]
@@ -449,7 +457,8 @@ contains
          do i = 1, size(xy, 2, kind=ik)
             associate (nodes => fine%cell_nodes(:, cells(i)), tip => fine%tip_corner(cells(i)))
                lambda = barycentric(fine%xy(:, nodes(:3)), xy(:, i))
-               ! Quarter points: distances from the tip go with the square of the parameter.
+               ! Quarter-point elements: the distance from the tip is proportional to the square of
+               ! the parameter.
                if (tip > 0) then
                   lambda = lambda/sqrt(max(1.0_rk - lambda(tip), tiny(1.0_rk)))
                   lambda(tip) = 1.0_rk - (sum(lambda) - lambda(tip))
@@ -461,7 +470,8 @@ contains
       end associate
    end subroutine displacement_at
 
-   !> Contact on a new mesh: that of the window before, and beyond it what the coarse level has.
+   !> Set the contact on a new mesh: that of the previous mesh, and outside of it that of the coarse
+   !! level.
    subroutine remember_contact(self, state, history)
       class(window_t), intent(in) :: self
       type(state_t), intent(in) :: state
@@ -476,7 +486,7 @@ contains
       history%contact = contact
    end subroutine remember_contact
 
-   !> The matrix that the model has is that of these conditions.
+   !> Whether the model's matrix is that of these conditions.
    pure function same_conditions(model, conditions) result(same)
       type(fine_model_t), intent(in) :: model
       type(face_conditions_t), intent(in) :: conditions

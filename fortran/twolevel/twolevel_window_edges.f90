@@ -1,4 +1,4 @@
-!> Possible edges of a window: elements are of poor quality where an edge passes close to a vertex
+!> Admissible edges of a window: elements are of poor quality where an edge passes close to a vertex
 !! of a fracture, or where a fracture crosses it at a small angle, near a corner or near another
 !! fracture.
 module twolevel_window_edges
@@ -9,18 +9,16 @@ module twolevel_window_edges
 
    public :: clear_edges
 
-   !> Gap between fractures on the edge, over the clearance of vertices from it: elements become
-   !! small there, and the mesher takes about a tenth of this.
+   !> Least gap between fractures on the edge, over the clearance of vertices: smaller gaps lead to
+   !! small elements; the mesher accepts about a tenth of this [-].
    real(rk), parameter :: narrow = 0.1_rk
 
-   !> What crosses an edge that near to a corner, over that gap, crosses it at the corner.
+   !> Distance, over the least gap, within which a crossing counts as at the corner [-].
    real(rk), parameter :: at_it = 1.0e-9_rk
 
 contains
 
-   !> Move edges outwards that pass so near to a vertex of a fracture that no good element fits
-   !! between, or that a fracture crosses at an angle at which none does, or beside a corner, or two
-   !! where they meet.
+   !> Move edges outwards until they are admissible.
    pure subroutine clear_edges(network, clearance, lower, upper)
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: clearance  !< [m]
@@ -29,7 +27,7 @@ contains
       logical :: has_moved
 
       has_moved = .true.
-      do while (has_moved)  ! an edge that moves takes two corners along
+      do while (has_moved)  ! moving an edge moves two corners
          has_moved = .false.
          do axis = 1, 2
             do while (is_in_the_way(network, axis, lower(axis), clearance, lower, upper))
@@ -44,12 +42,12 @@ contains
       end do
    end subroutine clear_edges
 
-   !> An edge cannot be where it is.
+   !> Whether an edge is inadmissible.
    pure logical function is_in_the_way(network, axis, edge, clearance, lower, upper)
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: axis  !< across the edge
-      real(rk), intent(in) :: edge  !< where it is along that [m]
-      real(rk), intent(in) :: clearance  !< from vertices [m]
+      integer(ik), intent(in) :: axis  !< axis normal to the edge
+      real(rk), intent(in) :: edge  !< coordinate of the edge along this axis [m]
+      real(rk), intent(in) :: clearance  !< clearance from vertices [m]
       real(rk), intent(in) :: lower(2), upper(2)  !< corners [m]
 
       is_in_the_way = any(abs(network%xy(axis, :) - edge) < clearance)
@@ -62,15 +60,15 @@ contains
       end if
    end function is_in_the_way
 
-   !> A fracture crosses an edge so near to a corner, or to another fracture that does, that no
-   !! element fits between. Those that cross it within a window's width beyond the corners count:
-   !! the edge may become longer.
+   !> Whether a fracture crosses an edge so near to a corner, or to another crossing, that no
+   !! element of good quality fits between. Crossings within a window's width beyond the corners
+   !! count: the edge may become longer.
    pure logical function is_cut_closely(network, axis, edge, gap, from, to)
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: axis  !< across the edge
-      real(rk), intent(in) :: edge  !< where it is along that [m]
-      real(rk), intent(in) :: gap  !< between the places [m]
-      real(rk), intent(in) :: from, to  !< the corners along it [m]
+      integer(ik), intent(in) :: axis  !< axis normal to the edge
+      real(rk), intent(in) :: edge  !< coordinate of the edge along this axis [m]
+      real(rk), intent(in) :: gap  !< least gap between crossings [m]
+      real(rk), intent(in) :: from, to  !< corners along the edge [m]
       real(rk) :: place(size(network%xy, 2)), share
       integer(ik) :: f, i, n, v
 
@@ -93,7 +91,7 @@ contains
 
    contains
 
-      !> Near a corner, but not at it: there is nothing between then.
+      !> Near a corner, but not at the corner.
       elemental logical function is_beside(distance)
          real(rk), intent(in) :: distance  !< [m]
 
@@ -102,11 +100,11 @@ contains
 
    end function is_cut_closely
 
-   !> A segment of a fracture crosses an edge's line at a small angle.
+   !> Whether a segment of a fracture crosses the line of an edge at a small angle.
    pure logical function is_cut_aslant(network, axis, edge)
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: axis  !< across the edge
-      real(rk), intent(in) :: edge  !< where it is along that [m]
+      integer(ik), intent(in) :: axis  !< axis normal to the edge
+      real(rk), intent(in) :: edge  !< coordinate of the edge along this axis [m]
       real(rk), parameter :: shallow = tan(5.0_rk*pi/180.0_rk)
       integer(ik) :: f, v
 

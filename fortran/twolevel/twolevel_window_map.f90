@@ -12,10 +12,11 @@ module twolevel_window_map
 
    public :: window_map_t
 
-   !> Only vertices and the edge are looked up.
+   !> Map for the vertices and the nodes on the edge.
    type :: window_map_t
-      integer(ik), allocatable :: coarse_cell(:)  !< (n_nodes) around each of them; 0 elsewhere
-      real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) of that cell's nodes
+      !> (n_nodes) coarse cell that contains the node; 0 at other nodes
+      integer(ik), allocatable :: coarse_cell(:)
+      real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) weights of the nodes of the coarse cell
    contains
       procedure :: find
       procedure :: interpolate
@@ -24,24 +25,25 @@ module twolevel_window_map
 
 contains
 
-   !> Look them up: to be done again whenever one of the two meshes has changed.
+   !> Locate the nodes; required again whenever one of the two meshes has changed.
    subroutine find(self, fine, mesher, coarse, error)
       class(window_map_t), intent(inout) :: self
       type(fine_mesh_t), intent(in) :: fine
-      type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
+      type(mesher_t), intent(in) :: mesher  !< mesher of the coarse mesh
       type(mesh_t), intent(in) :: coarse
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: inwards = 1.0e-4_rk  !< share of the way to the element's centre
+      !> share of the distance to the element's centre [-]
+      real(rk), parameter :: inwards = 1.0e-4_rk
       real(rk), allocatable :: inside(:, :)
       real(rk) :: centre(2), corners(2, 3)
-      integer(ik), allocatable :: asked(:), cells(:)
+      integer(ik), allocatable :: located(:), cells(:)
       integer(ik) :: c, k, v
 
       if (allocated(self%weight)) deallocate (self%weight, self%coarse_cell)
       allocate (inside(2, fine%n_nodes))
       allocate (self%weight(3, fine%n_nodes), source=0.0_rk)
       allocate (self%coarse_cell(fine%n_nodes), source=0_ik)
-      ! A point on a fracture belongs to the side of the element that it is looked at from.
+      ! A point on a fracture belongs to the side on which its element lies.
       do c = 1, fine%n_cells
          corners = fine%xy(:, fine%cell_nodes(:3, c))
          centre = sum(corners, dim=2)/3.0_rk
@@ -50,19 +52,19 @@ contains
             inside(:, v) = (1.0_rk - inwards)*fine%xy(:, v) + inwards*centre
          end do
       end do
-      asked = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
+      located = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
                                                v=1, fine%n_nodes)])
-      allocate (cells(size(asked)))
-      call locate(mesher, inside(:, asked), cells, error)
+      allocate (cells(size(located)))
+      call locate(mesher, inside(:, located), cells, error)
       if (allocated(error)) return
-      self%coarse_cell(asked) = cells
-      do k = 1, size(asked, kind=ik)
+      self%coarse_cell(located) = cells
+      do k = 1, size(located, kind=ik)
          corners = coarse%xy(:, coarse%cell_nodes(:, cells(k)))
-         self%weight(:, asked(k)) = barycentric(corners, fine%xy(:, asked(k)))
+         self%weight(:, located(k)) = barycentric(corners, fine%xy(:, located(k)))
       end do
    end subroutine find
 
-   !> What is linear between the coarse nodes, at the first nodes of the window.
+   !> Interpolate values at the coarse nodes linearly to the first nodes of the window.
    pure subroutine interpolate(self, coarse, nodal, values)
       class(window_map_t), intent(in) :: self
       type(mesh_t), intent(in) :: coarse
@@ -77,8 +79,8 @@ contains
       end do
    end subroutine interpolate
 
-   !> The window's edge with displacements that are quadratic in each coarse cell: linear between
-   !! the nodes, and half of what the gradients there add. Zero at other nodes.
+   !> Displacements of the window's edge, quadratic in each coarse cell: linear interpolation, plus
+   !! half of the terms with the gradients at the nodes. Zero at other nodes.
    pure function curved_edge(self, fine, coarse, displacement, gradient) result(edge)
       class(window_map_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine

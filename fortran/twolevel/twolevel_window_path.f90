@@ -14,18 +14,20 @@ module twolevel_window_path
 
    public :: restore_arc_lengths, straighten_far, without
 
-   !> A vertex that is left out is no farther from the line than this share of the elements there.
+   !> Largest distance of a removed vertex from the straight line, over the size of the elements
+   !! there [-].
    real(rk), parameter :: straight = 0.005_rk
 
 contains
 
-   !> The network without the vertices that the window does not need.
+   !> Remove the vertices that the window does not need.
    pure subroutine straighten_far(network, spec, is_body, simple, kept)
       type(network_t), intent(in) :: network
-      type(mesh_spec_t), intent(in) :: spec  !< its foci and sizes
+      type(mesh_spec_t), intent(in) :: spec  !< with its foci and sizes
       logical, intent(in) :: is_body  !< the window has no edge that fractures cross
       type(network_t), intent(out) :: simple
-      integer(ik), allocatable, intent(out) :: kept(:)  !< (vertices of simple) those of the network
+      !> (vertices of simple) their numbers in the network
+      integer(ik), allocatable, intent(out) :: kept(:)
       logical :: keeps(size(network%xy, 2))
       integer(ik) :: f, last, v
 
@@ -41,10 +43,10 @@ contains
       simple = without(network, kept)
    end subroutine straighten_far
 
-   !> A network of which only some vertices are kept.
+   !> Network with a selection of its vertices.
    pure function without(network, kept) result(simple)
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: kept(:)  !< its vertices that stay, in ascending order
+      integer(ik), intent(in) :: kept(:)  !< vertices to keep, in ascending order
       type(network_t) :: simple
       integer(ik) :: f
 
@@ -55,7 +57,7 @@ contains
       end do
    end function without
 
-   !> A straight line from the vertex `last` to the one after v would do.
+   !> Whether a straight line from the vertex `last` to the one after v is accurate enough.
    pure logical function is_dispensable(network, spec, is_body, last, v)
       type(network_t), intent(in) :: network
       type(mesh_spec_t), intent(in) :: spec
@@ -82,7 +84,7 @@ contains
       is_dispensable = .not. meets_other(network, last, v, chord, 2.0_rk*straight*element)
    end function is_dispensable
 
-   !> A line crosses the edge of the window, or comes near to it.
+   !> Whether a line crosses the edge of the window, or comes near it.
    pure logical function crosses_edge(spec, line, near)
       type(mesh_spec_t), intent(in) :: spec
       real(rk), intent(in) :: line(2, 2)  !< ends [m]
@@ -98,10 +100,11 @@ contains
                             any(minval(line, dim=2) > upper + near))
    end function crosses_edge
 
-   !> Another fracture, or another part of the same one, comes near to a line, or crosses it.
+   !> Whether another fracture, or another part of the same one, crosses a line or comes near it.
    pure logical function meets_other(network, last, dropped, line, near)
       type(network_t), intent(in) :: network
-      integer(ik), intent(in) :: last, dropped  !< the line is from `last` to after this vertex
+      !> the line is from `last` to the vertex after `dropped`
+      integer(ik), intent(in) :: last, dropped
       real(rk), intent(in) :: line(2, 2)  !< ends [m]
       real(rk), intent(in) :: near  !< [m]
       real(rk) :: lower(2), other(2, 2), upper(2)
@@ -112,7 +115,7 @@ contains
       upper = maxval(line, dim=2) + near
       do f = 1, size(network%first, kind=ik) - 1
          do v = network%first(f), network%first(f + 1) - 2
-            ! Segments that the line replaces, or that go on from it
+            ! Segments that the line replaces, and their neighbours
             if (v >= last - 1 .and. v <= dropped + 1) cycle
             other = network%xy(:, v:v + 1)
             if (any(maxval(other, dim=2) < lower .or. minval(other, dim=2) > upper)) cycle
@@ -125,11 +128,11 @@ contains
       meets_other = .false.
    end function meets_other
 
-   !> Give the fracture cells the arc lengths that the whole network has at their ends.
+   !> Set the arc lengths of the fracture cells to those of the whole network.
    pure subroutine restore_arc_lengths(network, simple, kept, fractures)
       type(network_t), intent(in) :: network, simple
-      integer(ik), intent(in) :: kept(:)  !< as straighten_far gives it
-      type(fracture_mesh_t), intent(inout) :: fractures  !< of the mesh of `simple`
+      integer(ik), intent(in) :: kept(:)  !< as from straighten_far
+      type(fracture_mesh_t), intent(inout) :: fractures  !< in the mesh of `simple`
       real(rk) :: whole(size(network%xy, 2)), short(size(simple%xy, 2))
       integer(ik) :: cell, end, v
 
@@ -150,7 +153,7 @@ contains
       end do
    end subroutine restore_arc_lengths
 
-   !> Of all vertices [m].
+   !> Arc lengths of all vertices [m].
    pure function arc_lengths(network) result(s)
       type(network_t), intent(in) :: network
       real(rk) :: s(size(network%xy, 2))

@@ -13,12 +13,12 @@ module twolevel_window_sides
 
    public :: window_sides, window_sides_t
 
-   !> The sides of a window, by their numbers in its mesh.
+   !> Sides of a window, by their numbers in its mesh.
    type :: window_sides_t
       type(boundary_side_t), allocatable :: of(:)
-      logical, allocatable :: on_body(:)  !< else the coarse level gives the displacement
-      type(restraint_t), allocatable :: restraints(:)  !< of the whole body; none in a part of it
-      type(point_load_t), allocatable :: point_loads(:)  !< likewise
+      logical, allocatable :: on_body(:)  !< false: the coarse level prescribes the displacement
+      type(restraint_t), allocatable :: restraints(:)  !< for the whole body; none in a part of it
+      type(point_load_t), allocatable :: point_loads(:)  !< for the whole body; none in a part of it
    contains
       procedure :: change
       procedure :: held_edge
@@ -29,7 +29,7 @@ module twolevel_window_sides
 
 contains
 
-   !> The sides of the whole body, or of a rectangle in it.
+   !> Sides of the whole body, or of a rectangle in it.
    pure function window_sides(scene, is_body, lower, upper) result(sides)
       type(scene_t), intent(in) :: scene
       logical, intent(in) :: is_body
@@ -52,7 +52,7 @@ contains
       end if
    end function window_sides
 
-   !> Take what the scene prescribes now.
+   !> Update the conditions from the scene.
    pure subroutine change(self, scene)
       class(window_sides_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -60,8 +60,8 @@ contains
       self%of = sides_of_scene(scene)
    end subroutine change
 
-   !> Which displacements are given on the window's edge: all, and those of the scene where it lies
-   !! on a side of the body.
+   !> Displacements that are prescribed on the window's edge: all, or those of the scene where the
+   !! edge lies on a side of the body.
    pure function held_edge(self, fine) result(boundary)
       class(window_sides_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
@@ -89,7 +89,8 @@ contains
       end do
    end function held_edge
 
-   !> Displacements that the scene gives on sides of the body, in the place of the coarse level's.
+   !> Replace the coarse displacements by those of the scene where it prescribes displacements on
+   !! sides of the body.
    pure subroutine take_given(self, fine, edge)
       class(window_sides_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
@@ -115,7 +116,7 @@ contains
       end do
    end subroutine take_given
 
-   !> Add the tractions and forces that the scene gives.
+   !> Add the tractions and forces that the scene prescribes.
    pure subroutine add_loads(self, fine, force)
       class(window_sides_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine
@@ -137,7 +138,7 @@ contains
       end do
    end subroutine add_loads
 
-   !> Add the springs that sides of the body stand on.
+   !> Add the springs on sides of the body.
    pure subroutine add_springs(self, fine, stiffness)
       class(window_sides_t), intent(in) :: self
       type(fine_mesh_t), intent(in) :: fine

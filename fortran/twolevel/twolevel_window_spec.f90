@@ -1,4 +1,4 @@
-!> Mesh sizes and rock of a window: elements as small as its tips require, larger away from the
+!> Element sizes and rock of a window: elements as small as its tips require, larger away from the
 !! tips.
 module twolevel_window_spec
    use base_errors, only: error_t
@@ -16,25 +16,25 @@ module twolevel_window_spec
 
    public :: constants_of_rock, focus, grow_away, tip_place, window_spec
 
-   !> Size of elements where fractures meet, over that along them: the stress has a weak singularity
-   !! there, which pollutes K of tips nearby with an error of first order.
+   !> Size of elements at intersections of fractures, over that along fractures: the stress has a
+   !! weak singularity there, which causes a first-order error of K of tips nearby [-].
    real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
 
-   !> Growth of element size with distance from the fractures, on average
+   !> Growth of element size with distance from the fractures, on average [-]
    real(rk), parameter :: grading = 0.4_rk
 
-   !> Along fractures elements grow by so much with the distance from the tips that the window is
-   !! for, up to the size of coarse fracture cells, between which nothing is known of the fluid's
-   !! pressure; and where the whole body shows what that makes wrong (twolevel_trust), by so much
-   !! around their rosettes, beyond three radii, which the integrals need.
+   !> Growth of element size along fractures with the distance from the tips served, up to the size
+   !! of coarse fracture cells, below which the pressure of the fluid is not resolved; and, where
+   !! the errors are compared with the whole body (twolevel_coarse_errors), growth around the
+   !! rosettes beyond three radii, the range of the interaction integrals [-].
    real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
 
 contains
 
-   !> A square with elements of one size along fractures.
+   !> Specification of a rectangle with elements of one size along fractures.
    pure function window_spec(lower, upper, element_size, scene) result(spec)
       real(rk), intent(in) :: lower(2), upper(2)  !< corners [m]
-      real(rk), intent(in) :: element_size  !< at the fractures [m]
+      real(rk), intent(in) :: element_size  !< element size at the fractures [m]
       type(scene_t), intent(in) :: scene
       type(mesh_spec_t) :: spec
 
@@ -51,19 +51,20 @@ contains
       spec%joint_size = joint_share*element_size
    end function window_spec
 
-   !> Elements grow around the rosettes.
+   !> Let elements grow around the rosettes.
    pure subroutine grow_away(spec)
       type(mesh_spec_t), intent(inout) :: spec
 
       spec%ring_slope = around
    end subroutine grow_away
 
-   !> Elements and rosettes as the tips ask for that the window is for, and rock of its own.
+   !> Set elements and rosettes as the tips served require, and the outlines of regions of other
+   !! rock.
    subroutine focus(scene, network, tips, serves, spec, error)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
-      type(window_tip_t), intent(in) :: tips(:)  !< of the network
-      integer(ik), intent(in) :: serves(:)  !< those that the window is for
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
+      integer(ik), intent(in) :: serves(:)  !< numbers of the tips served
       type(mesh_spec_t), intent(inout) :: spec
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: piece(:, :)
@@ -98,7 +99,7 @@ contains
       end if
    end subroutine focus
 
-   !> Where a tip is [m].
+   !> Position of a tip [m].
    pure function tip_place(network, tip) result(xy)
       type(network_t), intent(in) :: network
       type(window_tip_t), intent(in) :: tip

@@ -9,17 +9,18 @@ module twolevel_window_tip
 
    public :: window_tip_t
 
-   !> Times that the rosette is made smaller by a factor of 2; from the second time on the other
-   !! elements are, too.
+   !> Largest number of refinements. Each halves the rosette; from the second on each also halves
+   !! the other elements.
    integer, parameter :: finer_most = 4
 
    !> One tip of the network, free or not.
    type :: window_tip_t
-      integer(ik) :: fracture = 0, end = 0  !< of the network
-      integer :: times_finer = 0  !< than the scene says
-      type(intensity_t) :: found  !< in the last solution, without the coarse level's error
-      !> The coarse level's part in the errors of K_I and K_II (twolevel_trust), as it was estimated
-      !! last [Pa m^1/2]: what they lack by it, and how large it may be
+      integer(ik) :: fracture = 0, end = 0  !< in the network
+      integer :: times_finer = 0  !< number of refinements
+      !> intensities of the last solution, without the error by the coarse level
+      type(intensity_t) :: found
+      !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), from
+      !! the last comparison [Pa m^1/2]: signed correction, and estimated error
       real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
       real(rk) :: compared(2) = 0.0_rk  !< K_I, K_II of the window then [Pa m^1/2]
       real(rk) :: compared_at(2) = 0.0_rk  !< where the tip was then [m]
@@ -39,7 +40,7 @@ module twolevel_window_tip
 
 contains
 
-   !> Of the elements at fractures that it asks for [m].
+   !> Size of the elements at fractures that the tip requires [m].
    elemental real(rk) function element_size(self, scene)
       class(window_tip_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
@@ -47,12 +48,12 @@ contains
       element_size = 0.5_rk**max(0, self%times_finer - 1)*usual_size(self, scene)
    end function element_size
 
-   !> Of the elements around it: two fit on its last straight piece, for the domain of the
-   !! interaction integral ends at a kink [m].
+   !> Radius of the rosette around the tip: two radii fit on the last straight segment, since the
+   !! domain of the interaction integral ends at a kink [m].
    elemental real(rk) function rosette_radius(self, scene, piece)
       class(window_tip_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: piece  !< its length [m]
+      real(rk), intent(in) :: piece  !< length of the last segment [m]
 
       rosette_radius = 0.5_rk**self%times_finer*min(usual_size(self, scene), 0.5_rk*piece)
    end function rosette_radius
@@ -71,7 +72,7 @@ contains
       can_be_finer = self%times_finer < finer_most
    end function can_be_finer
 
-   !> Nothing is known of the coarse level's part.
+   !> Reset the contribution of the coarse level.
    elemental subroutine forget_coarse_error(self)
       class(window_tip_t), intent(inout) :: self
 
@@ -82,7 +83,7 @@ contains
       self%passing = 0.0_rk
    end subroutine forget_coarse_error
 
-   !> The intensities found last, with the coarse level's part of their errors as it was known last.
+   !> Intensities of the last solution, with the last estimate of the errors by the coarse level.
    pure function with_coarse_error(self, crack_modulus) result(intensity)
       class(window_tip_t), intent(in) :: self
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]

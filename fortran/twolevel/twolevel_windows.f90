@@ -25,27 +25,27 @@ module twolevel_windows
 
    public :: failure_t, first_failure, windows_t
 
-   !> A tip that another one's window holds has moved where it has by more than this share of its
-   !! distance to that: intensities change by a small part of it [-].
+   !> Displacement of a tip in the window of another tip, over the distance of the two tips, above
+   !! which this window is meshed again: intensities change by a small part of it [-].
    real(rk), parameter :: noticeable = 1.0e-3_rk
 
-   !> Why a window could not be evaluated, if so.
+   !> Error in the evaluation of a window.
    type :: failure_t
       type(error_t), allocatable :: error
    end type failure_t
 
-   !> The place of a window.
+   !> A window, and its copy.
    type :: slot_t
       type(window_t), allocatable :: window
-      !> As it was in the last accepted state, where it has been meshed since
+      !> window of the last accepted state, if the window has been meshed since
       type(window_t), allocatable :: kept
    end type slot_t
 
-   !> The windows, which stand beside the state: what they remember is in windows_state_t.
+   !> The windows, separate from the state; their history is in windows_state_t.
    type :: windows_t
       type(slot_t), allocatable :: slot(:)
-      integer(ik), allocatable :: window_of(:)  !< (tips)
-      !> (tips) K_IC of the rock that each grows in over that of the scene's [-]
+      integer(ik), allocatable :: window_of(:)  !< (tips) number of the window
+      !> (tips) K_IC of the rock at each tip over K_IC of the scene [-]
       real(rk), allocatable :: resistance(:)
    contains
       procedure :: begin
@@ -55,22 +55,23 @@ module twolevel_windows
       procedure :: network_changed
       procedure :: coarse_changed
       procedure :: intensity_of
-      procedure :: is_asked
+      procedure :: is_active
       procedure :: has_mesh
       procedure :: has_to_mesh
-      procedure :: make_anew
+      procedure :: mesh_again
       procedure :: take_body
       procedure :: n_unknowns
    end type windows_t
 
 contains
 
-   !> No window has been built. After those of the tips there is one that is the body, for none.
+   !> Begin without meshes. After the windows of the tips there is one more window, the body, which
+   !! at first serves no tips.
    subroutine begin(self, tips, is_body, body_coarser, known)
       class(windows_t), intent(out) :: self
       type(tip_t), intent(in) :: tips(:)
-      logical, intent(in) :: is_body  !< it is one window for all tips
-      !> Elements of the body along fractures, over what the scene says [-]
+      logical, intent(in) :: is_body  !< the body is one window for all tips
+      !> size of elements of the body along fractures, over that of the scene [-]
       real(rk), intent(in) :: body_coarser
       type(windows_state_t), intent(out) :: known
       integer(ik) :: i, n_windows
@@ -95,7 +96,7 @@ contains
       end do
    end subroutine begin
 
-   !> A step is tried from now on: the windows are those of an accepted state.
+   !> Begin a step: the windows are those of the accepted state.
    subroutine begin_step(self)
       class(windows_t), intent(inout) :: self
       integer(ik) :: w
@@ -117,7 +118,7 @@ contains
       end do
    end subroutine begin_step
 
-   !> A try is rejected: the windows are those of the last accepted state again.
+   !> Undo a rejected try: restore the windows of the last accepted state.
    subroutine put_back(self)
       class(windows_t), intent(inout) :: self
       integer(ik) :: w
@@ -133,7 +134,7 @@ contains
       end do
    end subroutine put_back
 
-   !> Which are true.
+   !> Indices of the true elements.
    pure function numbers_of(mask) result(numbers)
       logical, intent(in) :: mask(:)
       integer(ik), allocatable :: numbers(:)
@@ -142,17 +143,17 @@ contains
       numbers = pack([(i, i=1, size(mask, kind=ik))], mask)
    end function numbers_of
 
-   !> Intensities, drive and rosette radius of every tip that is asked for, in a state of the coarse
+   !> Evaluate intensities, drive and rosette radius of the active tips in a state of the coarse
    !! level.
-   subroutine evaluate(self, scene, network, tips, asked, is_beside_body, problem, state, &
+   subroutine evaluate(self, scene, network, tips, active, is_beside_body, problem, state, &
                        undrained, known, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network  !< of the fine level
       type(tip_t), intent(inout) :: tips(:)
-      logical, intent(in) :: asked(:)  !< (tips)
-      logical, intent(in) :: is_beside_body  !< they are held against the body as one window
-      type(coarse_problem_t), intent(in) :: problem  !< with its values of the state
+      logical, intent(in) :: active(:)  !< (tips) active tips
+      logical, intent(in) :: is_beside_body  !< the windows are compared with the body as one window
+      type(coarse_problem_t), intent(in) :: problem  !< with the values of the state
       type(state_t), intent(in) :: state
       logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(windows_state_t), intent(inout) :: known
@@ -169,8 +170,8 @@ contains
       !$omp single
       do i = 1, size(self%slot, kind=ik)
          w = largest_first(i)
-         if (.not. self%is_asked(w, tips)) cycle
-         if (.not. any(asked(self%slot(w)%window%serves))) cycle
+         if (.not. self%is_active(w, tips)) cycle
+         if (.not. any(active(self%slot(w)%window%serves))) cycle
          !$omp task firstprivate(w) default(shared)
          call evaluate_window(self%slot(w), scene, network, tips, is_beside_body, problem, state, &
                               undrained, self%resistance, known%tip, known%history(w), &
@@ -182,8 +183,8 @@ contains
       call first_failure(failure, error)
    end subroutine evaluate
 
-   !> Windows by the sizes of the meshes that they have now, so that none of the largest is left for
-   !! one thread at the end.
+   !> Windows in the order of their mesh sizes, the largest first, so that threads end at about the
+   !! same time.
    pure function by_size(slot) result(order)
       type(slot_t), intent(in) :: slot(:)
       integer(ik) :: order(size(slot))
@@ -198,7 +199,7 @@ contains
       end do
    end function by_size
 
-   !> The error of the first window that has one.
+   !> Error of the first window with an error.
    pure subroutine first_failure(failure, error)
       type(failure_t), intent(in) :: failure(:)  !< (windows)
       type(error_t), allocatable, intent(out) :: error
@@ -211,7 +212,7 @@ contains
       end do
    end subroutine first_failure
 
-   !> The same for the tips of one window. It changes nothing of other windows or tips.
+   !> Evaluate the tips of one window. No other window or tip changes.
    subroutine evaluate_window(slot, scene, network, tips, is_beside_body, problem, state, &
                               undrained, resistance, seen, history, error)
       type(slot_t), intent(inout) :: slot
@@ -257,7 +258,7 @@ contains
       end associate
    end subroutine evaluate_window
 
-   !> Mesh a window anew, or let its mesh follow the tips if nothing else has changed in it.
+   !> Mesh a window again, or move its mesh with the tips if nothing else has changed in it.
    subroutine renew(slot, scene, network, tips, is_beside_body, seen, history, error)
       type(slot_t), intent(inout) :: slot
       type(scene_t), intent(in) :: scene
@@ -294,7 +295,7 @@ contains
       end associate
    end subroutine renew
 
-   !> The mesh that was made follows the tips, wherever it is.
+   !> Move the original mesh with the tips; it is in the window, or in its copy.
    subroutine follow_tips(slot, scene, network, seen, is_done, error)
       type(slot_t), intent(inout) :: slot
       type(scene_t), intent(in) :: scene
@@ -318,11 +319,11 @@ contains
       end associate
    end subroutine follow_tips
 
-   !> The intensities of a tip in the last solution of its window, with the errors of both levels.
+   !> Intensities of a tip in the last solution of its window, with the errors of both levels.
    pure function intensity_of(self, tip, seen) result(intensity)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: tip
-      type(window_tip_t), intent(in) :: seen  !< that tip
+      type(window_tip_t), intent(in) :: seen  !< data of this tip
       type(intensity_t) :: intensity
 
       associate (window => self%slot(self%window_of(tip))%window)
@@ -340,15 +341,15 @@ contains
    end function has_mesh
 
    !> A window serves a tip with intensities to be evaluated.
-   pure logical function is_asked(self, window, tips)
+   pure logical function is_active(self, window, tips)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
 
-      is_asked = any(tips(self%slot(window)%window%serves)%is_loaded())
-   end function is_asked
+      is_active = any(tips(self%slot(window)%window%serves)%is_loaded())
+   end function is_active
 
-   !> Meshes of some windows are those of other tips than these: to be made anew, or to be moved.
+   !> Whether some windows are to be meshed, or their meshes moved, for these tips.
    pure logical function has_to_mesh(self, tips)
       class(windows_t), intent(in) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -356,14 +357,14 @@ contains
 
       has_to_mesh = .false.
       do w = 1, size(self%slot, kind=ik)
-         if (self%is_asked(w, tips) .and. .not. has_to_mesh) then
+         if (self%is_active(w, tips) .and. .not. has_to_mesh) then
             has_to_mesh = has_to_be_meshed(self%slot(w)%window, tips)
          end if
       end do
    end function has_to_mesh
 
-   !> There is no mesh of a window, or it holds the last segment of a tip that has moved since, as
-   !! it was or as it is.
+   !> Whether a window is to be meshed: there is no mesh, or its rectangle contains the last segment
+   !! of a tip that has moved since, before or after the move.
    pure logical function has_to_be_meshed(window, tips) result(has_to)
       type(window_t), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
@@ -375,7 +376,7 @@ contains
       end do
    end function has_to_be_meshed
 
-   !> A tip has moved noticeably in a window since that was meshed.
+   !> Whether a tip has moved noticeably in a window since its meshing.
    pure logical function has_moved(window, tips, i)
       type(window_t), intent(in) :: window
       type(tip_t), intent(in) :: tips(:)
@@ -393,13 +394,13 @@ contains
          do k = 1, size(window%serves, kind=ik)
             apart = min(apart, norm2(tip%xy - tips(window%serves(k))%xy))
          end do
-         ! The last stretch to a joint, there or back, is short but not small.
+         ! The ligament before a joint is short but matters.
          has_moved = any(window%serves == i) .or. moved > noticeable*apart .or. &
                      (tip%is_free .neqv. window%made%is_free(i))
       end associate
    end function has_moved
 
-   !> The box around a segment and that of a window have something in common.
+   !> Whether the bounding boxes of a segment and of a window overlap.
    pure logical function overlaps(window, from, to)
       type(window_t), intent(in) :: window
       real(rk), intent(in) :: from(2), to(2)  !< [m]
@@ -407,28 +408,28 @@ contains
       overlaps = all(min(from, to) <= window%upper) .and. all(max(from, to) >= window%lower)
    end function overlaps
 
-   !> The window of a tip must be meshed again, for it is to be a better one.
-   pure subroutine make_anew(self, tip, seen)
+   !> Mark the window of a tip to be meshed again, refined.
+   pure subroutine mesh_again(self, tip, seen)
       class(windows_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
-      type(window_tip_t), intent(inout) :: seen  !< that tip
+      type(window_tip_t), intent(inout) :: seen  !< data of this tip
 
       call forget_mesh(self%slot(self%window_of(tip))%window)
       call seen%forget_coarse_error()
-   end subroutine make_anew
+   end subroutine mesh_again
 
-   !> A window has to be meshed anew.
+   !> Discard the mesh of a window.
    pure subroutine forget_mesh(window)
       type(window_t), intent(inout) :: window
 
       if (allocated(window%made)) deallocate (window%made)
    end subroutine forget_mesh
 
-   !> A tip is to be known from the body from now on, not from a window of its own.
+   !> Evaluate a tip in the body from now on, not in a separate window.
    pure subroutine take_body(self, tip, seen)
       class(windows_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
-      type(window_tip_t), intent(inout) :: seen  !< that tip
+      type(window_tip_t), intent(inout) :: seen  !< data of this tip
       integer(ik) :: body, own
 
       own = self%window_of(tip)
@@ -437,10 +438,10 @@ contains
       self%slot(own)%window%serves = numbers_of(self%window_of == own)
       self%slot(body)%window%serves = numbers_of(self%window_of == body)
       call forget_mesh(self%slot(own)%window)
-      call self%make_anew(tip, seen)
+      call self%mesh_again(tip, seen)
    end subroutine take_body
 
-   !> The network is another one now, not only at its tips.
+   !> Discard all meshes: the network has changed, not only at its tips.
    pure subroutine network_changed(self)
       class(windows_t), intent(inout) :: self
       integer(ik) :: w
@@ -451,7 +452,7 @@ contains
       end do
    end subroutine network_changed
 
-   !> The coarse mesh is another one now.
+   !> Mark the positions in the coarse mesh as unknown: the coarse mesh has changed.
    pure subroutine coarse_changed(self)
       class(windows_t), intent(inout) :: self
       integer(ik) :: w
@@ -471,7 +472,7 @@ contains
       n_unknowns = 0
       do w = 1, size(self%slot, kind=ik)
          associate (window => self%slot(w)%window)
-            if (.not. allocated(window%made) .or. .not. self%is_asked(w, tips)) cycle
+            if (.not. allocated(window%made) .or. .not. self%is_active(w, tips)) cycle
             n_unknowns = n_unknowns + window%model%constraints%n_dofs
          end associate
       end do

@@ -10,15 +10,16 @@ module twolevel_windows_state
 
    public :: window_history_t, windows_state_t
 
-   !> Contact in the last solution of a window; its slip is the history of the next.
+   !> Contact in the last solution of a window; its slip is the history of the next solution.
    type :: window_history_t
       type(contact_t), allocatable :: contact
-      type(fine_mesh_t), allocatable :: mesh  !< that of the contact, where it is not the window's
+      !> mesh of the contact, where it is not that of the window
+      type(fine_mesh_t), allocatable :: mesh
    contains
       procedure :: leave_mesh
    end type window_history_t
 
-   !> That of several windows.
+   !> State of several windows.
    type :: windows_state_t
       type(window_tip_t), allocatable :: tip(:)  !< (tips)
       type(window_history_t), allocatable :: history(:)  !< (windows)
@@ -28,7 +29,7 @@ module twolevel_windows_state
 
 contains
 
-   !> The window gets another mesh than this one.
+   !> Keep this mesh for the contact: the window gets another mesh.
    pure subroutine leave_mesh(self, mesh)
       class(window_history_t), intent(inout) :: self
       type(fine_mesh_t), intent(in) :: mesh
@@ -36,7 +37,7 @@ contains
       if (allocated(self%contact) .and. .not. allocated(self%mesh)) self%mesh = mesh
    end subroutine leave_mesh
 
-   !> The state that was evaluated last is accepted: its slip is what the next one starts from.
+   !> Accept the state that was evaluated last: its slip is the history of the next solution.
    pure subroutine accept(self)
       class(windows_state_t), intent(inout) :: self
       integer(ik) :: w

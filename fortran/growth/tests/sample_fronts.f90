@@ -1,4 +1,4 @@
-!> Tips in fields of intensities that are given.
+!> Tips in prescribed fields of intensities.
 module sample_fronts
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -10,7 +10,7 @@ module sample_fronts
 
    public :: sample_t
 
-   !> Tips in a field: none, so that drives stay as they were set, or circles around the origin.
+   !> Tips in a field: none, so that the drives stay as they were set, or circles around the origin.
    type, extends(front_t) :: sample_t
       logical :: turns = .false.  !< the criterion follows circles around the origin
       integer :: evaluations = 0
@@ -20,7 +20,7 @@ module sample_fronts
 
 contains
 
-   !> Intensities whose kink angle leads into the direction of the circle at the tip.
+   !> Set intensities whose kink angle leads into the direction of the circle at the tip.
    subroutine evaluate(self, timers, error)
       class(sample_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers

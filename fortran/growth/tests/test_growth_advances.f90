@@ -1,4 +1,4 @@
-!> Equilibrium of tips on closed forms, without a mesh.
+!> Equilibrium of tips against closed forms, without a mesh.
 program test_growth_advances
    use testing_checks, only: checks_t
    use testing_random, only: random_t
@@ -39,7 +39,7 @@ program test_growth_advances
 
 contains
 
-   !> Evaluate until nothing moves.
+   !> Evaluate until no tip moves.
    subroutine solve(respond, matrix, upper, advances)
       procedure(excess_at) :: respond
       real(rk), intent(in) :: matrix(:, :), upper(:)
@@ -71,7 +71,7 @@ contains
    end function cantilever
 
    !> Two equal collinear cracks from .5 to 1.5 m on either side of the origin: inner and outer
-   !! tips, under a stress that falls as the square of the length that is open, grow inwards first.
+   !! tips, under a stress that decreases as the square of the open length, grow inwards first.
    subroutine test_collinear()
       type(advances_t) :: advances
       real(rk), parameter :: upper(2) = [0.2_rk, 0.2_rk]
@@ -129,8 +129,8 @@ contains
       end do
    end function second_over_first
 
-   !> Parallel cracks of 1 and .98 m, 1 m apart, of which each shields the other as it gets longer:
-   !! the longer one grows, the other stays.
+   !> Parallel cracks of 1 and .98 m, 1 m apart, each of which shields the other as it becomes
+   !! longer: the longer crack grows, the other stays.
    subroutine test_parallel()
       type(advances_t) :: advances
       real(rk) :: excess(2), matrix(2, 2)
@@ -156,7 +156,7 @@ contains
       excess = 1.5_rk*sqrt(length)/(1.0_rk + 0.45_rk*length(2:1:-1)**4)/length - 1.0_rk
    end function parallel
 
-   !> Where K rises with the length a tip goes to its end.
+   !> Where K increases with the length a tip goes to the end.
    subroutine test_unstable()
       type(advances_t) :: advances
 
@@ -172,8 +172,8 @@ contains
       excess = 1.02_rk*sqrt(1.0_rk + place) - 1.0_rk
    end function rising
 
-   !> K falls suddenly by a half at .3 m, as where a tip comes close to an open fracture: it rests
-   !! beyond that, since it exceeds its toughness before.
+   !> K decreases suddenly by a half at .3 m, as where a tip comes close to an open fracture: the
+   !! tip stops beyond this point, since K_eq exceeds K_IC before it.
    subroutine test_drop()
       type(advances_t) :: advances
       real(rk) :: excess(1)
@@ -193,9 +193,9 @@ contains
       excess = merge(0.497_rk, -0.4_rk, place < 0.3_rk)
    end function dropping
 
-   !> However the excess of one tip depends on its place, the search ends, and where it ends the tip
-   !! does not exceed its toughness, unless it is at its upper bound; nor is it below its toughness,
-   !! but next to a place where it exceeds it, or at its lower bound.
+   !> For any dependence of the excess of one tip on its position, the search ends at a position
+   !! where K_eq does not exceed K_IC, except at the upper bound; nor is K_eq below K_IC, except
+   !! next to a position where it exceeds K_IC, or at the lower bound.
    subroutine test_shapes()
       character(len=*), parameter :: name(9) = [character(len=16) :: &
                                                 "monotone", "sudden", "noisy", "two roots", &
@@ -219,13 +219,13 @@ contains
       call checks%is_true(most <= 60, "in a bounded number of evaluations")
    end subroutine test_shapes
 
-   !> One search up to 1 m from a place that the tip cannot go back from.
+   !> One search up to 1 m from a position behind which the tip cannot retreat.
    subroutine search(name, number, start, slope, most, total)
       character(len=*), intent(in) :: name
-      integer, intent(in) :: number  !< of the function
+      integer, intent(in) :: number  !< number of the function
       real(rk), intent(in) :: start  !< [m]
       real(rk), intent(in) :: slope  !< first estimate [1/m]
-      integer, intent(inout) :: most, total  !< evaluations of a search, and of all so far
+      integer, intent(inout) :: most, total  !< evaluations of one search, and of all so far
       real(rk), parameter :: near = 5.0e-4_rk  !< [m]
       type(advances_t) :: advances
       real(rk) :: left
@@ -246,12 +246,12 @@ contains
       end associate
    end subroutine search
 
-   !> Excesses that have been met, or might be [-].
+   !> Excesses that have occurred, or could occur [-].
    pure real(rk) function sample(number, s)
       integer, intent(in) :: number
       real(rk), intent(in) :: s  !< [m]
-      ! Scene D4 at 194.226 s, where secants went round in a cycle of four tries: a tip between two
-      ! others; places over the length of its segment, 2 mm.
+      ! Scene D4 at 194.226 s, where secants cycled through four tries: a tip between two others;
+      ! positions over the length of its segment, 2 mm.
       real(rk), parameter :: at(4) = [0.3045_rk, 0.4875_rk, 0.638_rk, 0.907_rk], &
                              d4(4) = [0.0275_rk, 0.0192_rk, -0.0227_rk, -0.0343_rk]
       integer :: k
@@ -279,8 +279,8 @@ contains
       end select
    end function sample
 
-   !> Where tips outside the problem move, the excess at a place is another one each time: the
-   !! search ends all the same, and not where the tip exceeds its toughness.
+   !> Where tips outside of the problem move, the excess at a position differs each time: the search
+   !! ends nevertheless, and not where K_eq exceeds K_IC.
    subroutine test_moving()
       type(advances_t) :: advances
       logical :: has_moved
@@ -300,8 +300,8 @@ contains
       end do
    end subroutine test_moving
 
-   !> 1,000 problems of 2 to 40 tips that help, shade or both, with slopes that differ by a hundred.
-   !! None cycles.
+   !> 1,000 problems of 2 to 40 tips that promote or shield each other, or both, with slopes that
+   !! differ by a factor of a hundred. None cycles.
    subroutine test_random_problems()
       integer, parameter :: problems = 1000
       type(problem_t) :: problem
@@ -348,7 +348,7 @@ contains
    !> Draw a problem on the unit interval.
    subroutine draw(self, n, random)
       type(problem_t), intent(out) :: self
-      integer, intent(in) :: n  !< tips
+      integer, intent(in) :: n  !< number of tips
       type(random_t), intent(inout) :: random
       integer :: i, j, kind
 

@@ -1,7 +1,7 @@
-!> Tips that compete: small systems whose answers are written down by hand.
+!> Competing tips: small systems with solutions by hand.
 program test_growth_competition
    use base_kinds, only: rk
-   use growth_competition, only: complementary_advances, learn_from_trial, preference
+   use growth_competition, only: complementary_advances, broyden_update, preference
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -15,20 +15,20 @@ program test_growth_competition
 
 contains
 
-   !> Trials along the axes give the matrix of a linear answer.
+   !> Trials along the axes give the matrix of a linear response.
    subroutine test_learning()
       real(rk) :: learnt(2, 2), true(2, 2)
 
       true = reshape([-3.0_rk, 0.5_rk, 1.0_rk, -2.0_rk], [2, 2])
       learnt = 0.0_rk
-      call learn_from_trial(learnt, [0.1_rk, 0.0_rk], matmul(true, [0.1_rk, 0.0_rk]))
-      call learn_from_trial(learnt, [0.0_rk, 0.2_rk], matmul(true, [0.0_rk, 0.2_rk]))
+      call broyden_update(learnt, [0.1_rk, 0.0_rk], matmul(true, [0.1_rk, 0.0_rk]))
+      call broyden_update(learnt, [0.0_rk, 0.2_rk], matmul(true, [0.0_rk, 0.2_rk]))
       call checks%is_close(maxval(abs(learnt - true)), 0.0_rk, 1.0e-14_rk, "two trials")
-      call learn_from_trial(learnt, [0.0_rk, 0.0_rk], [1.0_rk, 1.0_rk])
+      call broyden_update(learnt, [0.0_rk, 0.0_rk], [1.0_rk, 1.0_rk])
       call checks%is_close(maxval(abs(learnt - true)), 0.0_rk, 1.0e-14_rk, "no change, no lesson")
    end subroutine test_learning
 
-   !> Equal tips, M = [m -k; -k m]: a lead changes the intensities by m + k. For n of them the
+   !> Equal tips, M = [m -k; -k m]: a lead changes the intensities by m + k. For n tips the
    !! eigenvalues on sum(da) = 0 are m + k, n - 1 times.
    subroutine test_preference()
       real(rk) :: matrix(4, 4)
@@ -48,15 +48,15 @@ contains
          call checks%is_close(preference(matrix(:n, :n), spread(1.0_rk, 1, n)), -5.0_rk, &
                               1.0e-13_rk, "they grow together")
       end do
-      ! The load works on the second tip alone: the first is left to itself.
+      ! The load does work on the second tip alone: the advance of the first is free.
       matrix(:2, :2) = reshape([3.0_rk, 7.0_rk, 7.0_rk, -9.0_rk], [2, 2])
       call checks%is_close(preference(matrix(:2, :2), [0.0_rk, 1.0_rk]), 3.0_rk, 1.0e-13_rk, &
                            "where the load does no work")
       call checks%is_true(preference(matrix(:1, :1), [1.0_rk]) < 0.0_rk, "nobody to compete with")
    end subroutine test_preference
 
-   !> Stable systems of many tips have one solution, which fulfils all conditions; the order of the
-   !! tips does not matter.
+   !> Stable systems of many tips have one solution, which satisfies all conditions; the order of
+   !! the tips does not matter.
    subroutine test_complementarity()
       integer, parameter :: n = 6
       real(rk), dimension(n) :: change, excess, left, lower, turned, upper
@@ -86,8 +86,8 @@ contains
       end do
    end subroutine test_complementarity
 
-   !> Where equal growth is not stable: the one ahead goes on and the other stays; two that drive
-   !! each other on go as far as they may.
+   !> Where equal growth is not stable, the leading tip advances and the other stays; two tips that
+   !! promote each other advance to their bounds.
    subroutine test_runners()
       real(rk), parameter :: zero(2) = 0.0_rk, far(2) = 5.0_rk
       real(rk) :: change(2), shadow(2, 2)
@@ -97,7 +97,7 @@ contains
       call checks%is_close(maxval(abs(change - [1.0_rk, 0.0_rk])), 0.0_rk, 1.0e-14_rk, "the first")
       call complementary_advances([0.999_rk, 1.0_rk], shadow, zero, far, change)
       call checks%is_close(maxval(abs(change - [0.0_rk, 1.0_rk])), 0.0_rk, 1.0e-14_rk, "the second")
-      ! The rival is hardly shaded, but shades: it goes on until the first is back.
+      ! The second tip is hardly shielded, but shields: it advances until the first has returned.
       call complementary_advances([1.0_rk, 0.9_rk], &
                                   reshape([-1.0_rk, -0.5_rk, -4.0_rk, -1.0_rk], [2, 2]), zero, &
                                   far, change)

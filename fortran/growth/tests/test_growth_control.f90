@@ -1,4 +1,4 @@
-!> Tips in length control: small groups whose answers are written down by hand.
+!> Tips in length control: small groups with solutions by hand.
 program test_growth_control
    use base_kinds, only: ik, rk
    use growth_control, only: fitted, joined_groups, length_control_t
@@ -13,8 +13,8 @@ program test_growth_control
 
 contains
 
-   !> K_1 = f - 2 a_1, K_2 = f - 4 a_2 - 0.4, K_IC = 1, segments of 1 m: tip 1 comes to its end at
-   !! f = 3, and tip 2 goes 0.4 m. With K_2 = f - 4 a_2 - 2.5 it needs f = 3.5 and stays.
+   !> K_1 = f - 2 a_1, K_2 = f - 4 a_2 - 0.4, K_IC = 1, segments of 1 m: tip 1 reaches its end at f
+   !! = 3, and tip 2 advances by 0.4 m. With K_2 = f - 4 a_2 - 2.5 tip 2 needs f = 3.5 and stays.
    subroutine test_linear()
       real(rk) :: advance(2)
 
@@ -24,8 +24,9 @@ contains
       call checks%is_close(maxval(abs(advance - [1.0_rk, 0.4_rk])), 0.0_rk, 2.0e-3_rk, "goes on")
       call solve([2.0_rk, 4.0_rk], [0.0_rk, -2.5_rk], [1.0_rk, 1.0_rk], [1.0_rk, 1.0_rk], advance)
       call checks%is_close(maxval(abs(advance - [1.0_rk, 0.0_rk])), 0.0_rk, 0.0_rk, "stays behind")
-      ! Tip 2 is ahead: K_2 = f + 1 - 4 a_2 comes to its end at f = 4, tip 1 at f = 3 before: that
-      ! leads, and tip 2 goes 0.75 m. On a segment of 0.5 m tip 2 leads, at f = 2; tip 1 goes 0.5 m.
+      ! Tip 2 is ahead: K_2 = f + 1 - 4 a_2 reaches its end at f = 4, tip 1 at f = 3 before: tip 1
+      ! leads, and tip 2 advances by 0.75 m. On a segment of 0.5 m tip 2 leads, at f = 2; tip 1
+      ! advances by 0.5 m.
       call solve([2.0_rk, 4.0_rk], [0.0_rk, 1.0_rk], [1.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], advance)
       call checks%is_close(maxval(abs(advance - [1.0_rk, 0.75_rk])), 0.0_rk, 2.0e-3_rk, "leader")
       call solve([2.0_rk, 4.0_rk], [0.0_rk, 1.0_rk], [1.0_rk, 0.5_rk], [1.0_rk, 0.0_rk], advance)
@@ -43,7 +44,7 @@ contains
       integer :: try
 
       advance = start
-      matrix = reshape([-0.5_rk*fall(1), 0.0_rk, 0.0_rk, -1.5_rk*fall(2)], [2, 2])  ! poor
+      matrix = reshape([-0.5_rk*fall(1), 0.0_rk, 0.0_rk, -1.5_rk*fall(2)], [2, 2])  ! poor estimate
       do try = 1, 15
          excess = offset - fall*advance
          excess = excess - maxval(excess)  ! the load is such that no tip exceeds its toughness
@@ -54,7 +55,7 @@ contains
       call checks%is_true(.not. has_moved, "length control ends")
    end subroutine solve
 
-   !> The first tip comes to the end of its piece, and nothing is too short.
+   !> The first tip reaches the end of its segment, and no advance is too short.
    subroutine test_fit()
       real(rk) :: fit(3)
 

@@ -1,5 +1,5 @@
 !> Tips that grow together: which of them and how far, what stops or joins them, and the direction
-!! that the loop settles for, in fields of intensities that are given.
+!! found by the loop, in prescribed fields of intensities.
 program test_growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -69,8 +69,8 @@ contains
       call checks%no_error(error, "growth")
    end subroutine grow
 
-   !> The tip with the largest energy release rate grows by l_max, another one by
-   !! l_max (G/max G)^0.35; each in the direction of its own kink.
+   !> The tip with the largest energy release rate grows by l_max, another tip by l_max (G/max
+   !! G)^0.35; each in the direction of its kink.
    subroutine test_growth_law()
       type(sample_t) :: front
       real(rk) :: advance
@@ -98,7 +98,7 @@ contains
       call checks%is_true(any_grew, "both grow")
       call checks%is_close(front%tip(1)%advance, increment, 1.0e-15_rk, "the stronger tip: l_max")
       call checks%is_close(front%tip(2)%advance, advance, grains, "the weaker one: less")
-      ! Anticlockwise from the tip's own direction.
+      ! Anticlockwise from the direction of the tip.
       call is_at(front%tip(1)%xy, lines(:, 1, 1) - increment*[cos(0.3_rk), sin(0.3_rk)], "tip 1")
       call is_at(front%tip(2)%xy, lines(:, 2, 1) + advance*[cos(0.5_rk), -sin(0.5_rk)], "tip 2")
       call is_at(front%network%xy(:, 1), front%tip(1)%xy, "first vertex")
@@ -323,8 +323,8 @@ contains
    end subroutine test_join
 
    !> Each increment ends where the criterion leads straight on: along the tangent of the circle at
-   !! its end. So by Pythagoras the square of the distance from the origin falls by that of the
-   !! increment, but for the two degrees that the loop leaves.
+   !! its end. So by Pythagoras the square of the distance from the origin decreases by that of the
+   !! increment, within the two degrees that the loop tolerates.
    subroutine test_path()
       type(sample_t) :: front
       type(timers_t) :: timers

@@ -18,7 +18,7 @@ program test_growth_increment
 
 contains
 
-   !> Four tips that look along x, driven by 1, 2, 4 and 8 J/m2 and intensities of 1 to 4.
+   !> Four tips that point along x, driven by 1, 2, 4 and 8 J/m2 and intensities of 1 to 4.
    function four_tips() result(tips)
       type(tip_t) :: tips(4)
       integer(ik) :: i
@@ -34,7 +34,8 @@ contains
       tips(4)%arrested = .true.
    end function four_tips
 
-   !> An arrested tip does not grow, however it is driven; others grow along only where one does.
+   !> An arrested tip does not grow, whatever its driving force; other tips grow along only where
+   !! one grows.
    subroutine test_onset()
       logical, parameter :: at_three(4) = [.false., .false., .true., .false.]
       logical, parameter :: along(4) = [.false., .true., .true., .false.]
@@ -47,8 +48,9 @@ contains
       call checks%is_true(.not. any(tips_at_onset(tips, 3.5_rk, 0.5_rk)), "none at a larger one")
    end subroutine test_onset
 
-   !> The most strongly driven tip advances by l_max, another by (G/max G)**exponent of it; what is
-   !! too short for the mesh is carried over until it adds up.
+   !> The tip with the largest energy release rate advances by l_max, another tip by (G/max
+   !! G)**exponent of l_max; advances too short for the mesh are carried over until their sum is
+   !! long enough.
    subroutine test_plan()
       type(tip_t) :: tips(4)
       real(rk) :: advance(4)
@@ -83,7 +85,8 @@ contains
       call checks%is_close(norm2(network%xy(:, 3) - [-1.0_rk, 3.0_rk]), 0.0_rk, 0.0_rk, "start")
       call checks%is_close(norm2(network%xy(:, 5) - [4.0_rk, 5.0_rk]), 0.0_rk, 0.0_rk, "end")
       call checks%is_close(norm2(network%xy(:, 4) - [1.0_rk, 1.0_rk]), 0.0_rk, 0.0_rk, "between")
-      ! The first segment was 1 long, and is sqrt(8): the arc length of the vertex after it stays.
+      ! The first segment had a length of 1, and has sqrt(8): the arc length of the vertex after it
+      ! stays.
       call checks%is_close(network%s_start(2), 1.0_rk - sqrt(8.0_rk), exact, "arc length")
    end subroutine test_move_end
 

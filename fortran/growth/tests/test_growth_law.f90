@@ -57,7 +57,7 @@ contains
                            "nothing drives a closed tip")
    end subroutine angles
 
-   !> No other angle has more tangential stress.
+   !> No other angle has a larger tangential stress.
    subroutine maximum()
       real(rk) :: k1, k2, best
       integer(ik) :: i, j
@@ -100,7 +100,7 @@ contains
                            "K_I of the kink is K_eq")
    end subroutine energy
 
-   !> Catalogue 2.4, and what is too short is kept.
+   !> Catalogue 2.4; advances that are too short are carried over.
    subroutine steps()
       real(rk) :: advance(3), applied, kept, left, tip(2)
 

@@ -1,4 +1,4 @@
-!> Networks that grow: vertices at both ends, arc lengths, gains, straight ends.
+!> Growing networks: vertices at both ends, arc lengths, growth of ends, straight ends.
 program test_growth_network
    use base_kinds, only: ik, rk
    use growth_network, only: end_direction, end_gain, end_vertices, extend, network_of_scene, &
@@ -45,8 +45,8 @@ contains
       call checks%is_close(total_length(network), 0.0_rk, 0.0_rk, "no length")
    end subroutine test_scene
 
-   !> Growth at both ends of both fractures: order of the vertices, arc lengths, and each end's
-   !! gain.
+   !> Growth at both ends of both fractures: order of the vertices, arc lengths, and growth of each
+   !! end.
    subroutine test_extend()
       type(network_t) :: network, start
 
@@ -77,8 +77,8 @@ contains
       call checks%is_close(end_gain(network, start, 2_ik, 2_ik), 1.0_rk, 1.0e-15_rk, "gain 2, end")
    end subroutine test_extend
 
-   !> Vertices that both ends of a fracture have got are counted, and replaced by straight segments:
-   !! lengths of the rest and arc lengths of the old vertices stay.
+   !> Vertices added at both ends of a fracture are counted, and replaced by straight segments: the
+   !! other lengths and the arc lengths of the old vertices stay.
    subroutine test_straighten()
       type(network_t) :: network, start
 

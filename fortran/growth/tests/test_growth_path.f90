@@ -1,4 +1,4 @@
-!> The path of a tip: moving, and the search for the direction in which it goes on straight.
+!> Path of a tip: moves, and the search for the direction in which the path continues straight.
 program test_growth_path
    use base_kinds, only: rk
    use growth_law, only: kink_angle
@@ -21,7 +21,7 @@ program test_growth_path
 
 contains
 
-   !> K_eq is compared with the toughness, or with its least scale where that is larger.
+   !> K_eq is compared with the toughness, or with the least scale where that is larger.
    subroutine test_excess()
       type(tip_t) :: tip
 
@@ -37,7 +37,7 @@ contains
       call checks%is_close(tip%relative_error(0.0_rk), 0.025_rk, 1.0e-12_rk, "its error")
    end subroutine test_excess
 
-   !> A tip that has grown before and goes on by 0.1 m, first by the given kink.
+   !> A tip that has grown before and advances by 0.1 m, first by a prescribed kink.
    subroutine start(path, kink, has_wing)
       type(path_t), intent(out) :: path
       real(rk), intent(in) :: kink  !< [rad]
@@ -67,9 +67,9 @@ contains
       call checks%is_true(.not. has_turned, "the first kink is the criterion's")
    end subroutine keeps_the_first_kink
 
-   !> -K_II at the new end answers to the kink like slope*(kink - right) for a K_I of 1, so the
-   !! criterion's angle saturates at pure sliding: the search must end within two degrees of that
-   !! angle or half a degree of the right kink.
+   !> -K_II at the new end is slope*(kink - right) for a K_I of 1, so the criterion's angle
+   !! saturates at pure sliding: the search must end within two degrees of that angle or half a
+   !! degree of the right kink.
    subroutine finds_direction(slope, name)
       real(rk), intent(in) :: slope  !< d drive / d kink [-]
       character(len=*), intent(in) :: name
@@ -92,8 +92,8 @@ contains
       call checks%is_close(norm2(path%xy - path%origin), 0.1_rk, 1.0e-14_rk, name//": length kept")
    end subroutine finds_direction
 
-   !> On a path of constant curvature, with -K_II falling by `slope` per kink, the first increments
-   !! teach what the next ones need: they go the right way without a correction.
+   !> On a path of constant curvature, with -K_II decreasing by `slope` per kink, the data of the
+   !! first increments predict the directions of later ones without a correction.
    subroutine foresees()
       real(rk), parameter :: turn = 6.0_rk*degree, slope = 2.5_rk
       type(path_t) :: path
@@ -103,10 +103,10 @@ contains
 
       path%direction = [1.0_rk, 0.0_rk]
       path%has_wing = .true.
-      left = 0.0_rk  ! what the direction of the last increment lacks [rad]
+      left = 0.0_rk  ! error of the direction of the last increment [rad]
       do increment = 1, 6
          drive = slope*left
-         call path%foresee(kink_angle(1.0_rk, -drive), drive, 1.0_rk, 0.1_rk, kink)
+         call path%predict(kink_angle(1.0_rk, -drive), drive, 1.0_rk, 0.1_rk, kink)
          call path%move(path%xy + 0.1_rk*(cos(kink)*path%direction &
                                           + sin(kink)*[-path%direction(2), path%direction(1)]), &
                         kink)
@@ -118,7 +118,7 @@ contains
             corrections = corrections + 1
          end do
          left = left + turn - path%kink
-         call path%settle(slope*left)
+         call path%commit(slope*left)
          if (increment == 1) call checks%is_true(corrections > 0, "the first has to be corrected")
          if (increment < 3) cycle
          call checks%is_true(corrections == 0, "later ones are foreseen")

@@ -1,4 +1,4 @@
-!> A tip on the last piece of its path: it goes where its excess vanishes, on each side of it.
+!> A tip on the last segment of its path: it goes where its excess vanishes, from either side.
 program test_growth_segment
    use base_kinds, only: rk
    use growth_segment, only: segment_t
@@ -14,13 +14,14 @@ program test_growth_segment
 
 contains
 
-   !> A tip that leaves a rest of its piece is at its end before, and finishes it at once.
+   !> With a ligament at the end of its segment, a tip reaches the end before the ligament, and
+   !! breaks it at once.
    subroutine test_rest()
       type(segment_t) :: segment
       logical :: has_moved
 
       call segment%open_segment([1.0_rk, 0.0_rk], [0.0_rk, 1.0_rk], 0.2_rk)
-      call segment%leave_rest(0.1_rk)
+      call segment%exclude_ligament(0.1_rk)
       call segment%go_to(0.2_rk, has_moved)
       call checks%is_true(has_moved, "goes on")
       call checks%is_true(segment%is_complete(), "all but the rest")
@@ -31,8 +32,9 @@ contains
       call checks%is_true(.not. segment%is_open, "nothing is left of it")
    end subroutine test_rest
 
-   !> A step begins where the speed of the last one leads to, and a piece where the excess that is
-   !! left at the end of the one before vanishes on it; neither beyond its ends, and only if known.
+   !> A step begins at the position that the speed of the last step predicts, and a segment where
+   !! the excess left at the end of the previous one vanishes; neither beyond the ends of the
+   !! segment, and only if these are known.
    subroutine test_guesses()
       type(segment_t) :: segment
       logical :: has_moved
@@ -66,8 +68,8 @@ contains
       call checks%is_close(segment%falling_slope(), -0.1_rk, 0.0_rk, "slope that does not fall")
    end subroutine test_guesses
 
-   !> Below the toughness a tip goes back no farther than it was; far above it, it comes to the end
-   !! of its piece, which is then over.
+   !> Below the toughness a tip retreats no farther than its accepted position; far above it, the
+   !! tip reaches the end of its segment, which is then complete.
    subroutine test_bounds()
       type(segment_t) :: segment, twin
       logical :: has_moved

@@ -1,4 +1,4 @@
-!> Where growing tips meet fractures and the boundary.
+!> Points where growing tips meet fractures and the boundary.
 program test_growth_targets
    use base_kinds, only: ik, rk
    use growth_targets, only: find_ahead, find_beside, find_target, target_boundary, target_none
@@ -52,7 +52,7 @@ program test_growth_targets
 
 contains
 
-   !> A tip that runs along fracture 2, 0.005 away from it, has come to it; 0.015 away it has not.
+   !> A tip that runs along fracture 2 at a distance of 0.005 has reached it; at 0.015 it has not.
    subroutine look_beside()
       real(rk) :: at(2)
       integer(ik) :: target
@@ -73,8 +73,8 @@ contains
       call checks%is_true(target == target_boundary, "beside a side")
    end subroutine look_beside
 
-   !> A joint that would be 0.004 away from where fractures 2 and 3 cross is put there, and one as
-   !! near to where fracture 4 ends on fracture 2, there.
+   !> A connection 0.004 away from the crossing of fractures 2 and 3 is moved there, and a
+   !! connection as near to the end of fracture 4 on fracture 2, there.
    subroutine joints_nearby()
       real(rk) :: at(2)
       integer(ik) :: target
@@ -85,7 +85,7 @@ contains
                            [2, 8])
       network%s_start = spread(0.0_rk, 1, 4)
       call sees([1.0_rk, 0.196_rk], [1.5_rk, 0.0_rk], 3_ik, [2.0_rk, 0.2_rk], "a crossing nearby")
-      ! Which of the two it is, as far away as each other, rounding decides.
+      ! At equal distances rounding decides between the two.
       call find_ahead(network, corners, 1_ik, [1.0_rk, -0.496_rk], [1.5_rk, 0.0_rk], 0.03_rk, &
                       target, at)
       call checks%is_close(norm2(at - [2.0_rk, -0.5_rk]), 0.0_rk, round_off, "a T nearby")
@@ -110,7 +110,7 @@ contains
       call sees([1.0_rk, 0.0_rk], [0.0_rk, -5.0_rk], target_boundary, [1.0_rk, -4.0_rk], "a side")
       call sees([1.99_rk, 0.0_rk], [0.02_rk, 1.0_rk], 2_ik, [2.0_rk, 0.0_rk], &
                 "at one degree: to the nearest place")
-      ! A hook comes back to its first segment, but not to those next to its tip.
+      ! A hook returns to its first segment, but not to those next to its tip.
       network%first = [1_ik, 5_ik]
       network%xy = reshape([0.0_rk, 0.0_rk, 1.0_rk, 0.0_rk, 1.0_rk, 0.5_rk, 0.5_rk, 0.5_rk], [2, 4])
       network%s_start = [0.0_rk]

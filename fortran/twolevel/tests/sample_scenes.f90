@@ -14,8 +14,8 @@ module sample_scenes
 
 contains
 
-   !> 2 m x 2 m of the rock of Paper C, left and lower side on rollers, pressed from the right and
-   !! from above.
+   !> Body of 2 m x 2 m of the rock of Paper C, left and lower side on rollers, loaded from the
+   !! right and from above.
    pure function squeezed_body(from_right, from_above) result(scene)
       real(rk), intent(in) :: from_right, from_above  !< total stress, compression positive [Pa]
       type(scene_t) :: scene
@@ -36,7 +36,7 @@ contains
       scene%growth%intensities = .true.
    end function squeezed_body
 
-   !> A fracture of 1 mm residual aperture through the given points.
+   !> A fracture of 1 mm residual aperture through prescribed points.
    pure subroutine add_fracture(scene, name, x, y, friction, dilation)
       type(scene_t), intent(inout) :: scene
       character(len=*), intent(in) :: name
@@ -48,7 +48,7 @@ contains
                                                      dilation=dilation, aperture=1.0e-3_rk)]
    end subroutine add_fracture
 
-   !> Begin a scene, find its initial state, and the intensities in that.
+   !> Begin a scene, find its initial state, and evaluate the intensities in this state.
    subroutine evaluate_initial_state(scene, simulation, timers, error)
       type(scene_t), intent(in) :: scene
       type(twolevel_simulation_t), intent(inout) :: simulation

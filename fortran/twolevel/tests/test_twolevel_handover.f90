@@ -1,4 +1,4 @@
-!> What the coarse level learns of growth, and the direction that a small scene's tips settle for.
+!> Growth passed to the coarse level, and the direction of growth in a small scene.
 program test_twolevel_handover
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -63,8 +63,8 @@ contains
       call checks%is_close(maxval(abs(xy - expected)), 0.0_rk, 1.0e-13_rk, name)
    end subroutine is_at
 
-   !> Both ends grow by two kinked increments: the coarse level gets one segment for each, and the
-   !! fine network becomes the same, arc lengths included.
+   !> Both ends grow by two kinked increments: the coarse level gets one segment for each end, and
+   !! the fine network becomes the same, arc lengths included.
    subroutine test_hand_over()
       type(network_t) :: network, coarse
       type(tip_t) :: tips(2)
@@ -86,7 +86,8 @@ contains
       call is_at(centres(:, 2), tips(2)%xy, "place of change 2")
       call compare(network, coarse)
       call checks%is_true(all(coarse%first == [1_ik, 5_ik, 7_ik]), "one vertex for each end")
-      ! Tip 1 turned by 0.3 and back: its segments are 0.3 apart in direction. Tip 2 turned twice.
+      ! Tip 1 has turned by 0.3 and back: the directions of its segments differ by 0.3. Tip 2 has
+      ! turned twice.
       gain = 2.0_rk*increment*cos(0.15_rk)
       call checks%is_close(coarse%s_start(1), -gain, 1.0e-14_rk, "arc length of the new start")
       call checks%is_close(end_gain(coarse, straight_network(lines), 1_ik, 1_ik), gain, &
@@ -95,7 +96,7 @@ contains
                            2.0_rk*increment*cos(0.3_rk), 1.0e-14_rk, "gain of the end")
       call is_at(tips(1)%direction, -[cos(0.15_rk), sin(0.15_rk)], "direction of the start")
       call is_at(tips(2)%direction, [cos(0.9_rk), sin(0.9_rk)], "direction of the end")
-      ! And on from there.
+      ! Further growth.
       do k = 1, 2
          call grow(network, tips(k), 0.0_rk, 2.0_rk*increment)
       end do
@@ -106,7 +107,7 @@ contains
                            "arc length again")
    end subroutine test_hand_over
 
-   !> No difference between two networks but rounding of arc lengths.
+   !> Two networks are equal within rounding of arc lengths.
    subroutine compare(a, b)
       type(network_t), intent(in) :: a, b
 
@@ -118,14 +119,14 @@ contains
       call checks%is_close(total_length(a), total_length(b), 1.0e-14_rk, "lengths")
    end subroutine compare
 
-   !> Nothing is handed over below the threshold; then a tip with at least half of it goes along,
-   !! one with less stays pending.
+   !> No growth is passed on below the threshold; at the threshold a tip with at least half of it is
+   !! included, a tip with less stays pending.
    subroutine test_threshold()
       type(network_t) :: network, coarse
       type(tip_t) :: tips(2)
       real(rk), allocatable :: centres(:, :)
       logical :: is_straightened
-      real(rk), parameter :: less = 0.48_rk  ! of the increment
+      real(rk), parameter :: less = 0.48_rk  ! share of the increment [-]
 
       call start(network, tips)
       coarse = network
@@ -145,8 +146,8 @@ contains
       call compare(network, coarse)
    end subroutine test_threshold
 
-   !> Wings of a sliding fracture: the first kink is that of the criterion, later increments end
-   !! where the criterion says straight on, within two degrees.
+   !> Wings of a sliding fracture: the first kink is that of the criterion; later increments end
+   !! where the criterion leads straight on, within two degrees.
    subroutine test_correction()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation

@@ -1,5 +1,6 @@
 !> Scenes with a state in situ on both levels: the same stress from tractions and in situ, a body at
-!! rest under its weight on a mesh made anew, and a crack opened in a stress that grows with depth.
+!! rest under its weight on a remeshed body, and a crack opened in a stress that increases with
+!! depth.
 program test_twolevel_in_situ
    use base_errors, only: error_t
    use base_kinds, only: pi, rk
@@ -26,8 +27,8 @@ program test_twolevel_in_situ
 
 contains
 
-   !> Undrained pressure of uniform rock under a mean stress s in the plane, before which it had
-   !! none: with the fluid content S p + alpha e = 0 and s = (lambda + G) e - alpha p.
+   !> Undrained pressure of uniform rock under a mean stress s in the plane, from a state without
+   !! pressure: with the fluid content S p + alpha e = 0 and s = (lambda + G) e - alpha p.
    pure real(rk) function undrained_pressure(scene, mean_stress) result(pressure)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: mean_stress  !< [Pa]
@@ -39,9 +40,10 @@ contains
       pressure = -rock%biot(1)*mean_stress/(stiffness*rock%storage(1) + rock%biot(1)**2)
    end function undrained_pressure
 
-   !> Rock that tractions press, undrained, and rock that was so pressed in situ, at the pressure
-   !! that this makes: one fracture near a side, which its window reaches, slips at the start and
-   !! under injection. All but the displacements, which count from another state, is the same.
+   !> Rock loaded by tractions, undrained, and rock with the same stress in situ, at the undrained
+   !! pressure: one fracture near a side, within reach of its window, slips at the start and under
+   !! injection. All results but the displacements, which are relative to another state, are the
+   !! same.
    subroutine check_twins(is_sparse)
       logical, intent(in) :: is_sparse
       type(scene_t) :: scene
@@ -78,8 +80,8 @@ contains
          call same(one%fracture_volume, other%fracture_volume, 1.0e-9_rk, "volume")
          call checks%is_true(one%n_slip == other%n_slip .and. one%n_stick == other%n_stick, &
                              "contact states")
-         ! The two are the same but for what the integral makes of a stress in situ, which is the
-         ! quadrature of its domain: 1e-6 of K.
+         ! The difference of the two is the quadrature error of the stress in situ in the domain
+         ! integral: 1e-6 of K.
          call same(loaded%tip(2)%intensity%k2, in_situ%tip(2)%intensity%k2, 1.0e-5_rk, "K_II")
          call same(loaded%tip(2)%intensity%k2_dc, in_situ%tip(2)%intensity%k2_dc, 1.0e-9_rk, &
                    "K_II by displacement correlation")
@@ -117,7 +119,7 @@ contains
 
    subroutine same(value, expected, tolerance, name)
       real(rk), intent(in) :: value, expected
-      real(rk), intent(in) :: tolerance  !< relative [-]
+      real(rk), intent(in) :: tolerance  !< relative difference [-]
       character(len=*), intent(in) :: name
 
       call checks%is_close(value, expected, tolerance*abs(expected), name)
@@ -137,8 +139,8 @@ contains
       scene%initial%pressure = 1.0e5_rk
    end function basin
 
-   !> Fractures that cross and one near a side: nothing moves, before and after the coarse mesh is
-   !! made anew around a tip, and no window finds an intensity beside 75 MPa.
+   !> Fractures that cross and one near a side: no displacement, before and after the coarse mesh is
+   !! remeshed around a tip, and no intensity in any window compared with 75 MPa.
    subroutine check_rest()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -168,11 +170,11 @@ contains
                           "contact bears the stress beyond the pressure")
    end subroutine check_rest
 
-   !> A vertical crack of 0.4 m that a volume of fluid opens in tight rock: the mean of K_I at both
-   !! tips is that of the volume, and their difference that of a net pressure with the gradient
-   !! g = d sigma_xx/dy + d p/dy, K_I = p sqrt(pi a) +- g a/2 sqrt(pi a) (Tada, Paris, Irwin 2000,
-   !! from the point forces of 5.11). The gradients are a thousand times those of the earth, so that
-   !! the crack, small beside the body, has a difference of 20 %.
+   !> A vertical crack of 0.4 m opened by a fluid volume in tight rock: the mean of K_I at both tips
+   !! is that of the volume, and their difference that of a net pressure with the gradient g = d
+   !! sigma_xx/dy + d p/dy, K_I = p sqrt(pi a) +- g a/2 sqrt(pi a) (Tada, Paris, Irwin 2000, from
+   !! the point forces of 5.11). The gradients are a thousand times those of the earth, so that the
+   !! crack, small compared with the body, has a difference of 20 %.
    subroutine check_gradient()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation

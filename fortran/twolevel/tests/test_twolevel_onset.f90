@@ -1,4 +1,4 @@
-!> Uncertainty of an onset: exact for an intensity with a constant second derivative in time, solved
+!> Error of an onset time: exact for an intensity with a constant second derivative in time, solved
 !! by backward Euler.
 program test_twolevel_onset
    use base_kinds, only: rk
@@ -14,8 +14,8 @@ program test_twolevel_onset
 
 contains
 
-   !> dK/dt = 2 t by backward Euler gives K = t**2 + h t in steps of h: too large by h t. The first
-   !! step, which is not judged, makes h**2 of it.
+   !> dK/dt = 2 t by backward Euler leads to K = t**2 + h t in steps of h: too large by h t. The
+   !! first step, which has no error estimate, contributes h**2.
    subroutine test_curved()
       type(approach_t) :: approach
       real(rk), parameter :: h = 0.1_rk, t = 2.0_rk
@@ -32,14 +32,14 @@ contains
       call checks%is_close(approach%drive%error, h*t - h**2, 1.0e-12_rk, "what is known of it")
       call checks%is_close(approach%uncertainty(0.03_rk), (h*t - h**2 + 0.04_rk)/(2.0_rk*t), &
                            1.0e-12_rk, "in time")
-      ! K = 0.01 n (n + 1) passes 2 between n = 13 and 14, by straight lines.
+      ! K = 0.01 n (n + 1) passes 2 between n = 13 and 14, by linear interpolation.
       call checks%is_close(approach%onset, h*(13.0_rk + (2.0_rk - 1.82_rk)/0.28_rk), 1.0e-12_rk, &
                            "when the toughness was reached")
       call approach%follow(21*h, 1.9_rk, 0.01_rk, 2.0_rk)
       call checks%is_close(approach%onset, h*(13.0_rk + (2.0_rk - 1.82_rk)/0.28_rk), 1.0e-12_rk, &
                            "for the first time")
-      ! A tip at 1.9 after a rise of 0.01 in a step of h, found to have grown: at this rate, but no
-      ! later than then.
+      ! A tip at 1.9 after an increase of 0.01 in a step of h, found to have grown: at this rate,
+      ! but no later than this state.
       approach = approach_t()
       call approach%follow(0.0_rk, 1.89_rk, 0.0_rk, 2.0_rk)
       call approach%follow(h, 1.9_rk, 0.0_rk, 2.0_rk)
@@ -49,7 +49,7 @@ contains
                            "no later than growth")
    end subroutine test_curved
 
-   !> An intensity that does not rise tells nothing about the time.
+   !> An intensity that does not increase gives no onset time.
    subroutine test_flat()
       type(approach_t) :: approach
 

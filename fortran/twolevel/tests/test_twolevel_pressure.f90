@@ -10,7 +10,8 @@ program test_twolevel_pressure
    implicit none(type, external)
 
    integer(ik), parameter :: n = 10  !< coarse cells, from s = 0 to 1 m
-   real(rk), parameter :: tip(2) = [0.03_rk, 0.96_rk]  !< within the first and the last of them [m]
+   !> positions within the first and the last cell [m]
+   real(rk), parameter :: tip(2) = [0.03_rk, 0.96_rk]
    type(checks_t) :: checks
    type(mesh_t) :: coarse
    type(fine_mesh_t) :: fine
@@ -26,7 +27,7 @@ program test_twolevel_pressure
 
 contains
 
-   !> One fracture; the window holds all of it in 93 cells.
+   !> One fracture; the window contains all of it in 93 cells.
    subroutine make_meshes()
       integer(ik), parameter :: n_fine = 93
       integer(ik) :: i
@@ -44,7 +45,7 @@ contains
       fine%fracture%tip_end = [1_ik, 2_ik]
    end subroutine make_meshes
 
-   !> The middle of what is behind the tip of a coarse cell [m].
+   !> Middle of the part of a coarse cell that lies behind its tip [m].
    pure real(rk) function middle(j)
       integer(ik), intent(in) :: j
 
@@ -67,8 +68,8 @@ contains
       end do
    end subroutine test_linear
 
-   !> A tip at the end of a cell, by round-off in the next one: pressures are finite, and those
-   !! of a tip that lies before it.
+   !> A tip at the end of a cell, by rounding in the next one: pressures are finite, and those of a
+   !! tip that lies before the end.
    subroutine test_reached_cell()
       type(pressure_map_t) :: map
       type(mesh_t) :: moved
@@ -79,7 +80,7 @@ contains
       pressure = [(1.0e6_rk*i**2, i=1, n)]
       do k = -1, 1
          moved = coarse
-         ! The last cell begins at the tip, but for a bit of its coordinate.
+         ! The last cell begins at the tip, within rounding of its coordinate.
          last = tip(2) + k*spacing(tip(2))
          moved%fracture%cell_s(2, n - 1) = last
          moved%fracture%cell_s(1, n) = last
@@ -149,8 +150,8 @@ contains
       call checks%is_close(maxval(found), 1.0e6_rk*n, 1.0e-6_rk, "highest pressure")
    end subroutine test_limits
 
-   !> In cells that have not grown, or at a tip beyond the coarse fracture, the last cell's
-   !! pressure.
+   !> In cells that growth has not added, or at a tip beyond the coarse fracture, the pressure of
+   !! the last cell.
    subroutine test_other_tips()
       type(pressure_map_t) :: map
       type(fine_mesh_t) :: longer

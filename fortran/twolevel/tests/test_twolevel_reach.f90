@@ -1,4 +1,4 @@
-!> What hangs together in a small network, by hand; stretches of fractures.
+!> Connected parts of a small network, by hand; intervals on fractures.
 !!
 !!         6
 !!         |           9 --- 10     13
@@ -6,13 +6,13 @@
 !!         |           11             14 -- 15
 !!         7 - 8
 !!
-!! Fractures: 1 2 3 4 5, crossed at 3 by 6 3 7, on whose end 7 the fracture 7 8 begins (V); apart
-!! from these 10 9, which meets 9 11 in a V; and 13 14 15 by itself.
+!! Fractures: 1 2 3 4 5, crossed at 3 by 6 3 7, on whose end 7 the fracture 7 8 begins (V); separate
+!! from these 10 9, which meets 9 11 in a V; and 13 14 15 alone.
 program test_twolevel_reach
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t, point_corner, point_interior, point_joint_x, point_tip
    use testing_checks, only: checks_t
-   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, stretches_t
+   use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
    implicit none(type, external)
 
    integer, parameter :: n_cells = 11, n_points = 15
@@ -51,7 +51,8 @@ contains
       end do
    end subroutine make_network
 
-   !> From cell 1 the crossing and what begins at its end; not across a cell that does not pass.
+   !> From cell 1 the crossing and the fracture that begins at its end; not across a cell that does
+   !! not conduct.
    subroutine test_reach()
       logical :: expected(n_cells), passes(n_cells), starts(n_cells)
 
@@ -87,9 +88,9 @@ contains
       call checks%is_close(connections_per_branch(none), 0.0_rk, 0.0_rk, "and nothing connected")
    end subroutine test_connections
 
-   !> Stretches take in those that they meet, on their own fracture.
+   !> Intervals are merged with those that they meet, on the same fracture.
    subroutine test_stretches()
-      type(stretches_t) :: stretches
+      type(intervals_t) :: stretches
 
       call stretches%clear()
       call checks%is_close(stretches%length(), 0.0_rk, 0.0_rk, "none")

@@ -1,5 +1,5 @@
-!> A try of a step that is rejected leaves no trace, wherever tips are and whatever it has begun:
-!! all parts of the state are as before to the last bit, and a run with further tries is the same.
+!> A rejected try of a step changes nothing, wherever the tips are and whatever it has begun: all
+!! parts of the state are restored to the last bit, and a run with further tries is the same.
 program test_twolevel_rejected
    use testing_checks, only: checks_t
    use base_errors, only: error_t
@@ -15,7 +15,7 @@ program test_twolevel_rejected
    use twolevel_stepping, only: trial_t
    implicit none(type, external)
 
-   integer, parameter :: most = 60  !< states that are followed
+   integer, parameter :: most = 60  !< number of states compared
    type(checks_t) :: checks
    type(timers_t) :: timers
 
@@ -26,7 +26,7 @@ program test_twolevel_rejected
 
 contains
 
-   !> A copy is equal; a change of a part is found, and called by its name.
+   !> A copy is equal; a change of a part is found, and reported by its name.
    subroutine test_parts()
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
@@ -56,7 +56,7 @@ contains
       call checks%is_true(equal(state, copy), "nothing and none are the same")
    end subroutine test_parts
 
-   !> Tries of several lengths before each state, beside the run without.
+   !> Tries of several lengths before each state, compared with the run without.
    subroutine test_rejected()
       real(rk), parameter :: lengths(2) = [0.5_rk, 8.0_rk]
       type(history_row_t), allocatable :: alone(:), row(:)
@@ -79,7 +79,7 @@ contains
       end do
    end subroutine test_rejected
 
-   !> Those of all wells, row after row.
+   !> Values of all wells, row after row.
    pure function pressures(rows)
       type(history_row_t), intent(in) :: rows(:)
       real(rk), allocatable :: pressures(:)
@@ -95,7 +95,7 @@ contains
       call checks%is_close(maxval(abs(a - b)), 0.0_rk, 0.0_rk, what//" are the same bits")
    end subroutine same
 
-   !> A fracture that is injected into and grows at both ends, and one beside it.
+   !> A fracture with a well that grows at both ends, and one next to it.
    pure function two_fractures() result(scene)
       type(scene_t) :: scene
 
@@ -111,12 +111,12 @@ contains
       scene%injections = [injection_t(fracture=1, rate=[1.0e-7_rk])]
    end function two_fractures
 
-   !> The states of a run, with tries that are rejected before each of its steps.
+   !> States of a run, with rejected tries before each of its steps.
    subroutine follow(length, row, k, new_meshes)
-      real(rk), intent(in) :: length  !< of the tries, over that of the step; 0: there are none [-]
+      real(rk), intent(in) :: length  !< length of the tries, over that of the step; 0: no tries [-]
       type(history_row_t), allocatable, intent(out) :: row(:)  !< (states)
       real(rk), allocatable, intent(out) :: k(:, :)  !< (tips, states) K_eq [Pa m^1/2]
-      integer, intent(out) :: new_meshes  !< tries with one of their own
+      integer, intent(out) :: new_meshes  !< number of tries with a separate mesh
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
       integer :: i
@@ -126,7 +126,7 @@ contains
       call checks%no_error(error, "begin")
       allocate (row(most), k(size(simulation%tip), most))
       do i = 1, most
-         ! The first two states are that at rest and one with no rates before it.
+         ! The first two states are that at rest and one without previous rates.
          if (length > 0.0_rk .and. i > 2) call reject(simulation, length, new_meshes)
          call simulation%next_state(timers, error)
          if (.not. allocated(error)) call simulation%grow(timers, error)
@@ -137,12 +137,12 @@ contains
       end do
    end subroutine follow
 
-   !> Two tries that are rejected for their error in time: at once, and with the tips where they
-   !! come to rest, or later.
+   !> Two tries that are rejected for their time error: at once, and with the tips in equilibrium,
+   !! or later.
    subroutine reject(simulation, length, new_meshes)
       type(twolevel_simulation_t), intent(inout) :: simulation
-      real(rk), intent(in) :: length  !< over that of the step [-]
-      integer, intent(inout) :: new_meshes  !< tries with one of their own
+      real(rk), intent(in) :: length  !< length of the tries, over that of the step [-]
+      integer, intent(inout) :: new_meshes  !< number of tries with a separate mesh
       type(error_t), allocatable :: error
       type(step_report_t) :: report
       type(trial_t) :: trial

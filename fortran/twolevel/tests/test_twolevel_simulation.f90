@@ -1,4 +1,4 @@
-!> Whole scenes: wells, growth of both ends alike, fluid that is neither made nor lost by growth.
+!> Whole scenes: wells, equal growth of both ends, fluid balance under growth.
 program test_twolevel_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -10,7 +10,7 @@ program test_twolevel_simulation
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
    use testing_checks, only: checks_t
-   use twolevel_probe, only: measure_rivals
+   use twolevel_probe, only: measure_interaction
    use twolevel_results, only: cell_state
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
@@ -33,8 +33,8 @@ program test_twolevel_simulation
 contains
 
    !> A well in the rock, with a rate up to a pressure, after an initial state in equilibrium: it
-   !! gives its rate, then what its pressure lets through; a try that is put back leaves the same
-   !! matrix, though its conductances depend on the step's length.
+   !! flows at its rate, then at the rate that its pressure allows; an undone try leaves the same
+   !! matrix, although its conductances depend on the length of the step.
    subroutine test_rock_well()
       real(rk), parameter :: limit = 8.0e6_rk
       type(scene_t) :: scene
@@ -129,8 +129,8 @@ contains
       end do
    end subroutine test_wells
 
-   !> A sealed body squeezed from all sides by rollers, which looks the same from both ends of the
-   !! fracture in its middle; fluid is let into that.
+   !> A sealed body compressed from all sides by rollers, symmetric about the middle of its
+   !! fracture, where fluid is injected.
    function symmetric_scene(new_volume) result(scene)
       character(len=*), intent(in) :: new_volume
       type(scene_t) :: scene
@@ -153,7 +153,7 @@ contains
       scene%injections = [injection_t(fracture=1, rate=[1.0e-7_rk])]
    end function symmetric_scene
 
-   !> A step that does not converge leaves everything as it is.
+   !> A step that does not converge changes nothing.
    subroutine test_refused_step()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -180,7 +180,7 @@ contains
       call checks%is_true(simulation%now%undrained, "still the initial state")
    end subroutine test_refused_step
 
-   !> A step of the scene's length, taken if it converges.
+   !> A step of the scene's length, accepted if it converges.
    subroutine step(simulation, report, error)
       type(twolevel_simulation_t), intent(inout) :: simulation
       type(step_report_t), intent(out) :: report
@@ -193,8 +193,8 @@ contains
       call simulation%begin_step()
    end subroutine step
 
-   !> Both ends grow alike, and all fluid is accounted for: what the wells gave and what new cells
-   !! brought along is what rock and fractures have gained.
+   !> Both ends grow equally, and all fluid is accounted for: the injected fluid and that in new
+   !! cells is the increase in rock and fractures.
    subroutine test_growth(new_volume)
       character(len=*), intent(in) :: new_volume
       type(scene_t) :: scene
@@ -268,8 +268,8 @@ contains
          /simulation%now%fluid%injected
    end subroutine test_growth
 
-   !> Tips in equilibrium: no accepted state beyond the toughness, tips that advance are at it, both
-   !! ends grow alike, and all fluid is accounted for.
+   !> Tips in equilibrium: no accepted state above the toughness, tips that advance are at the
+   !! toughness, both ends grow equally, and all fluid is accounted for.
    subroutine test_equilibrium()
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
@@ -292,7 +292,7 @@ contains
          call check_probe(simulation)
          if (any(simulation%tip%advance > 0.1_rk*increment)) then
             grown = grown + 1
-            ! A new piece of a path begins with a twentieth of its length, and a kink.
+            ! A new segment begins with a twentieth of its length, and a kink.
             begins = all(simulation%now%segment%reached < 0.051_rk*increment)
             call checks%is_true((maxval(ratio) > 0.98_rk .or. begins) .and. &
                                 minval(ratio) > 0.8_rk, "tips that advance are at it")
@@ -301,8 +301,8 @@ contains
       call checks%is_true(grown >= 3, "there is growth")
       gain = [end_gain(simulation%network, simulation%start, 1_ik, 1_ik), &
               end_gain(simulation%network, simulation%start, 1_ik, 2_ik)]
-      ! The growth at the start is unstable: which end is ahead in it, windows alike but for their
-      ! meshes do not tell, and one ends a part of a segment farther.
+      ! The growth at the start is unstable: windows that differ only by their meshes do not
+      ! determine which end leads, and one end advances farther by part of a segment.
       call checks%is_close(gain(1), gain(2), 0.25_rk*increment, "both ends gain alike")
       call checks%is_close(simulation%now%fluid%mass_error/simulation%now%fluid%injected, 0.0_rk, &
                            1.0e-10_rk, &
@@ -310,8 +310,8 @@ contains
       print "(a,2f8.4,a,i0,a)", "equilibrium: gains [m]", gain, ", ", grown, " states of growth"
    end subroutine test_equilibrium
 
-   !> How the tips act on each other, measured in the last step, leaves everything as it was. Either
-   !! tip needs the fluid of the fracture for its growth, and mirrors the other.
+   !> Measuring the tip interaction in the last step changes nothing. Either tip needs the fluid of
+   !! the fracture for its growth, and mirrors the other.
    subroutine check_probe(simulation)
       type(twolevel_simulation_t), intent(inout) :: simulation
       type(state_t) :: state
@@ -322,8 +322,9 @@ contains
       if (.not. all(simulation%now%segment%is_open)) return
       state = simulation%now%coarse
       tip = simulation%tip
-      call simulation%now%rivals%begin(2)
-      call measure_rivals(simulation, spread(.true., 1, 2), simulation%dt, timers, has_measured, &
+      call simulation%now%interaction%begin(2)
+      call measure_interaction(simulation, spread(.true., 1, 2), simulation%dt, timers, &
+         has_measured, &
                           error)
       call checks%no_error(error, "tips are set back")
       call checks%is_true(has_measured .eqv. any(simulation%now%segment%reached &
@@ -337,21 +338,21 @@ contains
                                        simulation%tip%drive%intensity - tip%drive%intensity])), &
                            0.0_rk, 0.0_rk, "and the tips")
       if (.not. has_measured) return
-      associate (matrix => simulation%now%rivals%measured)
+      associate (matrix => simulation%now%interaction%measured)
          call checks%is_true(all(matrix < 0.0_rk), "growth takes fluid from both")
          call checks%is_close(matrix(1, 1), matrix(2, 2), 0.1_rk*maxval(abs(matrix)), "mirrored")
          call checks%is_close(matrix(1, 2), matrix(2, 1), 0.1_rk*maxval(abs(matrix)), "both ways")
       end associate
-      ! The windows are asked anew, for the state to go on from.
+      ! The windows are evaluated again, for the state to continue from.
       call simulation%evaluate(timers, error)
       call checks%no_error(error, "windows")
    end subroutine check_probe
 
-   !> Steps chosen by their error, with tries that are not taken: time goes on by the step that was
-   !! accepted, and the well gives its rate all the time. Tips do not grow before K_IC, and the
-   !! first state with growth follows one in which they have reached it.
+   !> Steps chosen by their error, with rejected tries: time advances by the accepted step, and the
+   !! well flows at its rate all the time. Tips do not grow before K_IC, and the first state with
+   !! growth follows one in which they have reached K_IC.
    subroutine test_chosen_steps(law)
-      character(len=*), intent(in) :: law  !< of growth
+      character(len=*), intent(in) :: law  !< growth law
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
@@ -405,7 +406,7 @@ contains
       end associate
    end function lengths
 
-   !> Volume of the fractures that holds fluid [m2].
+   !> Fluid volume of the fractures [m2].
    function volume(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
       real(rk) :: volume
@@ -414,7 +415,7 @@ contains
                    *lengths(simulation))
    end function volume
 
-   !> Fluid that the fractures took up in a step by its compression, a c_p dp [m2].
+   !> Fluid stored in the fractures in a step by its compression, a c_p dp [m2].
    function compression(simulation, before) result(gain)
       type(twolevel_simulation_t), intent(in) :: simulation
       type(state_t), intent(in) :: before
@@ -425,10 +426,11 @@ contains
       end associate
    end function compression
 
-   !> The well goes on feeding the cells that it fed from the start.
+   !> The well supplies the same cells as at the start.
    subroutine check_shares(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
-      real(rk), parameter :: length = 0.3_rk*sqrt(2.0_rk)  !< of the fracture at the start [m]
+      !> length of the fracture at the start [m]
+      real(rk), parameter :: length = 0.3_rk*sqrt(2.0_rk)
       logical, allocatable :: is_old(:)
 
       call checks%is_close(sum(simulation%problem%share), 1.0_rk, 1.0e-14_rk, "shares after growth")

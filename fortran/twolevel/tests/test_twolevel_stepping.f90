@@ -8,7 +8,7 @@ program test_twolevel_stepping
    use twolevel_wells, only: rate
    implicit none(type, external)
 
-   !> Steps of a given length, and such that their error is small.
+   !> Steps of a prescribed length, and steps with small errors.
    type(time_t), parameter :: given = time_t(end=1.0e4_rk, step=100.0_rk, &
                                              share_after_growth=0.01_rk, smallest_factor=0.1_rk)
    type(time_t), parameter :: chosen = time_t(end=1.0e6_rk, tolerance=0.01_rk, &
@@ -31,7 +31,7 @@ program test_twolevel_stepping
 
 contains
 
-   !> A step ends at a switch; one that would all but reach it does so exactly.
+   !> A step ends at a switch; one that would nearly reach a switch ends there exactly.
    subroutine test_switches()
       type(stepper_t) :: stepper
 
@@ -69,8 +69,8 @@ contains
       call checks%is_true(is_too_short, "below a tenth of the regular step")
    end subroutine test_cuts
 
-   !> The first step is tiny; then the error, which goes with the square of the step, is between an
-   !! eighth and the whole of the tolerance.
+   !> The first step is very short; then the error, which is proportional to the square of the step,
+   !! is between an eighth and the whole of the tolerance.
    subroutine test_error_in_time()
       type(stepper_t) :: stepper
       type(trial_t) :: trial
@@ -145,9 +145,8 @@ contains
       end do
    end subroutine test_decay
 
-   !> What happens at the same share of a step however short that is, as where an intensity is
-   !! another one just after the state before, costs six cuts, and what happens at a time of its own
-   !! is found there.
+   !> An event at the same share of a step however short the step is, as where an intensity changes
+   !! just after the previous state, costs six cuts; an event at a fixed time is located.
    subroutine test_sudden()
       real(rk), parameter :: shares(4) = [0.02_rk, 0.594_rk, 0.9_rk, 0.995_rk], begun = 37.0_rk
       type(stepper_t) :: stepper
@@ -174,7 +173,7 @@ contains
          end do
          call checks%is_true(cuts <= 6, "an arrival at once")
       end do
-      ! K_eq/K_IC is 1/2 before the step, and rises with the square root of time from then on.
+      ! K_eq/K_IC is 1/2 before the step, and increases with the square root of time from then on.
       call stepper%begin(chosen)
       dt = 100.0_rk
       do cuts = 0, 49
@@ -188,7 +187,7 @@ contains
       call checks%is_close(dt, begun, 0.021_rk*begun, "where it is")
    end subroutine test_sudden
 
-   !> In equilibrium a tip goes at most three quarters of a segment in a step.
+   !> In equilibrium a tip advances by at most three quarters of a segment in a step.
    subroutine test_advance()
       type(stepper_t) :: stepper
       real(rk), parameter :: far = 0.9_rk, half = 0.5_rk
@@ -226,9 +225,9 @@ contains
       call checks%is_close(dt, 4.0_rk, 1.0e-14_rk, "the step to the joint")
    end subroutine test_onset
 
-   !> Unstable growth does not get shorter with the step: the shortest one, of a 1e9th of the
-   !! scene's time, comes within six cuts, and is no tinier than half of that. Growth that is fast
-   !! is not passed over by more than the square of what it asks for; the next step starts anew.
+   !> Unstable growth does not become shorter with the step: six cuts lead to the shortest step,
+   !! 1e-9 of the scene's time, and not below half of it. Fast growth is not cut by more than the
+   !! square of the required factor; the next step starts again without previous cuts.
    subroutine test_too_far()
       type(stepper_t) :: stepper
       type(trial_t) :: trial
@@ -266,9 +265,9 @@ contains
       call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
 
-   !> However large errors in time are, no step is shorter than a 64th of the shortest one, but up
-   !! to a switch. Three hundred that are cut to that say that time makes no headway; a longer one,
-   !! or growth, that it does.
+   !> Whatever the time errors, no step is shorter than a 64th of the shortest step, except up to a
+   !! switch. Three hundred steps cut to this length count as no progress in time; a longer step, or
+   !! growth, as progress.
    subroutine test_headway()
       type(stepper_t) :: stepper
       type(trial_t) :: trial
@@ -302,8 +301,8 @@ contains
       call checks%is_close(stepper%next, stepper%shortest/64.0_rk, 1.0e-12_rk, "not beyond it")
    end subroutine test_headway
 
-   !> A step ends where a well comes to its limit; where that is found at its end again and again,
-   !! it is halved.
+   !> A step ends where a well reaches its limit; where the limit is found at the end of the step
+   !! repeatedly, the step is halved.
    subroutine test_limits_of_wells()
       type(stepper_t) :: stepper
       type(trial_t) :: trial
@@ -322,7 +321,8 @@ contains
       call checks%is_close(dt, 364.5_rk, 1.0e-12_rk, "half, the fourth time")
    end subroutine test_limits_of_wells
 
-   !> After an increment steps are short until the pressure of the new cells changes by 1 % at most.
+   !> After an increment steps are short until the pressure of the new cells changes by no more than
+   !! 1 %.
    subroutine test_increments()
       type(stepper_t) :: stepper
 
@@ -342,13 +342,13 @@ contains
    !> A step of the scene after an increment.
    subroutine step_after(stepper, pressure)
       type(stepper_t), intent(inout) :: stepper
-      real(rk), intent(in) :: pressure(:)  !< of the new cells [Pa]
+      real(rk), intent(in) :: pressure(:)  !< pressure of the new cells [Pa]
 
       call stepper%step_done(trial_t(converged=.true.), stepper%next)
       call stepper%settle(pressure)
    end subroutine step_after
 
-   !> A well starts, stops, and gives its mean rate to a step.
+   !> A well starts, stops, and flows at its mean rate in a step.
    subroutine test_wells()
       type(scene_t) :: scene
 
@@ -377,7 +377,7 @@ contains
    subroutine rates_are(scene, now, dt, expected, name)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: now, dt  !< [s]
-      real(rk), intent(in) :: expected  !< of the first well [m2/s]
+      real(rk), intent(in) :: expected  !< rate of the first well [m2/s]
       character(len=*), intent(in) :: name
 
       call checks%is_close(rate(scene%injections(1), now, dt), expected, 0.0_rk, name)

@@ -1,5 +1,5 @@
-!> What an injection makes of fractures, over whole scenes with growth: where the fluid is, what is
-!! stimulated and connected, and slip events that hold all slip.
+!> Effects of an injection on fractures, over whole scenes with growth: distribution of the fluid,
+!! stimulated and connected fractures, and slip events that contain all slip.
 program test_twolevel_stimulation
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -24,8 +24,8 @@ program test_twolevel_stimulation
 
 contains
 
-   !> A fracture at 45 degrees that slips and grows, fed along its whole length; another one far
-   !! from it, which nothing happens to; the right side is drained.
+   !> A fracture at 45 degrees that slips and grows, supplied along its whole length; another one
+   !! far away that does not change; the right side is drained.
    function growing_scene() result(scene)
       type(scene_t) :: scene
 
@@ -52,7 +52,7 @@ contains
       if (.not. allocated(error)) call simulation%grow(timers, error)
    end subroutine go_on
 
-   !> Fluid in every place adds up; lengths are those of the network; events hold all slip.
+   !> The fluid volumes add up; lengths are those of the network; events contain all slip.
    subroutine test_growth(law)
       character(len=*), intent(in) :: law
       type(scene_t) :: scene
@@ -115,8 +115,8 @@ contains
          ", events ", size(simulation%chronicle%slip_events)
    end subroutine test_growth
 
-   !> A bar with a stem on it, and a fracture by itself: in which of them the well is decides what
-   !! is connected.
+   !> A bar with a stem, and a separate fracture: the position of the well determines the connected
+   !! part.
    subroutine test_joint()
       real(rk), parameter :: connected(3) = [0.7_rk, 0.7_rk, 0.3_rk]
       integer :: well
@@ -127,7 +127,7 @@ contains
    end subroutine test_joint
 
    subroutine test_well(well, connected)
-      integer, intent(in) :: well  !< the fracture that it feeds
+      integer, intent(in) :: well  !< fracture that the well supplies
       real(rk), intent(in) :: connected  !< [m]
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -153,7 +153,7 @@ contains
       call checks%is_close(row%connections_per_branch, 0.75_rk, 1.0e-15_rk, "C_B")
    end subroutine test_well
 
-   !> Before a well starts nothing is injected; there is a rise of pressure later only.
+   !> Before a well starts nothing is injected; the pressure rises later only.
    subroutine test_before_the_well()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation

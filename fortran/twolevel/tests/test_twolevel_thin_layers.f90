@@ -6,7 +6,8 @@ program test_twolevel_thin_layers
    implicit none(type, external)
 
    type(checks_t) :: checks
-   !> Rock of E = 40 GPa, nu = 0.2, alpha = 0.8 at k = 1e-19 m2 beside fluid 7.24 MPa above it.
+   !> Rock of E = 40 GPa, nu = 0.2, alpha = 0.8 at k = 1e-19 m2 in contact with fluid at a pressure
+   !! 7.24 MPa higher.
    type(layer_t), parameter :: layer = layer_t(cell=1.0e3_rk, diffusivity=6.172839506e-6_rk, &
                                                drained_tip=0.86_rk, eta=0.3_rk, jump=7.24e6_rk)
    real(rk), parameter :: k(2) = [3.0e6_rk, 1.0e6_rk], age = 800.0_rk
@@ -20,7 +21,7 @@ program test_twolevel_thin_layers
 
 contains
 
-   !> A layer far thinner than a cell counts in full; K_I of closed tips is none.
+   !> A layer far thinner than a cell counts in full; K_I of closed tips is zero.
    subroutine test_thin_layer()
       real(rk) :: errors(2)
 
@@ -31,7 +32,7 @@ contains
       call checks%is_close(errors(1), 0.0_rk, 0.0_rk, "K_I of a closed tip")
    end subroutine test_thin_layer
 
-   !> A layer of ten cells is seen by them.
+   !> A layer of ten cells is resolved.
    subroutine test_wide_layer()
       type(layer_t) :: resolved
       real(rk) :: errors(2)

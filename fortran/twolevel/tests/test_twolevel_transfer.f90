@@ -1,5 +1,5 @@
-!> Transfer of a state without any pattern to a mesh on which a fracture has grown at both ends:
-!! what is kept exactly, what is conserved, and what new fracture cells start with.
+!> Transfer of an irregular state to a mesh on which a fracture has grown at both ends: exactly
+!! preserved parts, conserved quantities, and initial values of new fracture cells.
 program test_twolevel_transfer
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -80,7 +80,8 @@ contains
                call checks%is_close(after%roughness(i), before%roughness(old), 0.0_rk, &
                                     "roughness kept")
             else
-               ! Cells are stored along their fracture: the new ones grew from its first or last.
+               ! Cells are stored along their fracture: the new ones were added at its first or last
+               ! cell.
                old = merge(first, last, mesh%fracture%cell_s(2, i) <= 1.0e-12_rk)
                call checks%is_true(here(i) == 1, "only fracture 1 has grown")
                call checks%is_close(after%residual_aperture(i), new_aperture, 0.0_rk, &
@@ -95,7 +96,7 @@ contains
       end associate
    end subroutine test_cells
 
-   !> A state without pattern on the old mesh.
+   !> An irregular state on the old mesh.
    subroutine various_state(state)
       type(state_t), intent(out) :: state
       integer(ik) :: i
@@ -174,9 +175,9 @@ contains
       call checks%is_true((prefilled > 0.0_rk) .eqv. is_prefilled, "prefilled only if wanted")
    end subroutine test_state
 
-   !> A fracture grows into another one, at a share of a cell: in the middle it is divided, near its
-   !! start the node there moves. The fluid of the fracture is all there, and jumps that are linear
-   !! along it stay so.
+   !> A fracture grows into another one, at a share of a cell: in the middle the cell is divided,
+   !! near its start the node there moves. The fluid of the fracture is preserved, and jumps that
+   !! are linear along it stay linear.
    subroutine test_joint(share)
       real(rk), intent(in) :: share
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 1.0_rk, 0.95_rk, 1.0_rk, 1.0_rk, &
@@ -248,7 +249,7 @@ contains
                           mesh_before%fracture%cell_fracture == 1), "cells have been divided")
    end subroutine test_joint
 
-   !> No difference at all.
+   !> Whether two arrays are equal to the last bit.
    pure function equal(a, b)
       real(rk), intent(in) :: a(:), b(:)
       logical :: equal

@@ -19,7 +19,7 @@ program test_twolevel_trend
 contains
 
    !> Pressures of 3 t**2 in the rock and the fractures, after a range of 100: the error of a step h
-   !! is 3 h**2, whatever the step before, and so is that of the jumps' mean.
+   !! is 3 h**2, whatever the previous step, and so is that of the mean of the jumps.
    subroutine test_parabola()
       type(trend_t) :: trend
       real(rk), parameter :: h = 0.5_rk
@@ -31,7 +31,7 @@ contains
       t = 1.0_rk
       call trend%accept(state_at(0.0_rk), state_at(t), t)
       call checks%is_true(trend%is_known(), "a step")
-      ! Ranges are at least a hundredth of what the load would make: 100.
+      ! Ranges are at least a hundredth of the range that the load would cause: 100.
       call checks%is_close(trend%step_error(state_at(t), state_at(t + h), h, area, length), &
                            3.0_rk*h**2/100.0_rk, round_off, "pressure")
       call trend%accept(jumped(0.0_rk), jumped(t), t)
@@ -39,7 +39,7 @@ contains
                            3.0_rk*h**2/100.0_rk, round_off, "opening")
    end subroutine test_parabola
 
-   !> At rest the whole change is the error, in the mean over the body; without a rate, none.
+   !> At rest the whole change is the error, in the mean over the body; 0 without a rate.
    subroutine test_rest()
       type(trend_t) :: trend
       type(state_t) :: after
@@ -60,7 +60,7 @@ contains
                            0.0_rk, 0.0_rk, "nothing is known")
    end subroutine test_rest
 
-   !> On a new mesh old cells keep their rates, wherever they stand; new ones are not asked.
+   !> On a new mesh old cells keep their rates, whatever their numbers; new cells do not count.
    subroutine test_transfer()
       type(trend_t) :: trend
       type(mesh_map_t) :: map
@@ -85,7 +85,7 @@ contains
                            0.0_rk, 0.0_rk, "rates of slip")
    end subroutine test_transfer
 
-   !> All pressures at a time.
+   !> Set all pressures at a time.
    pure function state_at(t) result(state)
       real(rk), intent(in) :: t
       type(state_t) :: state
@@ -96,7 +96,7 @@ contains
       state%pressure = 3.0_rk*t**2
    end function state_at
 
-   !> With jumps as well, the mean of which has the same curvature, in a larger range.
+   !> Set the jumps as well, with a mean of the same curvature, in a larger range.
    pure function jumped(t) result(state)
       real(rk), intent(in) :: t
       type(state_t) :: state

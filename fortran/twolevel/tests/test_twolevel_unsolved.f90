@@ -1,4 +1,4 @@
-!> What is said of steps that are not solved.
+!> Messages of steps that are not solved.
 program test_twolevel_unsolved
    use testing_checks, only: checks_t
    use base_kinds, only: ik, rk
@@ -48,7 +48,7 @@ program test_twolevel_unsolved
 
 contains
 
-   !> Hold what is said against what is to be said.
+   !> Compare a message with the expected one.
    subroutine says(words, rate, name)
       character(len=*), intent(in) :: words, name
       real(rk), intent(in) :: rate(3)  !< [m2/s]

@@ -1,5 +1,5 @@
-!> Which cells a well feeds: the one whose middle is nearest, two that are equally near half each,
-!! all of a fracture by their lengths; and which after a joint has divided them.
+!> Cells that a well supplies: the cell whose middle is nearest, half each of two that are equally
+!! near, all of a fracture by their lengths; and the cells after a joint has divided them.
 program test_twolevel_wells
    use base_kinds, only: ik, rk
    use mesh_types, only: fracture_mesh_t
@@ -40,8 +40,8 @@ program test_twolevel_wells
 
 contains
 
-   !> A joint divides the last cell at 2.5, and moves the node at 1 to 1.2: each well feeds what it
-   !! fed, the one in the last cell the part that it stands in.
+   !> A joint divides the last cell at 2.5, and moves the node at 1 to 1.2: each well supplies the
+   !! same cells, the well in the last cell the part that contains it.
    subroutine test_transfer()
       type(fracture_mesh_t) :: after
       real(rk), allocatable :: shares(:, :)

@@ -1,5 +1,5 @@
-!> Windows: where they lie in the coarse mesh, uniform stress without intensities, what holds on
-!! their faces, and what contact remembers from step to step and from mesh to mesh.
+!> Windows: position in the coarse mesh, uniform stress without intensities, conditions on the
+!! faces, and the contact history from step to step and from mesh to mesh.
 program test_twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -15,7 +15,7 @@ program test_twolevel_window
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    use twolevel_simulation, only: twolevel_simulation_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
@@ -64,8 +64,8 @@ contains
       call checks%is_true(all(simulation%tip%is_loaded()), "both in windows")
    end subroutine start
 
-   !> The bulk modulus without flow is that of the drained rock plus alpha^2/S; shear does not
-   !! change.
+   !> The bulk modulus without flow is that of the drained rock plus alpha^2/S; the shear modulus
+   !! does not change.
    subroutine test_undrained_constants(plane_stress)
       logical, intent(in) :: plane_stress
       type(scene_t) :: scene
@@ -97,7 +97,7 @@ contains
       call window%set_rock(scene, .true., error)
       call checks%is_close(window%model%elasticity%shear_modulus(), shear, 1.0e-12_rk*shear, &
                            "undrained: shear")
-      ! The same in space, and then the plane: without stress across it, lambda 2 G/(lambda + 2 G).
+      ! The same in three dimensions, then plane stress: lambda 2 G/(lambda + 2 G).
       associate (e => scene%material%young, nu => scene%material%poisson)
          lame = e*nu/((1.0_rk + nu)*(1.0_rk - 2.0_rk*nu)) + scene%material%biot**2/storage
       end associate
@@ -107,11 +107,11 @@ contains
       call checks%is_true(window%undrained, "undrained on record")
    end subroutine test_undrained_constants
 
-   !> An edge that would pass just beside the point where two fractures cross at a small angle,
-   !! where no element fits between them, moves outwards; one that passes farther away stays.
+   !> An edge that would pass close to the point where two fractures cross at a small angle, where
+   !! no element fits between them, moves outwards; one that passes farther away stays.
    subroutine test_edge_beside_crossing(beside, moves)
-      real(rk), intent(in) :: beside  !< of the crossing, from the edge [m]
-      logical, intent(in) :: moves  !< the edge does
+      real(rk), intent(in) :: beside  !< distance of the crossing from the edge [m]
+      logical, intent(in) :: moves  !< whether the edge moves
       real(rk), parameter :: half = 0.2_rk, slope = 0.1_rk, arm = 0.15_rk  ! 5.7 degrees
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -141,10 +141,10 @@ contains
       end if
    end subroutine test_edge_beside_crossing
 
-   !> A fracture that would cross an edge just beside a corner makes the edges move.
+   !> A fracture that would cross an edge close to a corner makes the edges move.
    subroutine test_corner_beside_fracture(beside, moves)
-      real(rk), intent(in) :: beside  !< of the fracture, from the corner along the edge [m]
-      logical, intent(in) :: moves  !< the edge does
+      real(rk), intent(in) :: beside  !< distance of the fracture from the corner along the edge [m]
+      logical, intent(in) :: moves  !< whether the edge moves
       real(rk), parameter :: half = 0.2_rk, arm = 0.15_rk
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -174,8 +174,8 @@ contains
       end if
    end subroutine test_corner_beside_fracture
 
-   !> Vertices on a fracture face lie in a coarse cell of their own side; the weights give their
-   !! place back; a face knows the coarse cell that it lies in.
+   !> Vertices on a fracture face lie in a coarse cell on the same side; the weights reproduce their
+   !! positions; a face is mapped to the coarse cell that contains it.
    subroutine test_projection()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -224,7 +224,7 @@ contains
          do side = 1, 2
             do k = 1, 2
                v = window%model%mesh%face_nodes(k, side, i)
-               ! At the kink the neighbouring cell decides, which may look the other way.
+               ! At the kink the neighbouring cell decides, which may lie on the other side.
                if (norm2(window%model%mesh%xy(:, v) - [kinked_x(2), kinked_y(2)]) < 0.02_rk) cycle
                ahead = cell_centre(coarse, window%map%coarse_cell(v)) - window%model%mesh%xy(:, v)
                associate (tau => window%model%mesh%face_tangent(:, i))
@@ -238,7 +238,7 @@ contains
    end subroutine check_faces
 
    !> A sticking fracture in uniform stress, drained and undrained, under each condition on the
-   !! faces: the window finds the coarse level's linear displacement and no intensity. Given
+   !! faces: the window reproduces the linear coarse displacement without intensities. Prescribed
    !! tractions agree with the displacement on the edge only if the constants are right.
    subroutine test_uniform_stress()
       character(len=8), parameter :: conditions(3) = ["contact ", "jump    ", "traction"]
@@ -303,8 +303,8 @@ contains
       end associate
    end function undrained_strain
 
-   !> What the faces of a window take from the coarse level: the law of their cell, the pressure of
-   !! its fluid, and, in the comparisons, its jump or its traction at the nearer end.
+   !> Values that the faces of a window take from the coarse level: the law of their cell, the
+   !! pressure of its fluid, and, in the comparisons, its jump or its traction at the nearer end.
    subroutine test_conditions()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -374,8 +374,8 @@ contains
       end associate
    end subroutine check_conditions
 
-   !> A step in which nothing happens changes no intensity: the slip has become history, and the
-   !! faces, held by friction, stay where they are. A new mesh takes contact over.
+   !> A step without change of the load changes no intensity: the slip has become history, and the
+   !! faces, held by friction, do not move. A new mesh takes over the contact.
    subroutine test_history()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -384,7 +384,7 @@ contains
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call start(scene, 0.1_rk, degree, simulation)
-      ! The kink opens a little, all else slips.
+      ! The kink opens slightly, the rest slips.
       call checks%is_true(count(simulation%now%coarse%contact == state_slip) >= 20 .and. &
                           all(simulation%now%coarse%contact /= state_stick), "nothing sticks")
       before = simulation%tip%intensity
@@ -400,8 +400,8 @@ contains
    end subroutine test_history
 
    !> The body as one window: uniform stress is exact with the scene's conditions all around; where
-   !! the faces slip both tips have in one solution what each has in a window of its own that is as
-   !! large as the body, and the coarse level has no part in their errors.
+   !! the faces slip both tips have the same intensities in one solution as each in a separate
+   !! window as large as the body, and there is no error by the coarse level.
    subroutine test_body()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: sticking, together, apart
@@ -418,7 +418,7 @@ contains
       end do
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       scene%discretization%window_is_body = .true.
-      ! Fine elements, as they are larger in a square, away from its tip, than in the body.
+      ! Fine elements, since a square has larger elements away from its tip than the body.
       scene%discretization%fine_ratio = 0.25_rk
       call start(scene, 0.1_rk, degree, together)
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
@@ -438,7 +438,7 @@ contains
       call checks%is_true(allocated(apart%reference%slot), "the body beside other windows")
    end subroutine test_body
 
-   !> Both tips have their earlier intensities.
+   !> Check that both tips have their earlier intensities.
    subroutine compare(simulation, before, tolerance, name)
       type(twolevel_simulation_t), intent(in) :: simulation
       type(intensity_t), intent(in) :: before(2)

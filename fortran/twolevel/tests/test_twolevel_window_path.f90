@@ -1,4 +1,4 @@
-!> Paths that a window meshes with fewer vertices: which ones, and that arc lengths stay.
+!> Paths that a window meshes with fewer vertices: the removed vertices, and preserved arc lengths.
 program test_twolevel_window_path
    use base_kinds, only: ik, rk
    use mesh_builder, only: mesh_spec_t
@@ -41,7 +41,7 @@ contains
   network%xy = reshape([(0.25_rk + step*(n - i), 0.25_rk + height*mod(i, 2_ik), i=1, n)], [2_ik, n])
    end function path
 
-   !> Vertices go where the elements are larger than their distance, and only there.
+   !> Vertices are removed where the elements are larger than their distance, and only there.
    subroutine test_far_vertices()
       type(network_t) :: simple
       integer(ik), allocatable :: kept(:)
@@ -63,7 +63,7 @@ contains
       call checks%is_true(longest >= 3.0_rk*step, "path: lines far away are long")
    end subroutine test_far_vertices
 
-   !> Vertices that are off the line by more than 0.5 % of the elements stay.
+   !> Vertices that deviate from the line by more than 0.5 % of the elements stay.
    subroutine test_bends()
       type(network_t) :: simple
       integer(ik), allocatable :: kept(:)
@@ -74,7 +74,7 @@ contains
       call checks%is_true(size(kept) < n, "bends: slight ones go")
    end subroutine test_bends
 
-   !> Where another fracture ends on the path or crosses it, the path stays as it is.
+   !> Where another fracture ends on the path or crosses it, the path stays unchanged.
    subroutine test_other_fractures()
       type(network_t) :: network, simple
       integer(ik), allocatable :: kept(:)
@@ -95,7 +95,7 @@ contains
       end do
    end subroutine test_other_fractures
 
-   !> A path that comes back to itself: where its end meets it, it stays as it is.
+   !> A path that returns to itself: it stays unchanged where its end meets it.
    subroutine test_loop()
       type(network_t) :: network, simple
       integer(ik), allocatable :: kept(:)
@@ -111,8 +111,8 @@ contains
       call checks%is_true(size(kept) < n, "loop: elsewhere vertices go")
    end subroutine test_loop
 
-   !> Where the path leaves the window it stays as it is: displacements there are told apart by
-   !! side.
+   !> Where the path leaves the window it stays unchanged: displacements there differ between the
+   !! sides.
    subroutine test_edge()
       type(network_t) :: network, simple
       integer(ik), allocatable :: kept(:)
@@ -126,8 +126,8 @@ contains
       spec%x_max = 0.5_rk
    end subroutine test_edge
 
-   !> Fracture cells of the simple path have the arc lengths of the whole one: exactly at vertices,
-   !! and in proportion between them.
+   !> Fracture cells of the simplified path have the arc lengths of the whole path: exactly at
+   !! vertices, and in proportion between them.
    subroutine test_arc_lengths()
       type(network_t) :: network, simple
       type(fracture_mesh_t) :: fractures

@@ -1,7 +1,9 @@
-!> Windows outlive small moves of tips that they hold but are not for: intensities change by next to
+!> Windows keep their meshes under small moves of tips that they contain but do not serve: the
+!! intensities hardly change; they change as much as they should once the moves are noticeable.
 !> nothing then, and by as much as they should once the moves are noticeable.
 !>
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m; each of its two windows
+!! contains all of it.
 !> holds all of it.
 program test_twolevel_windows
    use base_errors, only: error_t
@@ -14,7 +16,7 @@ program test_twolevel_windows
    use twolevel_simulation, only: twolevel_simulation_t
    implicit none(type, external)
 
-   real(rk), parameter :: length = 0.1_rk  !< of the crack [m]
+   real(rk), parameter :: length = 0.1_rk  !< length of the crack [m]
    type(checks_t) :: checks
    type(timers_t) :: timers
    type(twolevel_simulation_t) :: simulation
@@ -30,7 +32,7 @@ program test_twolevel_windows
    ! Small moves add up.
    call move(simulation, place, 1.1e-3_rk*length)
    call checks%is_true(is_meshed_for(1_ik) .and. is_meshed_for(2_ik), "noticeable to both")
-   ! Longer by 5 %: K_II by 2.5 % where nothing else is near, half of what the near tip has.
+   ! Longer by 5 %: K_II by 2.5 % without another crack nearby, half of that at the near tip.
    call move(simulation, place, 0.05_rk*length)
    call checks%is_true(is_meshed_for(2_ik), "far")
    call checks%is_close(simulation%tip(2)%intensity%k2/before, sqrt(1.05_rk), 5.0e-3_rk, &
@@ -40,8 +42,8 @@ program test_twolevel_windows
 
 contains
 
-   !> The mesh of a tip's own window follows it along the last piece of its path, forth and back.
-   !! The intensity is the one that a mesh made for that place gives.
+   !> The mesh of a tip's separate window is moved with the tip along the last segment of its path,
+   !! forth and back. The intensity is that of a mesh made for this position.
    subroutine test_following()
       real(rk), parameter :: piece = 0.05_rk*length
       real(rk), parameter :: gains(4) = [-0.4_rk, 0.3_rk, 0.7_rk, 2.5_rk]*piece
@@ -61,13 +63,13 @@ contains
          call checks%is_true(.not. simulation%windows%slot(1)%window%has_moved, "made anew")
          call checks%is_close(followed/simulation%tip(1)%intensity%k2, 1.0_rk, 2.0e-3_rk, &
                               "the intensity of a tip whose window has followed it")
-         ! From the first mesh again.
+         ! Moved from the first mesh again.
          call simulation%windows%network_changed()
          call move(simulation, place, 0.0_rk)
       end do
    end subroutine test_following
 
-   !> The last piece at the first tip is as long as given, or there is only one.
+   !> The last segment at the first tip has the prescribed length, or there is only one segment.
    subroutine start(simulation, piece)
       type(twolevel_simulation_t), intent(inout) :: simulation
       real(rk), intent(in), optional :: piece  !< [m]
@@ -90,10 +92,10 @@ contains
       call checks%no_error(error, "initial state")
    end subroutine start
 
-   !> The first tip goes on from where it was at first, along the crack; the coarse level stays.
+   !> Move the first tip from its initial position along the crack; the coarse level stays.
    subroutine move(simulation, place, by)
       type(twolevel_simulation_t), intent(inout) :: simulation
-      real(rk), intent(in) :: place(2)  !< where it was [m]
+      real(rk), intent(in) :: place(2)  !< initial position [m]
       real(rk), intent(in) :: by  !< [m]
       type(error_t), allocatable :: error
 
@@ -105,7 +107,7 @@ contains
       call checks%no_error(error, "after a move")
    end subroutine move
 
-   !> A window has been meshed for the first tip where it is now.
+   !> Whether a window has been meshed for the present position of the first tip.
    logical function is_meshed_for(window)
       integer(ik), intent(in) :: window
 

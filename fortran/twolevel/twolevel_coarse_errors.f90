@@ -1,6 +1,6 @@
 !> Error estimates of the intensities of the windows: the contribution of the coarse level.
 !!
-!! A window takes the displacement on its edge and the rock's pressure from the coarse level.
+!! A window takes the displacement on its edge and the pressure of the rock from the coarse level.
 !!   - The error of the edge follows from a comparison with the whole body as one window for all
 !!     tips, which takes nothing on its edge: the difference of K, and the error of K there, which
 !!     is that of its elements alone. No factor of safety is therefore needed. The comparison costs
@@ -17,14 +17,14 @@
 !!   - Between the coarse level's cells the displacement is interpolated so that quadratic fields
 !!     are exact (window_t%curved_edge). Half of the change of K with linear interpolation, one
 !!     order lower, counts as error.
-!! Their safety factor is the smallest, in tenths, with which 95 % of the stated errors held in 62
-!! arrangements of one or two cracks and windows as large as these; in networks and smaller windows
-!! 54 to 62 % do (verification/windows_of_scenes).
+!! Their safety factor is the smallest one, in tenths, with which 95 % of the stated errors were
+!! upper bounds in 62 arrangements of one or two cracks and windows as large as these; in networks
+!! and smaller windows 54 to 62 % are (verification/windows_of_scenes).
 !!
-!! An error that no window can reduce and that decreases with time does not prevent growth
-!! (report_watch): it is stated, with a warning. Errors of the coarse level in the pressure of the
-!! fractures are not included.
-module twolevel_trust
+!! An error that no window refinement can reduce and that decreases with time does not prevent
+!! growth (report_watch): the error is stated, with a warning. Errors of the coarse level in the
+!! pressure of the fractures are not included.
+module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_tips, timers_t
@@ -40,21 +40,24 @@ module twolevel_trust
 
    public :: estimate_coarse_errors
 
-   real(rk), parameter :: safety = 1.8_rk  !< error over what the comparisons show [-]
-   real(rk), parameter :: share_of_order = 0.5_rk  !< that the edge's order counts by [-]
-   real(rk), parameter :: share_of_pressure = 0.25_rk  !< that the pressure counts by [-]
+   !> stated error, over the difference in the comparisons [-]
+   real(rk), parameter :: safety = 1.8_rk
+   !> weight of the comparison with linear interpolation [-]
+   real(rk), parameter :: share_of_order = 0.5_rk
+   real(rk), parameter :: share_of_pressure = 0.25_rk  !< weight of the comparison of pressures [-]
 
-   !> A tip is seen as before where its intensities differ by less than this share [-].
+   !> Relative change of the intensities within which the last comparison with the body still
+   !! applies [-].
    real(rk), parameter :: like_before = 0.05_rk
 
-   !> What windows make wrong beside the body differs between two states that are seen alike by no
-   !! more than this many times the error of their elements: in 97 and 93 of 100 states of wings
-   !! (C2, K_I and K_II); once, it is in 96 and 86 [-].
+   !> Change of the difference between window and body while the last comparison applies, over the
+   !! estimated error of the elements: not exceeded in 97 and 93 of 100 states of wings (C2, K_I and
+   !! K_II); a factor of 1 is not exceeded in 96 and 86 [-].
    real(rk), parameter :: of_other_mesh = 2.0_rk
 
 contains
 
-   !> Estimate what the coarse level makes wrong in the intensities that were evaluated last.
+   !> Estimate the errors by the coarse level of the intensities that were evaluated last.
    subroutine estimate_coarse_errors(self, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -90,7 +93,7 @@ contains
       end do
    end subroutine estimate
 
-   !> Hold the windows against the whole body.
+   !> Compare the windows with the whole body as one window.
    subroutine compare_with_body(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -99,7 +102,7 @@ contains
 
       if (.not. is_due(self)) then
          do i = 1, size(tips, kind=ik)
-            if (self%tip(i)%is_loaded()) call judge_as_before(self%now%windows%tip(i))
+            if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do
          return
       end if
@@ -112,13 +115,14 @@ contains
       if (allocated(error)) return
       do i = 1, size(tips, kind=ik)
          if (.not. tips(i)%is_loaded()) cycle
-         call judge_beside(self%now%reference%tip(i), self%now%windows%tip(i))
+         call compare_tip(self%now%reference%tip(i), self%now%windows%tip(i))
          self%now%windows%tip(i)%compared_at = tips(i)%xy
       end do
    end subroutine compare_with_body
 
-   !> The windows have to be held against the body: that costs no mesh, or a tip has gone on for the
-   !! length of a piece since the last time, or has become another one.
+   !> Whether the windows are to be compared with the body again: this requires no mesh, or a tip
+   !! has advanced by the length of a segment since the last comparison, or its intensities have
+   !! changed noticeably.
    pure logical function is_due(self)
       class(two_levels_t), intent(in) :: self
       integer(ik) :: i
@@ -135,8 +139,8 @@ contains
       end do
    end function is_due
 
-   !> What K of the whole body says of a tip.
-   pure subroutine judge_beside(body, tip)
+   !> Errors of a tip from its K in the whole body.
+   pure subroutine compare_tip(body, tip)
       type(window_tip_t), intent(in) :: body
       type(window_tip_t), intent(inout) :: tip
       real(rk) :: of_body(2), of_window(2)
@@ -149,10 +153,11 @@ contains
       tip%of_edge = maxval(tip%uncertain)
       tip%of_elements = max(maxval(of_body), maxval(of_window))
       tip%uncertain = tip%uncertain + max(0.0_rk, of_body - of_window)
-   end subroutine judge_beside
+   end subroutine compare_tip
 
-   !> What K of the whole body has said of a tip a little before. Another mesh errs otherwise.
-   pure subroutine judge_as_before(tip)
+   !> Errors of a tip from the last comparison with the whole body; the mesh is another one, with
+   !! other errors.
+   pure subroutine keep_comparison(tip)
       type(window_tip_t), intent(inout) :: tip
 
       associate (own => [tip%found%k1_error, tip%found%k2_error])
@@ -160,9 +165,9 @@ contains
          if (tip%found%closed) tip%uncertain(1) = abs(tip%lacking(1)) + of_other_mesh*own(1)
          tip%of_elements = maxval(own)
       end associate
-   end subroutine judge_as_before
+   end subroutine keep_comparison
 
-   !> Hold the windows' edges against better and worse ones.
+   !> Compare the edges of the windows with more and less accurate ones.
    subroutine compare_edges(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -179,7 +184,7 @@ contains
       associate (tips => self%now%windows%tip, scene => self%scene, mesh => self%problem%mesh, &
                  linear => self%problem%values%nodal(:2, :))
          do w = 1, size(self%windows%slot, kind=ik)
-            if (.not. self%windows%is_asked(w, self%tip)) cycle
+            if (.not. self%windows%is_active(w, self%tip)) cycle
             associate (window => self%windows%slot(w)%window, &
                        history => self%now%windows%history(w))
                call window%intensities_with(history, better, error, &
@@ -201,10 +206,10 @@ contains
       end associate
    end subroutine compare_edges
 
-   !> What other edges say of a tip.
+   !> Errors of a tip from its K with other edges.
    pure subroutine judge_edges(self, window, better, worse, tip)
       class(two_levels_t), intent(in) :: self
-      type(window_t), intent(in) :: window  !< the tip's
+      type(window_t), intent(in) :: window  !< window of the tip
       real(rk), intent(in), dimension(2) :: better, worse  !< [Pa m^1/2]
       type(window_tip_t), intent(inout) :: tip
 
@@ -221,7 +226,7 @@ contains
       tip%of_elements = max(tip%found%k1_error, tip%found%k2_error)
    end subroutine judge_edges
 
-   !> Let the windows have another pressure in the rock.
+   !> Compare with K at another interpolation of the pressure in the rock.
    subroutine compare_pressures(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -237,7 +242,7 @@ contains
       end if
       !$omp parallel do schedule(dynamic, 1)
       do w = 1, size(self%windows%slot, kind=ik)
-         if (.not. self%windows%is_asked(w, self%tip)) cycle
+         if (.not. self%windows%is_active(w, self%tip)) cycle
          call self%windows%slot(w)%window%intensities_with(self%now%windows%history(w), rough, &
                                                            failure(w)%error, pressure= &
                                                            self%now%coarse%unknowns(3, :))
@@ -255,11 +260,12 @@ contains
       end do
    end subroutine compare_pressures
 
-   !> What a layer of fluid pressure thinner than a coarse cell may do to the intensities of a tip.
+   !> Possible errors of the intensities of a tip by a layer of fluid pressure thinner than a coarse
+   !! cell.
    pure function errors_of_layer(self, tip) result(errors)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: tip
-      real(rk) :: errors(2)  !< of K_I, K_II [Pa m^1/2]
+      real(rk) :: errors(2)  !< errors of K_I and K_II [Pa m^1/2]
       type(layer_t) :: layer
       real(rk) :: age
 
@@ -274,8 +280,8 @@ contains
       end associate
    end function errors_of_layer
 
-   !> A whole fracture cell lies in the window. In one that is smaller there is nothing that the
-   !! coarse level could be compared with, and it knows nothing of the tip itself.
+   !> Whether the window contains a whole fracture cell. A window that contains no whole fracture
+   !! cell gives no estimate, and its edge displacement does not resolve the tip.
    pure logical function holds_a_cell(self, window, tip)
       class(two_levels_t), intent(in) :: self
       type(window_t), intent(in) :: window
@@ -292,8 +298,8 @@ contains
       end associate
    end function holds_a_cell
 
-   !> What a difference of K_I and K_II shows of their errors. What acts on one mode acts on both:
-   !! that it hardly changes one of them is chance, unless the law of contact closes the tip.
+   !> Errors of K_I and K_II from their differences. An error of one mode is an error of both: a
+   !! small difference of a single mode is chance, unless the contact law closes the tip.
    pure function shown(difference, is_closed) result(error)
       real(rk), intent(in) :: difference(2)  !< [Pa m^1/2]
       logical, intent(in) :: is_closed
@@ -303,4 +309,4 @@ contains
       if (is_closed) error(1) = abs(difference(1))
    end function shown
 
-end module twolevel_trust
+end module twolevel_coarse_errors

@@ -1,9 +1,11 @@
-!> Windows that are too small for their tips: intensities are said not to be known, the windows
+!> Windows that are too small for their tips: the errors of the intensities are stated as large, the
+!! windows are enlarged, and the intensities are right then; an accurate window stays as it is.
 !> become larger, and the intensities are right then; a good window stays as it is.
 !>
 !> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
+!! fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in an infinite plane.
 !> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
-program test_twolevel_doubt
+program test_twolevel_refinement
    use testing_checks, only: checks_t
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
@@ -12,21 +14,21 @@ program test_twolevel_doubt
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use report_rows, only: event_growth_uncertain
-   use twolevel_doubt, only: find_improvements, improve_windows, note_uncertain_tips
+   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
    use twolevel_simulation, only: twolevel_simulation_t
-   use twolevel_stepping, only: improvement_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_stepping, only: refinement_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
 
    real(rk), parameter :: a = 0.05_rk  !< half-length [m]
    real(rk), parameter :: pressure = 6.8e6_rk, friction = 0.5_rk
    real(rk), parameter :: known = (5.0e6_rk - friction*(15.0e6_rk - pressure)) &
                           *sqrt(pi*a)  !< K_II [Pa m^1/2]
-   !> Share of `known` by which K of the body differs from that of an infinite one: a^2 over the
-   !! square of its half-width of 1 m, times less than 1.
+   !> Relative difference of K of the body from that of an infinite one: a^2 over the square of its
+   !! half-width of 1 m, times less than 1.
    real(rk), parameter :: finite = a**2
-   real(rk), parameter :: usual_toughness = 4.2e5_rk  !< K_eq is 2 % below it [Pa m^1/2]
+   real(rk), parameter :: usual_toughness = 4.2e5_rk  !< K_eq is 2 % below this toughness [Pa m^1/2]
    type(checks_t) :: checks
    type(timers_t) :: timers
 
@@ -39,7 +41,7 @@ program test_twolevel_doubt
 
 contains
 
-   !> The initial state, evaluated, with errors.
+   !> Evaluate the initial state with its errors.
    subroutine start(window, fine_ratio, simulation, toughness)
       real(rk), intent(in) :: window  !< [m]
       real(rk), intent(in) :: fine_ratio
@@ -78,18 +80,18 @@ contains
       call checks%no_error(error, "errors")
    end subroutine evaluate
 
-   !> Better windows for uncertain tips.
+   !> Refine the windows of uncertain tips.
    subroutine improve(simulation, any_improved)
       type(twolevel_simulation_t), intent(inout) :: simulation
       logical, intent(out) :: any_improved
-      type(improvement_t), allocatable :: improvements(:)
+      type(refinement_t), allocatable :: refinements(:)
 
-      call find_improvements(simulation, 0.0_rk, improvements)
-      any_improved = size(improvements) > 0
-      call improve_windows(simulation, improvements)
+      call find_refinements(simulation, 0.0_rk, refinements)
+      any_improved = size(refinements) > 0
+      call refine_windows(simulation, refinements)
    end subroutine improve
 
-   !> Which of the tips' own windows have a mesh.
+   !> Whether each tip's separate window has a mesh.
    function are_built(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
       logical :: are_built(2)
@@ -98,14 +100,14 @@ contains
       are_built = [(allocated(simulation%windows%slot(i)%window%made), i=1, 2)]
    end function are_built
 
-   !> Smaller than the coarse cell at its tip: K is far off, which shows beside the body; where that
-   !! is not asked nothing is known. Then larger.
+   !> A window smaller than the coarse cell at its tip: K has a large error, which the comparison
+   !! with the body shows; without this comparison there is no estimate. Then a larger window.
    subroutine test_small_window(has_reference)
       logical, intent(in) :: has_reference
       type(twolevel_simulation_t) :: simulation
       logical :: any_improved
       integer :: i
-      real(rk) :: toughness  !< K_eq is 1 % above it, for what is known of K is [Pa m^1/2]
+      real(rk) :: toughness  !< K_eq is 1 % above this toughness, within its error [Pa m^1/2]
 
       toughness = 0.97_rk*usual_toughness
       if (.not. has_reference) simulation%reference_most = 0
@@ -148,12 +150,14 @@ contains
       call checks%is_true(simulation%windows%n_unknowns(simulation%tip) == n_unknowns, &
                           "all of them")
       associate (now => simulation%tip%intensity)
-         ! What verification/tip_cells allows.
+         ! Tolerance of verification/tip_cells.
          call checks%is_true(all(abs(now%k2 - known) < 0.01_rk*known), "K is right")
       end associate
    end subroutine test_good_window
 
-   !> Where the window's own error is the larger one its elements become smaller, until no smaller
+   !> Where the error of the window itself is the larger part its elements become smaller, until no
+   !! smaller ones are possible: then the errors of growth are stated. A pressure dp changes K_II of
+   !! this crack by friction dp sqrt(pi a).
    !> ones are possible: then the errors of growth are stated. A pressure dp changes K_II of this
    !> crack by friction dp sqrt(pi a).
    subroutine test_poor_elements()
@@ -188,8 +192,8 @@ contains
       call checks%is_true(size(simulation%chronicle%events) == n, "once")
    end subroutine test_poor_elements
 
-   !> A window that would have to be nearly as large as the body gives way to that, which both tips
-   !! share; then nothing comes in over an edge.
+   !> A window that would have to be nearly as large as the body is replaced by the body, which both
+   !! tips share; then no error enters over an edge.
    subroutine test_body()
       type(twolevel_simulation_t) :: simulation
       logical :: any_improved
@@ -209,4 +213,4 @@ contains
       call checks%is_true(.not. any(are_built(simulation)), "its own is not built")
    end subroutine test_body
 
-end program test_twolevel_doubt
+end program test_twolevel_refinement

@@ -1,6 +1,6 @@
-!> Tips that stand so near to something that nothing but the rest of a piece lies between: they join
-!! it at once, once they exceed their toughness, and no others do.
-program test_twolevel_pieces
+!> Tips so near to a target that only a ligament lies between: they join it at once where K_eq
+!! exceeds K_IC, and no other tips do.
+program test_twolevel_segments
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
@@ -23,8 +23,8 @@ program test_twolevel_pieces
 
 contains
 
-   !> Rock that no fluid enters and nothing presses much, and a well in the first fracture.
-   !! Fractures that stick are no part of its elastic answer.
+   !> Rock that no fluid enters, under low stress, with a well in the first fracture. Fractures that
+   !! stick do not deform.
    function injected_body() result(scene)
       type(scene_t) :: scene
 
@@ -42,12 +42,12 @@ contains
       scene%injections = [injection_t(fracture=1, rate=[1.0e-6_rk])]
    end function injected_body
 
-   !> March until something has joined, or for so many states.
+   !> Step until a tip has joined, or for a number of states.
    subroutine march(scene, name, simulation, states)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: name
       type(twolevel_simulation_t), intent(out) :: simulation
-      integer, intent(out) :: states  !< until something has joined; 0: nothing has
+      integer, intent(out) :: states  !< number of states until a tip has joined; 0: none has
       type(error_t), allocatable :: error
       integer :: k
 
@@ -72,8 +72,9 @@ contains
                            name//": fluid is conserved")
    end subroutine march
 
-   !> Between two fractures that stick, both tips are alike: they join in one step, and the fluid
-   !! that the others take lets the pressure fall below that of the onset, 2 MPa + K_IC/sqrt(pi a).
+   !> Between two sticking fractures both tips are equal: they join in one step, and the fluid that
+   !! the other fractures take lets the pressure decrease below that of the onset, 2 MPa +
+   !! K_IC/sqrt(pi a).
    subroutine test_two_bars(gap)
       real(rk), intent(in) :: gap  !< [m]
       real(rk), parameter :: half = 0.2_rk
@@ -104,7 +105,7 @@ contains
       end associate
    end subroutine test_two_bars
 
-   !> End to end: one joins the other, which is a tip no more.
+   !> End to end: one tip joins the other, which is deactivated.
    subroutine test_tips_of_two()
       type(scene_t) :: scene
       type(twolevel_simulation_t) :: simulation
@@ -134,4 +135,4 @@ contains
                                       - [2.0_rk, 1.0_rk])), 0.0_rk, 1.0e-4_rk, "straight ahead")
    end subroutine test_side
 
-end program test_twolevel_pieces
+end program test_twolevel_segments

@@ -1,29 +1,30 @@
 !> Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
 !! their signs.
-module twolevel_course
+module twolevel_time_error
    use base_kinds, only: rk
    implicit none(type, external)
    private
 
-   public :: course_t
+   public :: accumulated_error_t
 
-   !> The last value, and how it changes.
-   type :: course_t
-      logical :: is_followed = .false.  !< there is a last value
+   !> Last value of the scalar, its rate, and the accumulated error.
+   type :: accumulated_error_t
+      logical :: is_followed = .false.  !< a last value exists
       real(rk) :: value = 0.0_rk
-      real(rk) :: rate = 0.0_rk  !< in the last step [1/s]
-      real(rk) :: error = 0.0_rk  !< of all steps together, with its sign
-      real(rk) :: step = 0.0_rk  !< the last one [s]
+      real(rk) :: rate = 0.0_rk  !< rate in the last step [1/s]
+      real(rk) :: error = 0.0_rk  !< accumulated error of all steps, with its sign
+      real(rk) :: step = 0.0_rk  !< length of the last step [s]
    contains
       procedure :: follow
-   end type course_t
+   end type accumulated_error_t
 
 contains
 
-   !> A step h after one of length h_b errs by h/(h + h_b) (change - h (rate before)); the first one
-   !! has none to compare with. With a step of 0 the value is that of a new start.
+   !> Add the error of a step. A step h after one of length h_b has the error h/(h + h_b) (change -
+   !! h (rate before)); the first step has no error estimate. A step of length 0 sets the value at a
+   !! new start.
    elemental subroutine follow(self, step, value)
-      class(course_t), intent(inout) :: self
+      class(accumulated_error_t), intent(inout) :: self
       real(rk), intent(in) :: step  !< [s]
       real(rk), intent(in) :: value
 
@@ -39,4 +40,4 @@ contains
       self%value = value
    end subroutine follow
 
-end module twolevel_course
+end module twolevel_time_error

@@ -1,7 +1,8 @@
-!> Tips that only chance tells from each other grow as one; those that something real does, do not.
-program test_growth_company
+!> Tip groups: tips that differ only by numerical errors advance equally; tips with real differences
+!! separate.
+program test_growth_groups
    use base_kinds, only: ik, rk
-   use growth_rivals, only: company_t, could_part, lags_behind, rivals_t
+   use growth_interaction, only: tip_groups_t, could_separate, lags_behind, interaction_t
    use growth_segment, only: segment_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -21,7 +22,7 @@ program test_growth_company
 
 contains
 
-   !> Tips that rest are alike if their errors do not tell them from each other.
+   !> Stopped tips are equal if their difference is within their errors.
    subroutine test_before_growth()
       call checks%is_true(are_one(0.99_rk, 0.995_rk, 0.0_rk), "half a per cent")
       call checks%is_true(.not. are_one(0.99_rk, 0.96_rk, 0.0_rk), "three per cent")
@@ -30,51 +31,54 @@ contains
                           "not equally far")
    end subroutine test_before_growth
 
-   !> In company, meshes throw one and the other back by six per cent in turns.
+   !> In a group, errors of the meshes reduce K_eq of one and the other tip alternately by six per
+   !! cent.
    subroutine test_chance()
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       integer(ik) :: kind(2)
       real(rk) :: drive(2), gain
       integer :: i
 
-      call rivals%begin(2)
+      call interaction%begin(2)
       drive = 1.0_rk
       gain = 0.0_rk
       do i = 1, 100
- call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+ call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+    interaction, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
          drive = [1.0_rk, 0.94_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
-         call company%accept(drive, spread(0.4_rk*increment, 1, 2), spread(increment, 1, 2))
+         call groups%accept(drive, spread(0.4_rk*increment, 1, 2), spread(increment, 1, 2))
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-     call company%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
- call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+     call groups%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+ call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+    interaction, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
 
-   !> One of two lacks what it lacks for good.
+   !> One of two tips has a permanent deficit.
    subroutine test_difference()
       call checks%is_true(steps_in_company(0.02_rk) > 100, "2 % may be the meshes")
       call checks%is_true(steps_in_company(0.04_rk) <= 15, "4 % not over several increments")
       call checks%is_true(steps_in_company(0.20_rk) <= 3, "20 % soon")
    end subroutine test_difference
 
-   !> Where a lead drives a tip on, only what the errors allow is alike.
+   !> Where a lead increases K_eq of a tip, only tips within their errors are equal.
    subroutine test_rivals()
-      real(rk), parameter :: worth(2) = [0.9_rk, 1.1_rk]*could_part/increment
+      real(rk), parameter :: worth(2) = [0.9_rk, 1.1_rk]*could_separate/increment
       integer, parameter :: steps(2) = [101, 1]
       integer :: k
 
       do k = 1, 2
-         call checks%is_true(steps_in_company(0.02_rk, worth(k)) == steps(k), "rivals")
+         call checks%is_true(steps_in_company(0.02_rk, worth(k)) == steps(k), "interaction")
       end do
    end subroutine test_rivals
 
-   !> What keeps a tip in company is chance, not a third of its toughness; nor a sixth, unless that
-   !! is all that is known of it.
+   !> A tip stays in its group with a deficit within the errors of meshes, not with a third of K_IC;
+   !! nor with a sixth, unless this is the error of its K_eq.
    subroutine test_lag()
       call checks%is_true(.not. lags_behind(-0.06_rk, 0.0_rk), "six per cent may be the meshes")
       call checks%is_true(lags_behind(-0.16_rk, 0.02_rk), "sixteen are not")
@@ -83,68 +87,69 @@ contains
       call checks%is_true(.not. lags_behind(0.3_rk, 0.0_rk), "beyond its toughness")
    end subroutine test_lag
 
-   !> One that has parted stays alone, though nothing tells it from the others; these stay one kind.
+   !> A tip that has separated stays alone, although it equals the others; these stay one group.
    subroutine test_parting()
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       integer(ik) :: kind(3)
       real(rk) :: same(3)
 
-      call rivals%begin(3)
+      call interaction%begin(3)
       same = 1.0_rk
-      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              spread(increment, 1, size(same)), rivals, kind)
+      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              spread(increment, 1, size(same)), interaction, kind)
       call checks%is_true(all(kind == 1), "all alike")
-      call company%part(2_ik)
-      call company%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
-      call company%find_kinds(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              spread(increment, 1, size(same)), rivals, kind)
+      call groups%remove_tip(2_ik)
+      call groups%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
+      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              spread(increment, 1, size(same)), interaction, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
 
-   !> Two tips that have grown nowhere yet, or as far as given, are of one kind.
+   !> Whether two tips that have not grown yet, or have grown by `gain`, are one group.
    logical function are_one(one, other, off, gain)
       real(rk), intent(in) :: one, other, off  !< [-]
       real(rk), intent(in), optional :: gain(2)  !< [m]
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       integer(ik) :: kind(2)
       real(rk) :: come(2)
 
-      call rivals%begin(2)
+      call interaction%begin(2)
       come = 0.0_rk
       if (present(gain)) come = gain
-      call company%find_kinds([one, other], [off, off], come, neither, &
-                              spread(increment, 1, 2), rivals, kind)
+      call groups%find_groups([one, other], [off, off], come, neither, &
+                              spread(increment, 1, 2), interaction, kind)
       are_one = kind(1) == kind(2)
    end function are_one
 
-   !> Steps of a fifth of an increment for which two tips of which one lacks a share of K_IC are one
-   !! kind, 101 at most.
+   !> Number of steps of a fifth of an increment for which two tips, one of which has a deficit of a
+   !! share of K_IC, stay one group; 101 at most.
    integer function steps_in_company(lack, lead) result(steps)
       real(rk), intent(in) :: lack  !< [-]
-      real(rk), intent(in), optional :: lead  !< what a lead is worth [1/m]
-      type(company_t) :: company
-      type(rivals_t) :: rivals
+      real(rk), intent(in), optional :: lead  !< change of K_eq/K_IC per length of a lead [1/m]
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
       type(segment_t) :: segment
       integer(ik) :: kind(2)
       real(rk) :: drive(2), gain
       real(rk), parameter :: moved = 0.2_rk*increment
 
-      call rivals%begin(2)
+      call interaction%begin(2)
       if (present(lead)) then
-         call rivals%note(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
-         call rivals%note(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
+         call interaction%store_column(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
+         call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
       end if
       drive = 1.0_rk
       gain = 0.0_rk
       do steps = 0, 100
- call company%find_kinds(drive, known, [gain, gain], neither, spread(increment, 1, 2), rivals, kind)
+ call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+    interaction, kind)
          if (kind(1) /= kind(2)) return
          drive = [1.0_rk, 1.0_rk - lack]
-         call company%accept(drive, [moved, moved], spread(increment, 1, 2))
+         call groups%accept(drive, [moved, moved], spread(increment, 1, 2))
          gain = gain + moved
       end do
    end function steps_in_company
 
-end program test_growth_company
+end program test_growth_groups

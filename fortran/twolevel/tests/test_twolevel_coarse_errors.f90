@@ -1,6 +1,6 @@
-!> The coarse level's part in the errors of intensities: nothing where both levels are exact, the
-!! windows' jumps in the coarse level's terms, and interpolation that is exact for quadratic fields.
-program test_twolevel_trust
+!> Errors of intensities by the coarse level: zero where both levels are exact; the windows' jumps
+!! projected onto the coarse level; interpolation that is exact for quadratic fields.
+program test_twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
@@ -11,7 +11,7 @@ program test_twolevel_trust
    use twolevel_faces, only: coarse_jumps
    use twolevel_simulation, only: twolevel_simulation_t
    use twolevel_thin_layers, only: layer_at_tip, layer_t
-   use twolevel_trust, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
 
    real(rk), parameter :: ends_x(2) = [0.8_rk, 1.2_rk], ends_y(2) = [0.9_rk, 1.1_rk]
@@ -46,7 +46,7 @@ contains
       call checks%is_true(all(simulation%tip%is_loaded()), "both in windows")
    end subroutine start
 
-   !> A sticking fracture in uniform stress: both levels are exact, so nothing is lacking.
+   !> A sticking fracture in uniform stress: both levels are exact, so the correction is zero.
    subroutine test_uniform_stress()
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
@@ -66,8 +66,8 @@ contains
       end do
    end subroutine test_uniform_stress
 
-   !> The forces on the cells of a state that fulfils the equations are those of the boundary; where
-   !! the faces slip, the estimate is no more than a few per cent, and is in the tips.
+   !> The forces on the cells of a state in equilibrium are those of the boundary; where the faces
+   !! slip, the estimate is no more than a few per cent, and is included in the tips' errors.
    subroutine test_balance()
       type(twolevel_simulation_t) :: simulation
       type(error_t), allocatable :: error
@@ -100,8 +100,8 @@ contains
                               simulation%now%windows%tip%uncertain(2)), "the estimate stays")
    end subroutine test_balance
 
-   !> A jump that is linear along the fracture is what the coarse level has at its third points, in
-   !! all cells that lie in the window as a whole.
+   !> A jump that is linear along the fracture equals the coarse jump at its third points, in all
+   !! cells that lie completely in the window.
    subroutine test_linear_jump()
       type(twolevel_simulation_t) :: simulation
       real(rk), allocatable :: found(:, :, :)
@@ -115,7 +115,7 @@ contains
       associate (fracture => simulation%problem%mesh%fracture)
          do cell = 1, fracture%n_cells
             if (fracture%cell_s(1, cell) < entry_of(simulation)) cycle
-            if (cell == fracture%n_cells) cycle  ! the tip's one node has no jump
+            if (cell == fracture%n_cells) cycle  ! the node at the tip has no jump
             n = n + 1
             do end = 1, 2
                s = fracture%cell_s(1, cell) &
@@ -129,8 +129,9 @@ contains
       call checks%is_close(worst, 0.0_rk, 1.0e-12_rk, "a linear jump")
    end subroutine test_linear_jump
 
-   !> A jump of the root of the distance d from the tip: its integral over the last cells, where the
-   !! quarter-point element is exact, is 2/3 d^(3/2), and its first moment 2/5 d^(5/2).
+   !> A jump proportional to the square root of the distance d from the tip: its integral over the
+   !! last cells, where the quarter-point element is exact, is 2/3 d^(3/2), and its first moment 2/5
+   !! d^(5/2).
    subroutine test_root_jump()
       type(twolevel_simulation_t) :: simulation
       real(rk), allocatable :: found(:, :, :)
@@ -143,16 +144,16 @@ contains
          last = fracture%n_cells
          length = fracture%cell_s(2, last) - fracture%cell_s(1, last)
          mean = 2.0_rk/3.0_rk*sqrt(length)
-         first_moment = sqrt(length)*(1.0_rk/3.0_rk - 2.0_rk/5.0_rk)  ! about the cell's middle
+         first_moment = sqrt(length)*(1.0_rk/3.0_rk - 2.0_rk/5.0_rk)  ! about the middle of the cell
       end associate
-      ! Elements behind the rosette take the root as a quadratic.
+      ! Elements behind the rosette approximate the root by a quadratic.
       call checks%is_close(0.5_rk*sum(found(1, :, last)), mean, 2.0e-3_rk*mean, "mean of the root")
       call checks%is_close(found(1, 2, last) - found(1, 1, last), 4.0_rk*first_moment, &
                            1.0e-2_rk*mean, "its slope")
    end subroutine test_root_jump
 
    !> Coarse jumps of the second window for a jump in its displacement on side -: linear in s, or
-   !! the root of the distance from the tip.
+   !! the square root of the distance from the tip.
    function jumps_of(simulation, is_root) result(found)
       type(twolevel_simulation_t), intent(in) :: simulation
       logical, intent(in) :: is_root
@@ -178,14 +179,14 @@ contains
       end associate
    end function jumps_of
 
-   !> Where the fracture enters the second window [m].
+   !> Point where the fracture enters the second window [m].
    pure real(rk) function entry_of(simulation)
       type(twolevel_simulation_t), intent(in) :: simulation
 
       entry_of = minval(simulation%windows%slot(2)%window%model%mesh%face_s)
    end function entry_of
 
-   !> A quadratic displacement, given by its values and gradients at the coarse nodes.
+   !> A quadratic displacement, prescribed by its values and gradients at the coarse nodes.
    subroutine test_curved_edge()
       type(twolevel_simulation_t) :: simulation
       real(rk), allocatable :: edge(:, :), gradient(:, :, :), values(:, :)
@@ -219,8 +220,9 @@ contains
       u = [xy(1)**2 - xy(1)*xy(2), 2.0_rk*xy(2)**2 - 3.0_rk*xy(1)*xy(2) + xy(2)]
    end function quadratic
 
-   !> What the rock's pressure may hide in the cells: nothing where it is uniform; else K answers it
-   !! linearly while all of the fracture slips, and changes twice as much for twice as much of it.
+   !> Errors by the coarse resolution of the rock's pressure: zero where the pressure is uniform;
+   !! else K depends on the gradient linearly while all of the fracture slips, and changes twice as
+   !! much for twice the gradient.
    subroutine test_pressure_in_cells()
       real(rk), parameter :: uniform = 3.0e6_rk, gradient = 2.0e7_rk  ! [Pa], [Pa/m]
       type(twolevel_simulation_t) :: simulation
@@ -272,12 +274,12 @@ contains
       end associate
    end subroutine test_layer_at_tip
 
-   !> That part of the stated errors with a pressure in the rock that grows linearly along x.
+   !> This part of the stated errors with a pressure in the rock that increases linearly along x.
    function passing_of(simulation, uniform, gradient) result(passing)
       type(twolevel_simulation_t), intent(inout) :: simulation
       real(rk), intent(in) :: uniform  !< at x = 1 m [Pa]
       real(rk), intent(in) :: gradient  !< [Pa/m]
-      real(rk) :: passing(2, 2)  !< of K_I and K_II, (2, tips) [Pa m^1/2]
+      real(rk) :: passing(2, 2)  !< (2, tips) errors of K_I and K_II [Pa m^1/2]
       type(error_t), allocatable :: error
       real(rk) :: x
       integer(ik) :: c
@@ -309,4 +311,4 @@ contains
       end do
    end function passing_of
 
-end program test_twolevel_trust
+end program test_twolevel_coarse_errors

@@ -10,7 +10,7 @@
 !!
 !! A segment that would not be longer than such a ligament consists of the ligament alone: the tip
 !! stays, and joins the target once K_eq exceeds the toughness.
-module twolevel_pieces
+module twolevel_segments
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: point_distance, turned
@@ -24,16 +24,18 @@ module twolevel_pieces
    implicit none(type, external)
    private
 
-   public :: begin_pieces, can_join, comes_to, have_come, join_targets
+   public :: begin_segments, can_join, comes_to, are_at_ligaments, join_targets
 
-   !> Share of the last piece that fails at once where the tip exceeds its toughness before it.
-   real(rk), parameter :: rest = 0.05_rk
+   !> Ligament at the end of the last path segment, over the length of the segment: it breaks at
+   !! once where K_eq exceeds the toughness before it [-].
+   real(rk), parameter :: ligament = 0.05_rk
 
 contains
 
-   !> New pieces for tips, which stand at the ends of their paths: their directions are found in the
-   !! tried state; then the coarse level, back in the state before the step, gets their cells.
-   subroutine begin_pieces(self, wants, timers, error)
+   !> Begin new segments for tips at the ends of their paths: find the directions in the tried
+   !! state, return the coarse level to the state before the step, and add the new cells to its
+   !! mesh.
+   subroutine begin_segments(self, wants, timers, error)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: wants(:)  !< (tips)
       type(timers_t), intent(inout) :: timers
@@ -51,7 +53,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. wants(i)) cycle
          ahead(:, i) = way_ahead(self%tip(i), self%rules%increment_of(self%tip(i)%fracture))
-         is_near(i) = has_come(self, i, self%tip(i)%xy, ahead(:, i))
+         is_near(i) = is_at_ligament(self, i, self%tip(i)%xy, ahead(:, i))
       end do
       tip = self%tip
  call self%grow_by(merge(self%increments(), 0.0_rk, is_new .and. .not. is_near), any_grew, timers, &
@@ -67,15 +69,15 @@ contains
             is_new(i) = .false.
          end if
       end do
-      call end_pieces(self, tip, ahead, is_new, centres)
+      call end_segments(self, tip, ahead, is_new, centres)
       call go_back(self%now%coarse, self%before)
       if (size(centres, 2) == 0) return
       call self%remesh_coarse(centres, timers, error)
       self%before = self%now%coarse
-   end subroutine begin_pieces
+   end subroutine begin_segments
 
-   !> Where a tip goes, by the criterion in the present state, before the direction of a new piece
-   !! is corrected.
+   !> Direction of a tip by the criterion in the present state, before the direction of a new
+   !! segment is corrected.
    pure function way_ahead(tip, increment) result(direction)
       type(tip_t), intent(in) :: tip
       real(rk), intent(in) :: increment  !< [m]
@@ -84,30 +86,30 @@ contains
       real(rk) :: kink
 
       ahead = tip
-      call ahead%foresee(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, increment, kink)
+      call ahead%predict(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, increment, kink)
       direction = turned(tip%direction, kink)
    end function way_ahead
 
-   !> Tips with nothing but the rest of a piece before them.
-   pure function have_come(self)
+   !> Whether only a ligament is left ahead of each tip.
+   pure function are_at_ligaments(self)
       class(two_levels_t), intent(in) :: self
-      logical :: have_come(size(self%tip))
+      logical :: are_at_ligaments(size(self%tip))
       integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), segment => self%now%segment(i))
-            have_come(i) = segment%stays()
-            if (have_come(i) .or. .not. tip%is_free .or. segment%is_open .or. &
-                tip%heads_for /= target_none) cycle
+            are_at_ligaments(i) = segment%stays()
+            if (are_at_ligaments(i) .or. .not. tip%is_free .or. segment%is_open .or. &
+                tip%path_target /= target_none) cycle
             if (.not. tip%drive%intensity > 0.5_rk*self%rules%toughness) cycle  ! whatever it is
-            have_come(i) = has_come(self, i, tip%xy, &
+            are_at_ligaments(i) = is_at_ligament(self, i, tip%xy, &
                                     way_ahead(tip, self%rules%increment_of(tip%fracture)))
          end associate
       end do
-   end function have_come
+   end function are_at_ligaments
 
-   !> What a tip that goes straight on comes to is no farther than the rest of a piece.
-   pure logical function has_come(self, i, from, direction)
+   !> Whether the target straight ahead of a tip is no farther than a ligament.
+   pure logical function is_at_ligament(self, i, from, direction)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
       real(rk), intent(in) :: from(2)  !< [m]
@@ -117,18 +119,19 @@ contains
 
       call self%look_ahead(self%now%coarse_network, self%tip(i)%fracture, from, direction, &
                            target, at)
-      has_come = target /= target_none .and. norm2(at - from) &
-                 <= rest*self%rules%increment_of(self%tip(i)%fracture)
-   end function has_come
+      is_at_ligament = target /= target_none .and. norm2(at - from) &
+                 <= ligament*self%rules%increment_of(self%tip(i)%fracture)
+   end function is_at_ligament
 
-   !> Where new pieces end, in the directions that have been found. Tips that head for each other
-   !! meet half way, or where one of them is if they are that near.
-   subroutine end_pieces(self, before, ahead, is_new, centres)
+   !> Find the ends of new segments in their directions. Tips that are each other's targets meet
+   !! half way, or at one of the two tips if these are no farther apart than a ligament.
+   subroutine end_segments(self, before, ahead, is_new, centres)
       class(two_levels_t), intent(inout) :: self
-      type(tip_t), intent(in) :: before(:)  !< the tips as they were before their new pieces
-      real(rk), intent(in) :: ahead(:, :)  !< (2, tips) directions of the pieces, unit vectors
+      type(tip_t), intent(in) :: before(:)  !< tips before their new segments
+      real(rk), intent(in) :: ahead(:, :)  !< (2, tips) directions of the segments, unit vectors
       logical, intent(inout) :: is_new(:)  !< (tips)
-      real(rk), allocatable, intent(out) :: centres(:, :)  !< (2, n) where the network changes [m]
+      !> (2, n) points where the network changes [m]
+      real(rk), allocatable, intent(out) :: centres(:, :)
       logical :: has_end(size(self%tip))
       real(rk) :: to(2, size(self%tip))
       integer(ik) :: i, j, target(size(self%tip))
@@ -145,10 +148,10 @@ contains
                        f => self%tip([i, j])%fracture)
                if (norm2(to(:, i) - b) > rules%near_of(f(1)) .or. &
                    norm2(to(:, j) - a) > rules%near_of(f(2))) cycle
-               if (norm2(a - b) <= rest*minval(rules%increment_of(f))) then
+               if (norm2(a - b) <= ligament*minval(rules%increment_of(f))) then
                   to(:, i) = b
                   is_new(j) = .false.
-                  call take_back(self, before(j), j)
+                  call remove_segment(self, before(j), j)
                else
                   to(:, i) = 0.5_rk*(a + b)
                   to(:, j) = to(:, i)
@@ -160,30 +163,30 @@ contains
       end do
       do i = 1, size(self%tip, kind=ik)
          if (.not. is_new(i)) cycle
-         ! Pieces that have just been made may lie ahead of it.
+         ! Segments created in this loop may lie ahead of the tip.
          if (.not. has_end(i)) call find_end(self, i, ahead(:, i), target(i), to(:, i))
          if (target(i) /= target_none .and. &
              norm2(to(:, i) - self%tip(i)%origin) &
-             <= rest*self%rules%increment_of(self%tip(i)%fracture)) then
-            call take_back(self, before(i), i)
-            self%tip(i)%heads_for = target(i)
+             <= ligament*self%rules%increment_of(self%tip(i)%fracture)) then
+            call remove_segment(self, before(i), i)
+            self%tip(i)%path_target = target(i)
             self%tip(i)%origin = self%tip(i)%xy
-            call stay_before(self, i, to(:, i))
+            call make_ligament(self, i, to(:, i))
          else
-            self%tip(i)%heads_for = target(i)
-            call open_piece(self, i, to(:, i))
+            self%tip(i)%path_target = target(i)
+            call begin_segment(self, i, to(:, i))
          end if
          associate (tip => self%tip(i))
             call extend(self%now%coarse_network, tip%fracture, tip%end, to(:, i))
          end associate
          centres = reshape([centres, to(:, i)], [2, size(centres, 2) + 1])
       end do
-   end subroutine end_pieces
+   end subroutine end_segments
 
-   !> A tip has no new piece after all.
-   subroutine take_back(self, before, i)
+   !> Remove the new segment of a tip.
+   subroutine remove_segment(self, before, i)
       class(two_levels_t), intent(inout) :: self
-      type(tip_t), intent(in) :: before  !< it, as it was without
+      type(tip_t), intent(in) :: before  !< the tip before its new segment
       integer(ik), intent(in) :: i  !< tip
 
       associate (tip => self%tip(i), network => self%network)
@@ -193,9 +196,9 @@ contains
          end if
          tip = before
       end associate
-   end subroutine take_back
+   end subroutine remove_segment
 
-   !> Where the last piece of a tip ends, and on what.
+   !> Find the end and the target of the last segment of a tip.
    pure subroutine find_end(self, i, direction, target, to)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
@@ -211,38 +214,40 @@ contains
       end associate
    end subroutine find_end
 
-   !> All that is left of the way to what a tip heads for is the rest that fails at once.
-   subroutine stay_before(self, i, to)
+   !> Make the whole segment of a tip a ligament.
+   subroutine make_ligament(self, i, to)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: to(2)  !< the place that it heads for [m]
+      real(rk), intent(in) :: to(2)  !< position of the target [m]
 
       associate (tip => self%tip(i))
          call self%now%segment(i)%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), &
                                                norm2(to - tip%xy))
          call self%now%segment(i)%stay_at_start()
       end associate
-   end subroutine stay_before
+   end subroutine make_ligament
 
-   !> Let a tip go along a piece from where its last one has ended.
-   pure subroutine open_piece(self, i, to)
+   !> Open a new segment from the end of the last one.
+   pure subroutine begin_segment(self, i, to)
       class(two_levels_t), intent(inout) :: self
       integer(ik), intent(in) :: i  !< tip
-      real(rk), intent(in) :: to(2)  !< where it ends [m]
-      real(rk) :: gain  ! up to its start [m]
+      real(rk), intent(in) :: to(2)  !< end of the segment [m]
+      real(rk) :: gain  ! growth up to the start of the segment [m]
 
       associate (tip => self%tip(i), segment => self%now%segment(i))
-         if (tip%heads_for /= target_none) tip%direction = (to - tip%origin)/norm2(to - tip%origin)
+         if (tip%path_target /= target_none) then
+            tip%direction = (to - tip%origin)/norm2(to - tip%origin)
+         end if
          call segment%open_segment(tip%origin, tip%direction, norm2(to - tip%origin))
-         if (tip%heads_for /= target_none) call segment%leave_rest(rest)
+         if (tip%path_target /= target_none) call segment%exclude_ligament(ligament)
          gain = end_gain(self%network, self%start, tip%fracture, tip%end) &
                 - norm2(tip%xy - tip%origin)
          call segment%stop_after(self%rules%stop_gain - gain)
       end associate
-   end subroutine open_piece
+   end subroutine begin_segment
 
-   !> Tips that have come so near to what they head for that only the rest has to fail, where that
-   !! is broken itself.
+   !> Whether each tip can join its target: only the ligament is left, and the target is a broken
+   !! part of its fracture, a side of the body, or a tip that can join as well.
    pure function can_join(self)
       class(two_levels_t), intent(in) :: self
       logical :: can_join(size(self%tip))
@@ -250,10 +255,10 @@ contains
 
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i))
-            can_join(i) = tip%is_free .and. tip%heads_for /= target_none .and. &
+            can_join(i) = tip%is_free .and. tip%path_target /= target_none .and. &
                           (self%now%segment(i)%is_complete() .or. .not. self%now%segment(i)%is_open)
-            if (.not. can_join(i) .or. tip%heads_for == target_boundary) cycle
-            can_join(i) = is_broken(self, tip%heads_for, joint_of(self, i))
+            if (.not. can_join(i) .or. tip%path_target == target_boundary) cycle
+            can_join(i) = is_broken(self, tip%path_target, joint_of(self, i))
             do j = 1, size(self%tip, kind=ik)
                if (j /= i) can_join(i) = can_join(i) .or. meet(self, i, j)
             end do
@@ -261,8 +266,8 @@ contains
       end do
    end function can_join
 
-   !> A tip heads for another one that stands there. The rock between them is one: what breaks it
-   !! from either side lets the first one go on, for the other has no way of its own.
+   !> Whether the target of tip i is another tip j that does not advance. They share one ligament:
+   !! if it breaks from either side, tip i joins, since tip j has no segment of its own.
    pure logical function comes_to(self, i, j)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
@@ -274,7 +279,7 @@ contains
       end associate
    end function comes_to
 
-   !> The place that a tip heads for [m].
+   !> Position of the target of a tip [m].
    pure function joint_of(self, i) result(xy)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i  !< tip
@@ -283,7 +288,7 @@ contains
       xy = end_place(self%now%coarse_network, self%tip(i)%fracture, self%tip(i)%end)
    end function joint_of
 
-   !> A place on the path of a fracture lies behind its tips.
+   !> Whether a point on the path of a fracture lies behind its tips.
    pure logical function is_broken(self, fracture, xy)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
@@ -299,20 +304,21 @@ contains
       end associate
    end function is_broken
 
-   !> Two tips head for one place and have both come near to it.
+   !> Whether two tips have the same target, and only ligaments are left before both.
    pure logical function meet(self, i, j)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i, j
 
       associate (tip => self%tip([i, j]), segment => self%now%segment([i, j]))
-         meet = all(tip%is_free .and. tip%heads_for /= target_none .and. &
+         meet = all(tip%is_free .and. tip%path_target /= target_none .and. &
                     (segment%is_complete() .or. .not. segment%is_open))
       end associate
       if (meet) meet = norm2(joint_of(self, i) - joint_of(self, j)) &
                        <= same_place*self%rules%increment
    end function meet
 
-   !> The rests of some pieces fail. What a tip comes to may be another one, which ends there too.
+   !> Break the ligaments of tips and connect them to their targets. A target may be another tip,
+   !! whose path ends there too.
    subroutine join_targets(self, joins)
       class(two_levels_t), intent(inout) :: self
       logical, intent(in) :: joins(:)  !< (tips)
@@ -332,16 +338,16 @@ contains
                   end if
                   call self%now%segment(j)%finish(xy)
                   tip%xy = xy
-                  tip%target = tip%heads_for
+                  tip%target = tip%path_target
                   tip%joined = .true.
                else if (norm2(tip%xy - xy) > same_place*self%rules%increment) then
                   cycle
                end if
-               call tip%cease()
+               call tip%deactivate()
                self%now%segment(j)%is_open = .false.
             end associate
          end do
       end do
    end subroutine join_targets
 
-end module twolevel_pieces
+end module twolevel_segments

@@ -1,12 +1,13 @@
-!> Tips that grow, or might, with considerable errors of pressure or position by the errors of their
-!! intensities (twolevel_growth_errors): the window is improved. Where no improvement is possible,
-!! growth goes on, and the errors are stated with a warning and an event.
+!> Window refinement: the window of a tip that grows, or might grow within the error of K_eq, is
+!! refined if the errors of K_eq lead to considerable errors of pressure or position
+!! (twolevel_growth_errors). Where no refinement is possible, growth continues, and the errors are
+!! stated with a warning and an event.
 !!
-!! The larger part of the error estimate determines the improvement. The error of the window
-!! requires smaller elements. The error of the coarse level, which enters over the edge, requires a
-!! larger window, and finally the body as one window for all tips. A window keeps its improved size
-!! and elements, and moves with its tip.
-module twolevel_doubt
+!! The larger part of the error estimate determines the refinement. The error of the window itself
+!! requires smaller elements. The error of the coarse level, which enters through the displacement
+!! on the edge, requires a larger window, and finally the body as one window for all tips. A window
+!! keeps its refined size and elements, and moves with its tip.
+module twolevel_refinement
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use report_limits, only: limit_growth_error
@@ -14,45 +15,45 @@ module twolevel_doubt
    use report_watch, only: uncertainty
    use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, improvement_t
+   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, refinement_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
    private
 
-   public :: find_improvements, improve_windows, note_uncertain_tips
+   public :: find_refinements, refine_windows, note_uncertain_tips
 
 contains
 
-   !> Improvements of the windows of uncertain tips, which are to be evaluated again with them; none
-   !! where none is possible.
-   subroutine find_improvements(self, time, improvements)
+   !> Find refinements of the windows of uncertain tips; empty where none is possible. The tips are
+   !! to be evaluated again with the refined windows.
+   subroutine find_refinements(self, time, refinements)
       class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< of the last accepted state [s]
-      type(improvement_t), allocatable, intent(out) :: improvements(:)
-      type(improvement_t) :: improvement
+      real(rk), intent(in) :: time  !< time of the last accepted state [s]
+      type(refinement_t), allocatable, intent(out) :: refinements(:)
+      type(refinement_t) :: refinement
       character(len=:), allocatable :: what
       integer(ik) :: i
 
-      allocate (improvements(0))
+      allocate (refinements(0))
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), toughness => self%rules%toughness)
             if (.not. is_uncertain(self, i)) cycle
-            improvement%tip = i
-            call choose(self, i, improvement%kind, what)
+            refinement%tip = i
+            call choose(self, i, refinement%kind, what)
             if (.not. allocated(what)) cycle
-            improvements = [improvements, improvement]
+            refinements = [refinements, refinement]
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
                                           brief_text(uncertainty(tip, toughness), 3)// &
                                           " % of K_IC before", tip%fracture, tip%xy)
          end associate
       end do
-   end subroutine find_improvements
+   end subroutine find_refinements
 
-   !> State the uncertain tips of an accepted state: a limit of the run, and an event at the first
+   !> Report the uncertain tips of an accepted state: a limit of the run, and an event at the first
    !! such state of each tip.
    subroutine note_uncertain_tips(self, is_noted)
       class(two_levels_t), intent(inout) :: self
-      logical, intent(inout) :: is_noted(:)  !< (tips) has had its event
+      logical, intent(inout) :: is_noted(:)  !< (tips) the event has been written
       type(growth_error_t) :: error
       character(len=:), allocatable :: consequences
       integer(ik) :: i
@@ -77,15 +78,18 @@ contains
       end do
    end subroutine note_uncertain_tips
 
-   !> Smaller elements or a larger window; in words, if that is possible.
+   !> Choose smaller elements or a larger window for a tip; `what` describes the refinement, and is
+   !! unallocated if none is possible.
    subroutine choose(self, tip, kind, what)
       class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: tip  !< the doubtful one
+      integer(ik), intent(in) :: tip  !< number of the uncertain tip
       integer, intent(out) :: kind
       character(len=:), allocatable, intent(out) :: what
-      real(rk), parameter :: worth_it = 0.2_rk  !< share of the larger part of the error
-      !> Beyond this [%] it is not the edge alone, and a window that differs from the body by the
-      !> edge alone would have nothing that says so.
+      !> share of the larger part of the error for which the smaller one is reduced [-]
+      real(rk), parameter :: worth_it = 0.2_rk
+      !> Error [%] above which the body is not used as the window: a larger error is not due to the
+      !! edge alone, and a window that differs from the body by the edge alone would not show the
+      !! other part.
       real(rk), parameter :: far_off = 25.0_rk
       type(window_tip_t) :: seen
       logical :: is_finer
@@ -93,8 +97,8 @@ contains
       kind = improve_edge
       seen = self%now%windows%tip(tip)
       associate (window => self%windows%slot(self%windows%window_of(tip))%window)
-         ! What cannot be done leaves the other, if that is worth it. Where the window holds the
-         ! body, it differs from that by the elements alone.
+         ! If one refinement is impossible, the other one is taken where it reduces the error
+         ! noticeably. A window that contains the body differs from it by the elements alone.
          is_finer = seen%of_elements >= seen%of_edge
          if (is_finer .and. .not. seen%can_be_finer()) then
             is_finer = .not. seen%of_edge > worth_it*seen%of_elements
@@ -119,39 +123,40 @@ contains
       end associate
    end subroutine choose
 
-   !> Better windows, next time they are meshed.
-   subroutine improve_windows(self, improvements)
+   !> Refine the windows when they are meshed the next time.
+   subroutine refine_windows(self, refinements)
       class(two_levels_t), intent(inout) :: self
-      type(improvement_t), intent(in) :: improvements(:)
+      type(refinement_t), intent(in) :: refinements(:)
       integer :: k
 
-      do k = 1, size(improvements)
-         associate (i => improvements(k)%tip, windows => self%windows, &
-                    seen => self%now%windows%tip(improvements(k)%tip))
-            select case (improvements(k)%kind)
+      do k = 1, size(refinements)
+         associate (i => refinements(k)%tip, windows => self%windows, &
+                    seen => self%now%windows%tip(refinements(k)%tip))
+            select case (refinements(k)%kind)
             case (improve_elements)
                seen%times_finer = seen%times_finer + 1
-               call windows%make_anew(i, seen)
+               call windows%mesh_again(i, seen)
                if (self%scene%discretization%window_is_body) cycle
                self%now%reference%tip(i)%times_finer = seen%times_finer
-               call self%reference%make_anew(i, self%now%reference%tip(i))
+               call self%reference%mesh_again(i, self%now%reference%tip(i))
             case (improve_edge)
                associate (window => windows%slot(windows%window_of(i))%window)
                   window%times_larger = window%times_larger + 1
                end associate
-               call windows%make_anew(i, seen)
+               call windows%mesh_again(i, seen)
             case default
                call windows%take_body(i, seen)
             end select
          end associate
       end do
-   end subroutine improve_windows
+   end subroutine refine_windows
 
-   !> A window of this size would cost about as much as the body, where that can be one.
+   !> Whether a window of this size would cost about as much as the body, where the body can be the
+   !! window.
    pure logical function costs_as_body(self, edge)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: edge  !< [m]
-      real(rk), parameter :: large = 0.3_rk  ! share of the body's shorter side
+      real(rk), parameter :: large = 0.3_rk  ! share of the body's shorter side [-]
 
       associate (domain => self%scene%domain)
          costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
@@ -159,4 +164,4 @@ contains
       costs_as_body = costs_as_body .and. self%problem%mesh%fracture%n_cells <= self%reference_most
    end function costs_as_body
 
-end module twolevel_doubt
+end module twolevel_refinement

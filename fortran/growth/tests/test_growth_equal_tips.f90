@@ -1,7 +1,7 @@
-!> Tips that are alike count as one, whatever their order.
-program test_growth_kinds
+!> Tip groups: equal tips count as one, whatever their order.
+program test_growth_equal_tips
    use base_kinds, only: ik, rk
-   use growth_competition, only: likes, matrix_of_kinds, means, numbered, of_kinds
+   use growth_competition, only: likes, matrix_of_groups, means, numbered, values_of_groups
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -13,8 +13,8 @@ program test_growth_kinds
 
 contains
 
-   !> Of six tips 2, 5, 4 form a chain, and 1 and 6 a pair that only one of them knows of; any order
-   !! of them gives the same kinds.
+   !> Of six tips 2, 5, 4 form a chain, and 1 and 6 a pair that is marked for only one of them; any
+   !! order of the tips leads to the same groups.
    subroutine test_likes()
       integer(ik), parameter :: expected(6) = [1_ik, 2_ik, 3_ik, 2_ik, 2_ik, 1_ik]
       logical :: alike(6, 6), turned(6, 6)
@@ -43,20 +43,23 @@ contains
                           "numbers of marks")
    end subroutine test_likes
 
-   !> Two kinds of three tips: if the first and third move by one, the means change so.
+   !> Two groups of three tips: changes of the group means if the first and third tip advance by
+   !! one.
    subroutine test_values()
       integer(ik), parameter :: kind(3) = [1_ik, 2_ik, 1_ik]
       real(rk) :: matrix(3, 3), moved(3), reduced(2, 2)
 
       matrix = reshape([-3.0_rk, 1.0_rk, 0.5_rk, 2.0_rk, -5.0_rk, 4.0_rk, 0.25_rk, 1.5_rk, &
                         -2.0_rk], [3, 3])
-      reduced = matrix_of_kinds(kind, matrix)
+      reduced = matrix_of_groups(kind, matrix)
       moved = means(kind, matmul(matrix, [1.0_rk, 0.0_rk, 1.0_rk]))
-      call checks%is_close(maxval(abs(reduced(:, 1) - of_kinds(kind, moved))), 0.0_rk, 1.0e-15_rk, &
+      call checks%is_close(maxval(abs(reduced(:, 1) - values_of_groups(kind, moved))), 0.0_rk, &
+         1.0e-15_rk, &
                            "a kind moves")
       moved = means(kind, matmul(matrix, [0.0_rk, 1.0_rk, 0.0_rk]))
-      call checks%is_close(maxval(abs(reduced(:, 2) - of_kinds(kind, moved))), 0.0_rk, 1.0e-15_rk, &
+      call checks%is_close(maxval(abs(reduced(:, 2) - values_of_groups(kind, moved))), 0.0_rk, &
+         1.0e-15_rk, &
                            "one alone moves")
    end subroutine test_values
 
-end program test_growth_kinds
+end program test_growth_equal_tips

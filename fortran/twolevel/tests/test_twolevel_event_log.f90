@@ -1,5 +1,5 @@
-!> What a simulation notes of its tips: rows before and after growth, joints, arrests, contact.
-program test_twolevel_chronicle
+!> Event log and rows of the tips: before and after growth, joints, arrests, contact.
+program test_twolevel_event_log
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: network_of_scene
@@ -43,7 +43,7 @@ contains
       end do
    end subroutine start
 
-   !> One of two tips has grown by 0.1 m: both rows are of the state before.
+   !> One of two tips has grown by 0.1 m: both rows are of the state before growth.
    subroutine test_rows_of_tips()
       type(twolevel_simulation_t) :: simulation
 
@@ -68,7 +68,7 @@ contains
       end associate
    end subroutine test_rows_of_tips
 
-   !> One tip joins the boundary; the other stops short of it, which is noted once.
+   !> One tip joins the boundary; the other stops before it, which is reported once.
    subroutine test_growth()
       type(twolevel_simulation_t) :: simulation
 
@@ -129,7 +129,7 @@ contains
       end if
    end subroutine test_contact
 
-   !> The scene is over once a tip has gained what it wants.
+   !> The scene ends once a tip has grown by the prescribed gain.
    subroutine test_gain()
       type(twolevel_simulation_t) :: simulation
 
@@ -145,4 +145,4 @@ contains
       call checks%is_true(.not. simulation%is_over(), "but for one more state")
    end subroutine test_gain
 
-end program test_twolevel_chronicle
+end program test_twolevel_event_log

@@ -1,0 +1,94 @@
+!> Estimated errors of fracture length and well pressure while tips grow in equilibrium.
+!!
+!! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid volume in the crack.
+!! If K_eq has an error e K_IC, the error of the tip position is e divided by the slope of K_eq/K_IC
+!! along the path. The pressure error follows from the derivative of the pressure with respect to
+!! the length. Both slopes come from the tries of a step, at the fluid volume of the step. These
+!! errors do not accumulate, since each state is in equilibrium. Before growth the time errors of
+!! the steps accumulate with their signs.
+!!
+!! The error of the coarse cells is added: at each tip a crack opens, slips and leaks as if it were
+!! longer or shorter by at most a tenth of the coarse cell at the tip (coarse_tips: 0.05 in each). A
+!! relative error of the length along which fluid leaks off causes the same relative error of the
+!! pressure rise. Where all fluid leaks off, a crack in equilibrium grows until the injected fluid
+!! leaks off over the true length, so the tip positions have the same error again. Layers of viscous
+!! flow at a tip need finer cells; their error is not included.
+module twolevel_errors
+   use base_kinds, only: rk
+   use twolevel_time_error, only: accumulated_error_t
+   implicit none(type, external)
+   private
+
+   public :: stated_errors_t, tip_excess_t
+
+   !> error of a tip position, over the length of the coarse cell at the tip [-]
+   real(rk), parameter :: share = 0.1_rk
+
+   !> Error of K_eq of a tip in a step, and the data to convert it into an error of the position.
+   type :: tip_excess_t
+      logical :: grows = .false.  !< the tip has advanced in the step
+      real(rk) :: error = 0.0_rk  !< error of K_eq, over K_IC [-]
+      real(rk) :: slope = -1.0_rk  !< derivative of K_eq/K_IC along the path, < 0 [1/m]
+      real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
+   end type tip_excess_t
+
+   !> Estimated errors, and the data of the last tries and of the last step.
+   type :: stated_errors_t
+      real(rk) :: length = 0.0_rk  !< error of the length of all fractures [m]
+      real(rk) :: pressure = 0.0_rk  !< error of the pressure at the wells [Pa]
+      real(rk), allocatable :: tip(:)  !< (tips) errors of the positions [m]
+      integer :: tries = 0  !< number of tries of the present step
+      real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two tries
+      real(rk) :: slope = 0.0_rk  !< derivative of the pressure with respect to the length [Pa/m]
+      type(accumulated_error_t) :: time_error  !< time error of the pressure [Pa]
+   contains
+      procedure :: begin_step
+      procedure :: see_try
+      procedure :: accept
+   end type stated_errors_t
+
+contains
+
+   !> Begin the tries of a new step.
+   elemental subroutine begin_step(self)
+      class(stated_errors_t), intent(inout) :: self
+
+      self%tries = 0
+   end subroutine begin_step
+
+   !> Update the derivative of the pressure from a try of the step.
+   elemental subroutine see_try(self, length, pressure)
+      class(stated_errors_t), intent(inout) :: self
+      real(rk), intent(in) :: length  !< length of the fractures in the try [m]
+      real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
+      real(rk) :: change(2)
+
+      self%tried(:, 1) = self%tried(:, 2)
+      self%tried(:, 2) = [length, pressure]
+      self%tries = self%tries + 1
+      if (self%tries < 2) return
+      change = self%tried(:, 2) - self%tried(:, 1)
+      if (abs(change(1)) > sqrt(epsilon(1.0_rk))*length) self%slope = change(2)/change(1)
+   end subroutine see_try
+
+   !> Update the errors after an accepted step.
+   pure subroutine accept(self, step, pressure, tips, length, rise, leaked)
+      class(stated_errors_t), intent(inout) :: self
+      real(rk), intent(in) :: step  !< length of the step [s]
+      real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
+      type(tip_excess_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: length  !< length of all fractures [m]
+      !> difference of the highest and the lowest pressure of the run so far [Pa]
+      real(rk), intent(in) :: rise
+      real(rk), intent(in) :: leaked  !< share of the injected fluid that has leaked off [-]
+
+      if (.not. allocated(self%tip)) allocate (self%tip(size(tips)), source=0.0_rk)
+      where (tips%grows) self%tip = tips%error/abs(tips%slope) + share*tips%cell*(1.0_rk + leaked)
+      self%length = sum(self%tip)
+      call self%time_error%follow(step, pressure)
+      if (any(tips%grows)) self%time_error%error = 0.0_rk
+      self%pressure = abs(self%slope)*self%length + abs(self%time_error%error)
+      if (length > 0.0_rk) self%pressure = self%pressure + share*sum(tips%cell)/length*rise
+   end subroutine accept
+
+end module twolevel_errors
