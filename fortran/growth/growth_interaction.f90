@@ -100,8 +100,8 @@ contains
       integer(ik), allocatable :: columns(:)
 
       columns = pack(group, segment(group)%reached >= half_way*segment(group)%length .and. &
-                   (.not. self%is_known(group) .or. segment(group)%gain &
-                    - self%known_at(group) > holds_for*segment(group)%length))
+                     (.not. self%is_known(group) .or. segment(group)%gain &
+                      - self%known_at(group) > holds_for*segment(group)%length))
    end function columns_to_measure
 
    !> Store the measurement of a column: one tip has been moved, the other tips have not.

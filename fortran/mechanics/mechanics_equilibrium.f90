@@ -10,7 +10,7 @@ module mechanics_equilibrium
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use growth_competition, only: broyden_update, matrix_of_groups, means, numbered, &
-      values_of_groups, &
+                                 values_of_groups, &
                                  preference
    use growth_control, only: fitted, joined_groups, length_control_t
    use growth_tip, only: tip_t
@@ -292,7 +292,7 @@ contains
          search%is_placed = .false.
          if (updates_matrix .and. size(group) > 1) then
             call broyden_update(self%matrix, search%share*search%advance - search%placed, &
-                                  body%tip(group)%drive%intensity - search%intensity)
+                                body%tip(group)%drive%intensity - search%intensity)
          end if
          call balance_load(body, self%started, limit, timers, self%holds, self%is_loose, &
                            search%slope, error)
@@ -392,7 +392,7 @@ contains
          ! Tip groups do not grow together where the difference is within the error of K.
          self%prefers_one = preference(matrix_of_groups(tip_group, self%matrix), &
                                        values_of_groups(tip_group, means(tip_group, &
-                                          search%slope(group)))) &
+                                                                         search%slope(group)))) &
                             *body%rules%increment > -2.0_rk*together*body%rules%toughness
       end associate
    end subroutine probe_group
@@ -413,7 +413,7 @@ contains
          shortest = values_of_groups(tip_group, max(0.0_rk, least*body%rules%increment - accepted))
          call search%control%improve(excess, matrix_of_groups(tip_group, self%matrix)/needed, &
                                      slope, values_of_groups(tip_group, search%remaining), &
-                                        shortest, &
+                                     shortest, &
                                      tolerance, advance, has_moved)
          search%advance = advance(tip_group)
       end associate

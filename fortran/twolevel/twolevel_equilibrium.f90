@@ -155,7 +155,7 @@ contains
       call self%evaluate(timers, error)
       if (allocated(error)) return
       call self%now%stated_errors%see_try(total_length(self%network), &
-                                      self%problem%well_pressure(self%scene, self%now%coarse))
+                                          self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
       search%unmoved = self%tip%excess(self%rules%toughness)
       if (.not. search%is_last) trial%onset = onset_of(self)
@@ -182,13 +182,13 @@ contains
 
       in_play = is_in_play(self%now%segment, self%tip%excess(self%rules%toughness))
       call search%previous_try%update_interaction(self%now%segment, self%tip, &
-         self%rules%toughness, self%now%interaction)
+                                                  self%rules%toughness, self%now%interaction)
       call measure_interaction(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
       call search%previous_try%begin(self%now%segment, self%tip, self%rules%toughness)
       if (any_moves) search%advances = advances_t()  ! with the measured tip interaction
       call judge_tips(self%now%segment, self%now%interaction, shared_excesses(self), &
-         are_at_ligaments(self), &
+                      are_at_ligaments(self), &
                       self%tip%arrested, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
@@ -205,7 +205,7 @@ contains
       logical :: any_parted, joins(size(self%tip))
 
       call separate_tips(self%now%segment, self%now%groups, self%tip, self%last%front%tip, &
-                        self%rules%toughness, wants, search%kind, any_parted)
+                         self%rules%toughness, wants, search%kind, any_parted)
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
       ! Only now: while other tips still move, they may retreat.
@@ -360,7 +360,7 @@ contains
 
       associate (toughness => self%rules%toughness)
          active = self%now%segment%is_open .or. self%tip%excess(toughness) &
-                 + self%tip%relative_error(toughness) > -lack_of_far
+                  + self%tip%relative_error(toughness) > -lack_of_far
       end associate
    end function active_tips
 
@@ -395,7 +395,7 @@ contains
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! straight segments
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%groups%accept(self%tip%excess(self%rules%toughness), &
-                                   self%tip%advance, self%increments())
+                                  self%tip%advance, self%increments())
       call self%now%segment%accept()
    end subroutine accept_equilibrium
 

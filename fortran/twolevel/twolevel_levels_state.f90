@@ -105,11 +105,11 @@ contains
                  part_t("segments", bytes_of_segments(now%segment)), &
                  part_t("tips active", some_truths(now%active)), &
                  part_t("interaction", [flat(now%interaction%matrix), &
-                    flat(now%interaction%measured), &
-                                   numbers(now%interaction%known_at), &
-                                   some_truths(now%interaction%is_known)]), &
+                                        flat(now%interaction%measured), &
+                                        numbers(now%interaction%known_at), &
+                                        some_truths(now%interaction%is_known)]), &
                  part_t("groups", [integers(now%groups%kind), numbers(now%groups%usual), &
-                                    some_truths(now%groups%is_alone)]), &
+                                   some_truths(now%groups%is_alone)]), &
                  windows_parts("windows", now%windows), &
                  windows_parts("reference", now%reference), &
                  trend_part(now%trend), certainty_part(now%stated_errors), &
@@ -195,10 +195,10 @@ contains
 
       associate (time_error => stated_errors%time_error)
          part = part_t("errors", [stated_errors%length, stated_errors%pressure, &
-            numbers(stated_errors%tip), &
+                                  numbers(stated_errors%tip), &
                                   real(stated_errors%tries, rk), [stated_errors%tried], &
                                   stated_errors%slope, truths([time_error%is_followed]), &
-                                     time_error%value, &
+                                  time_error%value, &
                                   time_error%rate, time_error%error, time_error%step])
       end associate
    end function certainty_part

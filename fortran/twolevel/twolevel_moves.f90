@@ -19,7 +19,7 @@ contains
    !! a segment if they exceed the toughness. Tips of one group take the largest of their excesses,
    !! and so advance equally.
    subroutine judge_tips(segments, interaction, alone, is_at_ligament, is_arrested, kind, &
-      search, moves, wants)
+                         search, moves, wants)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
       type(interaction_t), intent(in) :: interaction
       real(rk), intent(in) :: alone(:)  !< (tips) excess of K_eq over K_IC of each tip [-]

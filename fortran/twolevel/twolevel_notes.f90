@@ -185,7 +185,7 @@ contains
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
-                                   total_length(front%network), now%trend%pressure_rise(), leaked)
+                                     total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate
    end subroutine note_stated_errors
 

@@ -54,8 +54,8 @@ contains
       has_measured = .false.
       if (count(in_play) < 2) return
       columns = self%now%interaction%columns_to_measure(pack([(i, i=1, size(self%tip, &
-         kind=ik))], in_play), &
-                                         self%now%segment)
+                                                                            kind=ik))], in_play), &
+                                                        self%now%segment)
       has_measured = size(columns) > 0
       if (.not. has_measured) return
       state = self%now%coarse
@@ -72,8 +72,8 @@ contains
                call self%evaluate(timers, error)
                if (allocated(error)) return
                call self%now%interaction%store_column(columns(k), shift, &
-                                         tip%excess(self%rules%toughness), &
-                                         self%tip%excess(self%rules%toughness), segment)
+                                                      tip%excess(self%rules%toughness), &
+                                                     self%tip%excess(self%rules%toughness), segment)
             end if
             segment%reached = segment%reached - shift
          end associate
@@ -104,7 +104,7 @@ contains
 
       if (.not. allocated(self%reached)) return
       call interaction%update(segments%reached - self%reached, &
-                        tips%excess(toughness) - self%excess)
+                              tips%excess(toughness) - self%excess)
    end subroutine update_interaction
 
 end module twolevel_probe

@@ -103,7 +103,7 @@ contains
                 tip%path_target /= target_none) cycle
             if (.not. tip%drive%intensity > 0.5_rk*self%rules%toughness) cycle  ! whatever it is
             are_at_ligaments(i) = is_at_ligament(self, i, tip%xy, &
-                                    way_ahead(tip, self%rules%increment_of(tip%fracture)))
+                                              way_ahead(tip, self%rules%increment_of(tip%fracture)))
          end associate
       end do
    end function are_at_ligaments
@@ -120,7 +120,7 @@ contains
       call self%look_ahead(self%now%coarse_network, self%tip(i)%fracture, from, direction, &
                            target, at)
       is_at_ligament = target /= target_none .and. norm2(at - from) &
-                 <= ligament*self%rules%increment_of(self%tip(i)%fracture)
+                       <= ligament*self%rules%increment_of(self%tip(i)%fracture)
    end function is_at_ligament
 
    !> Find the ends of new segments in their directions. Tips that are each other's targets meet

@@ -208,7 +208,7 @@ contains
       if (size(self%scene%injections) == 0) return
       if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
       call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
-                                merge(0.0_rk, self%dt, self%is_initial), rows)
+                                  merge(0.0_rk, self%dt, self%is_initial), rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
    end subroutine note_well_rows
 
@@ -274,8 +274,8 @@ contains
          if (allocated(error)) return
       end if
       if (states_errors(self)) call note_stated_errors(self%scene, self%front_state_t, &
-         self%problem, &
-                                                   self%dt, self%now)
+                                                       self%problem, &
+                                                       self%dt, self%now)
       if (may_grow .and. self%is_equilibrium()) then
          call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
       end if

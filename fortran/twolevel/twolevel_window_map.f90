@@ -53,7 +53,7 @@ contains
          end do
       end do
       located = pack([(v, v=1, fine%n_nodes)], [(v <= fine%n_vertices .or. fine%on_boundary(v), &
-                                               v=1, fine%n_nodes)])
+                                                 v=1, fine%n_nodes)])
       allocate (cells(size(located)))
       call locate(mesher, inside(:, located), cells, error)
       if (allocated(error)) return

@@ -19,7 +19,7 @@ module twolevel_window_tip
       integer :: times_finer = 0  !< number of refinements
       !> intensities of the last solution, without the error by the coarse level
       type(intensity_t) :: found
-      !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), from
+      !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), by
       !! the last comparison [Pa m^1/2]: signed correction, and estimated error
       real(rk) :: lacking(2) = 0.0_rk, uncertain(2) = 0.0_rk
       real(rk) :: compared(2) = 0.0_rk  !< K_I, K_II of the window then [Pa m^1/2]

@@ -54,11 +54,11 @@ contains
       reduced = matrix_of_groups(kind, matrix)
       moved = means(kind, matmul(matrix, [1.0_rk, 0.0_rk, 1.0_rk]))
       call checks%is_close(maxval(abs(reduced(:, 1) - values_of_groups(kind, moved))), 0.0_rk, &
-         1.0e-15_rk, &
+                           1.0e-15_rk, &
                            "a kind moves")
       moved = means(kind, matmul(matrix, [0.0_rk, 1.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(reduced(:, 2) - values_of_groups(kind, moved))), 0.0_rk, &
-         1.0e-15_rk, &
+                           1.0e-15_rk, &
                            "one alone moves")
    end subroutine test_values
 

@@ -44,8 +44,8 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do i = 1, 100
- call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
-    interaction, kind)
+         call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+                                 interaction, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
          drive = [1.0_rk, 0.94_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
@@ -53,9 +53,9 @@ contains
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-     call groups%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
- call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
-    interaction, kind)
+      call groups%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+      call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+                              interaction, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
 
@@ -143,8 +143,8 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do steps = 0, 100
- call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
-    interaction, kind)
+         call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
+                                 interaction, kind)
          if (kind(1) /= kind(2)) return
          drive = [1.0_rk, 1.0_rk - lack]
          call groups%accept(drive, [moved, moved], spread(increment, 1, 2))

@@ -67,16 +67,16 @@ contains
       segment = pieces()
       call interaction%begin(n)
       call checks%is_true(size(interaction%columns_to_measure(all_tips, segment)) == n, &
-         "nothing is known")
+                          "nothing is known")
       call checks%is_true(interaction%preference_of(all_tips) < 0.0_rk, "nor said")
       call measure(interaction, segment)
       call checks%is_close(maxval(abs(interaction%matrix - truth())), 0.0_rk, 1.0e-15_rk, &
-         "measured")
+                           "measured")
       call checks%is_true(size(interaction%columns_to_measure(all_tips, segment)) == 0, &
-         "all is known")
+                          "all is known")
       segment(3)%gain = 10.0_rk
       call checks%is_true(all(interaction%columns_to_measure(all_tips, segment) == [3_ik]), &
-         "one has gone far")
+                          "one has gone far")
       ! (1, 1, -1, -1): own - shadow; the tips of one crack against each other: own.
       call checks%is_close(interaction%preference_of(all_tips), own - shadow, 1.0e-13_rk, &
                            "one crack could run ahead")
@@ -97,14 +97,14 @@ contains
       moved = [0.01_rk, 0.0_rk, -0.01_rk, 0.0_rk]
       call interaction%update(moved, matmul(other, moved))
       call checks%is_close(maxval(abs(interaction%matrix - truth())), 0.0_rk, 1.0e-15_rk, &
-         "too little")
+                           "too little")
       moved = [0.3_rk, 0.1_rk, -0.2_rk, 0.0_rk]
       call interaction%update(moved, matmul(other, moved))
       call checks%is_close(maxval(abs(matmul(interaction%matrix - other, moved))), 0.0_rk, &
-         1.0e-14_rk, &
+                           1.0e-14_rk, &
                            "learnt")
       call checks%is_close(maxval(abs(interaction%measured - truth())), 0.0_rk, 1.0e-15_rk, &
-         "measured")
+                           "measured")
    end subroutine test_learning
 
    !> Interaction of groups: the sum over their tips, or the slope of a segment where a tip has not

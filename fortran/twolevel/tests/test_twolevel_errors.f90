@@ -27,7 +27,7 @@ contains
       call accept(stated_errors, [.true., .true.])
       call checks%is_close(stated_errors%length, 7.0e-3_rk, 1.0e-12_rk, "length")
       call checks%is_close(stated_errors%pressure, 7.0e3_rk + 0.01_rk*3.0e6_rk, 1.0e-3_rk, &
-         "pressure")
+                           "pressure")
       ! The error of a stopped tip stays.
       call accept(stated_errors, [.false., .false.])
       call checks%is_close(stated_errors%length, 7.0e-3_rk, 1.0e-12_rk, "length at rest")
@@ -39,9 +39,9 @@ contains
       logical, intent(in) :: grows(2)
 
       call stated_errors%accept(1.0_rk, 3.0e6_rk, &
-                            [tip_excess_t(grows(1), 0.01_rk, -5.0_rk, 0.01_rk), &
-                             tip_excess_t(grows(2), 0.01_rk, -5.0_rk, 0.01_rk)], &
-                            0.2_rk, 3.0e6_rk, 0.5_rk)
+                                [tip_excess_t(grows(1), 0.01_rk, -5.0_rk, 0.01_rk), &
+                                 tip_excess_t(grows(2), 0.01_rk, -5.0_rk, 0.01_rk)], &
+                                0.2_rk, 3.0e6_rk, 0.5_rk)
    end subroutine accept
 
    !> p' = 2 t by backward Euler with the step h is h t too large at t; the error h**2 of the first
@@ -60,7 +60,7 @@ contains
          call stated_errors%accept(h, p, no_tips, 0.0_rk, 0.0_rk, 0.0_rk)
       end do
       call checks%is_close(stated_errors%pressure, p - 4.0_rk - h**2, 1.0e-12_rk, &
-         "error of the steps")
+                           "error of the steps")
       call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "nothing has grown")
    end subroutine test_steps
 

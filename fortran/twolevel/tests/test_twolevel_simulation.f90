@@ -324,8 +324,8 @@ contains
       tip = simulation%tip
       call simulation%now%interaction%begin(2)
       call measure_interaction(simulation, spread(.true., 1, 2), simulation%dt, timers, &
-         has_measured, &
-                          error)
+                               has_measured, &
+                               error)
       call checks%no_error(error, "tips are set back")
       call checks%is_true(has_measured .eqv. any(simulation%now%segment%reached &
                                                  >= 0.5_rk*simulation%now%segment%length), &
