@@ -157,7 +157,9 @@ def test_what_is_left_out_saves(
     """Each part of a scene costs; without it its components execute nothing, or less."""
     components = ("mechanics", "coarse", "twolevel", "fine", "contact", "growth", "report")
     with capsys.disabled():
-        print("\nthousands of instructions" + "".join(f"{component:>10}" for component in components))
+        print(
+            "\nthousands of instructions" + "".join(f"{component:>10}" for component in components)
+        )
         for name, counts in profiles.items():
             by_component = counts.components()
             numbers = "".join(f"{by_component[component] / 1e3:>10.0f}" for component in components)
@@ -167,14 +169,17 @@ def test_what_is_left_out_saves(
         ("porous body", "with a well", "two levels"),
     )
     for chain in chains:
-        totals = [sum(profiles[name].components()[component] for component in components) for name in chain]
+        totals = [
+            sum(profiles[name].components()[component] for component in components)
+            for name in chain
+        ]
         assert totals == sorted(totals)
         assert len(set(totals)) == len(totals)
 
 
 @pytest.mark.usefixtures("program")
 def test_mechanics_links_nothing_of_the_fluid() -> None:
-    """The component's own test program holds no symbol of the coarse level or of both levels in time."""
+    """The test program of the component has no symbol of the coarse level or of both levels."""
     names = shutil.which("nm")
     assert names is not None  # comes with the compiler
     build = TOP / "build" / "release" / "fortran"

@@ -45,7 +45,9 @@ def faults_of_components(components: list[str]) -> list[str]:
     for place, component in enumerate(components):
         listed = set(listed_components(component)) & set(components)
         used = used_components(component, components)
-        faults += [f"{component} uses {name}, which its USES lacks" for name in sorted(used - listed)]
+        faults += [
+            f"{component} uses {name}, which its USES lacks" for name in sorted(used - listed)
+        ]
         faults += [f"{component} lists {name} in USES in vain" for name in sorted(listed - used)]
         faults += [
             f"{component} uses {name}, which stands after it in CMakeLists.txt"

@@ -81,8 +81,8 @@ std::set<Point> ring_of(const ApiMesh& mesh, int fracture, int end) {
     return ring;
 }
 
-// The same body, split the same way, with the rosettes and the arc lengths of a mesh made again, and
-// with cells of about its sizes and shapes.
+// The same body, split the same way, with the rosettes and the arc lengths of a mesh made again,
+// and with cells of about its sizes and shapes.
 void check_like_new(Checks& checks, const ApiMesh& grown, const ApiMesh& anew,
                     const std::string& name) {
     checks.is_true(grown.error.empty(), name + ": " + grown.error);

@@ -1,5 +1,5 @@
 !> Contact on random networks of fractures under random loads that follow each other: no solution
-!! may fail, and each fulfils the law of contact, written out here independently, to 1e-8 of the largest
+!! may fail, and each fulfils the law of contact, written out here again, to 1e-8 of the largest
 !! traction. Friction from none to 2, with dilation and without, T and X joints, kinks, fractures
 !! that end on the boundary.
 program test_fine_contact_random
