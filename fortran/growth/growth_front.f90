@@ -41,6 +41,7 @@ module growth_front
    contains
       procedure :: increment_of
       procedure :: near_of
+      procedure :: look_ahead
    end type growth_rules_t
 
    !> State that growth changes: the network and the tips at its free ends.
@@ -60,7 +61,6 @@ module growth_front
       procedure :: grow_tips
       procedure :: grow_by
       procedure :: has_gained
-      procedure :: look_ahead
       procedure :: increments
    end type front_t
 
@@ -278,7 +278,7 @@ contains
 
    !> Target straight ahead of a tip.
    pure subroutine look_ahead(self, network, fracture, from, direction, target, at)
-      class(front_t), intent(in) :: self
+      class(growth_rules_t), intent(in) :: self
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture  !< number of the growing fracture
       real(rk), intent(in) :: from(2)  !< [m]
@@ -286,11 +286,9 @@ contains
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
       real(rk), intent(out) :: at(2)  !< [m]
 
-      associate (rules => self%rules)
-         call find_ahead(network, rules%outline, fracture, from, &
-                         foresight*rules%increment_of(fracture)*direction, &
-                         rules%near_of(fracture), target, at)
-      end associate
+      call find_ahead(network, self%outline, fracture, from, &
+                      foresight*self%increment_of(fracture)*direction, self%near_of(fracture), &
+                      target, at)
    end subroutine look_ahead
 
    !> Shorten the advance of a tip with a target ahead to half the distance to the target. Where
@@ -309,9 +307,9 @@ contains
       direction = (to - from)/norm2(to - from)
       associate (fracture => self%tip(i)%fracture)
          if (self%rules%joins) then
-            call self%look_ahead(self%network_before, fracture, from, direction, target, at)
+            call self%rules%look_ahead(self%network_before, fracture, from, direction, target, at)
          else
-            call self%look_ahead(self%network, fracture, from, direction, target, at)
+            call self%rules%look_ahead(self%network, fracture, from, direction, target, at)
          end if
       end associate
       room = advance
@@ -354,8 +352,8 @@ contains
       integer :: k
 
       from = self%tip(i)%xy
-      call self%look_ahead(self%network_before, self%tip(i)%fracture, from, &
-                           (to - from)/norm2(to - from), target, at)
+      call self%rules%look_ahead(self%network_before, self%tip(i)%fracture, from, &
+                                 (to - from)/norm2(to - from), target, at)
       to = at
       self%tip(i)%target = target
       self%tip(i)%joined = .true.
@@ -434,8 +432,8 @@ contains
       at = 0.0_rk
       associate (tip => self%tip(i))
          if (.not. tip%advance > 0.0_rk .or. tip%arrested) return
-         call self%look_ahead(self%network_before, tip%fracture, tip%origin, tip%direction, &
-                              target, at)
+         call self%rules%look_ahead(self%network_before, tip%fracture, tip%origin, tip%direction, &
+                                    target, at)
          if (norm2(at - tip%origin) > advance &
              + (foresight - 1.0_rk)*self%rules%increment_of(tip%fracture)) then
             target = target_none

@@ -222,6 +222,8 @@ module scene_types
       real(rk) :: new_aperture = 1.0e-5_rk  !< residual aperture of new fracture cells [m]
       character(len=name_length) :: new_volume = "conserved"  !< "conserved" or "prefilled"
       real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which the run ends [m]
+   contains
+      procedure :: in_equilibrium
    end type growth_t
 
    !> A point where the matrix state is recorded.
@@ -281,6 +283,13 @@ module scene_types
    end type scene_t
 
 contains
+
+   !> Whether tips grow in equilibrium; else by the growth law at the ends of steps.
+   pure logical function in_equilibrium(self)
+      class(growth_t), intent(in) :: self
+
+      in_equilibrium = self%enabled .and. self%law == "equilibrium"
+   end function in_equilibrium
 
    !> Longest step [s].
    pure real(rk) function longest(self)

@@ -18,10 +18,10 @@ module twolevel_equilibrium
    use growth_targets, only: target_none
    use twolevel_refinement, only: find_refinements
    use twolevel_growth_errors, only: is_uncertain
-   use twolevel_excess, only: arrivals, at_joints, first_onset, onset, shared_excesses, &
-                              tolerance
+   use twolevel_excess, only: arrivals, at_joints, first_onset, onset, tolerance
    use twolevel_moves, only: is_in_play, judge_tips, keep_together, separate_tips
-   use twolevel_segments, only: begin_segments, can_join, are_at_ligaments, join_targets
+   use twolevel_segments, only: are_at_ligaments, begin_segments, can_join, join_targets, &
+                                shared_excesses
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: previous_try_t, measure_interaction
    use twolevel_state, only: two_levels_t
@@ -187,8 +187,9 @@ contains
       if (allocated(error)) return
       call search%previous_try%begin(self%now%segment, self%tip, self%rules%toughness)
       if (any_moves) search%advances = advances_t()  ! with the measured tip interaction
-      call judge_tips(self%now%segment, self%now%interaction, shared_excesses(self), &
-                      are_at_ligaments(self), &
+      call judge_tips(self%now%segment, self%now%interaction, &
+                      shared_excesses(self%front_state_t, self%now, self%rules), &
+                      are_at_ligaments(self%front_state_t, self%now, self%rules), &
                       self%tip%arrested, search%kind, search%advances, moves, wants)
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
@@ -214,7 +215,7 @@ contains
       if (search%is_over) return
       call stop_gained(self, search, wants, trial)
       if (search%is_over) return
-      joins = wants .and. can_join(self)
+      joins = wants .and. can_join(self%front_state_t, self%now, self%rules)
       wants = wants .and. self%tip%path_target == target_none
       if (.not. (trial%has_joined .or. trial%jumps)) then
          trial%time_error = self%step_error(search%dt)
@@ -273,7 +274,7 @@ contains
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
          if (search%is_over) return
       end if
-      call join_targets(self, joins)
+      call join_targets(self%front_state_t, self%now, self%rules, joins)
       trial%has_joined = .true.
       search%previous_try = previous_try_t()
       search%advances = advances_t()

@@ -1,15 +1,13 @@
 !> Excess of the tips over their toughness in a tried step, and the share of the step after which
 !! they reach the toughness or a target.
 module twolevel_excess
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
-   use twolevel_segments, only: comes_to
-   use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
-   public :: arrivals, at_joints, first_onset, onset, shared_excesses, tolerance
+   public :: arrivals, at_joints, first_onset, onset, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
 
@@ -21,24 +19,6 @@ module twolevel_excess
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
 contains
-
-   !> Excess of K_eq over K_IC. Where the target of tip i is another tip j that does not advance,
-   !! tip i has the larger of the two excesses, and tip j -1 [-].
-   pure function shared_excesses(self) result(excess)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: excess(size(self%tip))
-      integer(ik) :: i, j
-
-      excess = self%tip%excess(self%rules%toughness)
-      do j = 1, size(excess, kind=ik)
-         do i = 1, size(excess, kind=ik)
-            if (.not. comes_to(self, i, j)) cycle
-            excess(i) = max(excess(i), excess(j))
-            excess(j) = -1.0_rk
-            exit
-         end do
-      end do
-   end function shared_excesses
 
    !> Share of the step after which a tip begins to grow for the first time, in the tried state [-].
    pure real(rk) function first_onset(before, tips, segments, toughness)

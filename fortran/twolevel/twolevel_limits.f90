@@ -7,7 +7,6 @@ module twolevel_limits
    use growth_tip, only: tip_t
    use mesh_builder, only: mesh_quality
    use mesh_geometry, only: cell_centre, fracture_cell_centre
-   use mesh_types, only: fracture_mesh_t
    use scene_types, only: scene_t
    use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
                             limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &

@@ -8,17 +8,19 @@ module twolevel_results
    use coarse_state, only: state_t
    use coarse_nodes, only: nodal_fields, node_values
    use contact_law, only: state_open, state_slip, state_stick
+   use growth_front, only: front_state_t
    use growth_network, only: end_place, fracture_length, total_length
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_interior, point_tip
+   use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
    use report_rows, only: history_row_t, matrix_fields_t, probe_row_t, summary_t
    use scene_types, only: probe_t, scene_t
    use report_simulation, only: snapshot_t
+   use twolevel_levels_state, only: levels_state_t
    use twolevel_places, only: end_cell
    use twolevel_problem, only: cell_heights, coarse_problem_t
-   use twolevel_state, only: two_levels_t
-   use twolevel_well_rows, only: well_pressures
+   use twolevel_well_rows, only: well_flows, well_pressures
+   use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
@@ -46,26 +48,31 @@ contains
    end function cell_states
 
    !> Row of history.csv; the caller adds the quantities of the step.
-   function history_of_levels(levels) result(row)
-      class(two_levels_t), intent(in) :: levels
+   function history_of_levels(scene, front, problem, now, since) result(row)
+      type(scene_t), intent(in) :: scene
+      type(front_state_t), intent(in) :: front
+      type(coarse_problem_t), intent(in) :: problem
+      type(levels_state_t), intent(in) :: now
+      real(rk), intent(in) :: since  !< start of the last step [s]
       type(history_row_t) :: row
       type(fracture_mesh_t) :: fracture
       real(rk) :: fluid  ! reference volume of the mass error [m2]
       integer(ik), allocatable :: states(:)
 
-      associate (state => levels%now%coarse, totals => levels%now%fluid, problem => levels%problem)
+      associate (state => now%coarse, totals => now%fluid)
          row%time = state%time
          row%injected = totals%injected
          row%produced = totals%produced
-         row%well_pressure = well_pressures(levels%scene, problem, levels%before%time, state)
+         row%well_pressure = well_pressures(scene, problem, since, state)
+         row%injection_rate = sum(well_flows(scene, problem, since, state))
          row%leakoff = totals%leaked
          row%prefilled = totals%prefilled
          row%outflow = totals%outflow
-         row%fracture_length = total_length(levels%network)
-         row%n_tips = count(levels%tip%is_free)
+         row%fracture_length = total_length(front%network)
+         row%n_tips = count(front%tip%is_free)
          if (problem%mesh%fracture%n_cells > 0) then
             fracture = problem%mesh%fracture
-            call end_at_tips(levels%scene, levels%network, levels%tip, fracture)
+            call end_at_tips(scene, front, fracture)
             row%n_intersections = count(is_intersection(fracture))
             row%fracture_volume = fracture_volume(problem, state)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
@@ -261,27 +268,26 @@ contains
    !> With growth in equilibrium, end the last cells of the fractures at the tips: the cells of the
    !! coarse mesh extend beyond the tips, closed, and may end at a joint that the crack has not
    !! reached.
-   pure subroutine end_at_tips(scene, network, tips, fracture)
+   pure subroutine end_at_tips(scene, front, fracture)
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(tip_t), intent(in) :: tips(:)
+      type(front_state_t), intent(in) :: front
       type(fracture_mesh_t), intent(inout) :: fracture
       real(rk) :: first, last
       integer(ik) :: cell, end, i
 
-      if (.not. (scene%growth%enabled .and. scene%growth%law == "equilibrium")) return
-      do i = 1, size(tips, kind=ik)
-         if (tips(i)%is_free) call detach_tip(tips(i), fracture)
+      if (.not. scene%growth%in_equilibrium()) return
+      do i = 1, size(front%tip, kind=ik)
+         if (front%tip(i)%is_free) call detach_tip(front%tip(i), fracture)
       end do
       do cell = 1, fracture%n_cells
          associate (f => fracture%cell_fracture(cell))
-            first = network%s_start(f)
-            last = first + fracture_length(network, f)
+            first = front%network%s_start(f)
+            last = first + fracture_length(front%network, f)
             do end = 1, 2
                associate (s => fracture%cell_s(end, cell), &
                           point => fracture%cell_points(end, cell))
-                  if (s < first) fracture%point_xy(:, point) = end_place(network, f, 1_ik)
-                  if (s > last) fracture%point_xy(:, point) = end_place(network, f, 2_ik)
+                  if (s < first) fracture%point_xy(:, point) = end_place(front%network, f, 1_ik)
+                  if (s > last) fracture%point_xy(:, point) = end_place(front%network, f, 2_ik)
                   s = min(max(s, first), last)
                end associate
             end do
@@ -336,11 +342,14 @@ contains
    end subroutine detach_tip
 
    !> Numbers of unknowns by block, for run.json.
-   subroutine count_unknowns(levels, summary)
-      class(two_levels_t), intent(in) :: levels
+   subroutine count_unknowns(scene, tips, problem, windows, reference, summary)
+      type(scene_t), intent(in) :: scene
+      type(tip_t), intent(in) :: tips(:)
+      type(coarse_problem_t), intent(in) :: problem
+      type(windows_t), intent(in) :: windows, reference
       type(summary_t), intent(inout) :: summary
 
-      associate (mesh => levels%problem%mesh, model => levels%problem%model)
+      associate (mesh => problem%mesh, model => problem%model)
          call summary%count_dofs("displacement", 2*mesh%n_cells)
          call summary%count_dofs("matrix_pressure", mesh%n_cells)
          call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
@@ -350,10 +359,10 @@ contains
                                  + model%joints%branch_count())
          if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
       end associate
-      if (.not. levels%scene%growth%intensities) return
-      call summary%count_dofs("windows", levels%windows%n_unknowns(levels%tip))
-      if (levels%scene%discretization%window_is_body) return
-      call summary%count_dofs("windows_reference", levels%reference%n_unknowns(levels%tip))
+      if (.not. scene%growth%intensities) return
+      call summary%count_dofs("windows", windows%n_unknowns(tips))
+      if (scene%discretization%window_is_body) return
+      call summary%count_dofs("windows_reference", reference%n_unknowns(tips))
    end subroutine count_unknowns
 
 end module twolevel_results

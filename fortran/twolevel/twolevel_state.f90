@@ -12,21 +12,26 @@ module twolevel_state
    use growth_front, only: growth_rules_t
    use growth_network, only: fracture_length, network_of_scene
    use mesh_builder, only: build_mesh, mesh_spec_t, remesh
-   use mesh_types, only: fracture_mesh_t, mesh_map_t
+   use mesh_types, only: fracture_mesh_t, mesh_map_t, mesh_t, network_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
    use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
-   use report_simulation, only: simulation_t
+   use report_rows, only: history_row_t, probe_row_t
+   use report_simulation, only: simulation_t, snapshot_t
    use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
+   use twolevel_notes, only: notes_t
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_places, only: end_cell, shut_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
+   use twolevel_stepping, only: stepper_t
+   use twolevel_stimulation, only: stimulation_t
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_unsolved, only: why_unsolved
+   use twolevel_well_rows, only: well_results_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
@@ -44,9 +49,20 @@ module twolevel_state
    !! and in cells: no mesh of good quality fits between [-].
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
-   !> Both levels; `network` is the fine network, which is ahead of the coarse one. A step changes
-   !! tips, network and `now`; a rejected try is undone by `put_back` and nowhere else.
-   type, abstract, extends(simulation_t) :: two_levels_t
+   !> The last step.
+   type :: last_step_t
+      real(rk) :: dt = 0.0_rk  !< length [s]
+      logical :: is_after_switch = .false.  !< it began at a switch of a well
+      logical :: ends_at_switch = .false.  !< it ended at a switch of a well
+      logical :: is_unstable = .false.  !< tips grew without equilibrium
+      type(step_report_t) :: report
+      character(len=:), allocatable :: why_cut  !< reason of the last cut
+   end type last_step_t
+
+   !> Simulation of a scene with a fluid on both levels; `network` is the fine network, which is
+   !! ahead of the coarse one. A step changes tips, network and `now`; a rejected try is undone by
+   !! `put_back` and nowhere else.
+   type, extends(simulation_t) :: two_levels_t
       type(levels_state_t) :: now
       type(checkpoint_t) :: last  !< state at the start of the step
       type(state_t) :: before  !< coarse part of `last`, on the present mesh
@@ -59,9 +75,26 @@ module twolevel_state
       real(rk) :: load_pressure = 0.0_rk  !< largest pressure expected from the loads [Pa]
       !> largest number of coarse fracture cells for this comparison
       integer(ik) :: reference_most = 800
+      logical :: has_begun = .false.  !< the first state has been requested
+      logical :: is_initial = .false.  !< the present state is the one before the first step
+      type(last_step_t) :: step
+      type(stepper_t) :: stepper
+      ! Results of all steps so far
+      type(notes_t) :: notes  !< event log of growth in equilibrium
+      type(stimulation_t) :: stimulation
+      type(well_results_t) :: well_results
+      real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness [N m]
    contains
+      procedure :: begin
+      procedure :: next_state
+      procedure :: grow
+      procedure :: present_network
+      procedure :: history
+      procedure :: probes
+      procedure :: snapshot
+      procedure :: time
+      procedure :: last_state
       procedure :: mesh_levels
-      procedure, private :: set_scales
       procedure :: begin_step
       procedure :: remember
       procedure :: put_back
@@ -77,6 +110,79 @@ module twolevel_state
       procedure :: grow_coarse
       procedure :: remesh_coarse
    end type two_levels_t
+
+   ! Bindings of simulation_t, in twolevel_simulation
+   interface
+      !> Mesh both levels, without load.
+      module subroutine begin(self, scene, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine begin
+
+      !> Compute the initial state first, if the scene requires fractures in equilibrium; then one
+      !! time step per call. After an error the last accepted state is restored.
+      module subroutine next_state(self, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine next_state
+
+      !> Evaluate the tips, and let them grow until none grows or the coarse mesh has to be updated.
+      module subroutine grow(self, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine grow
+
+      !> Network and coarse mesh; with growth in equilibrium the last cells end at the tips.
+      module subroutine present_network(self, network, mesh)
+         implicit none(type, external)
+         class(two_levels_t), intent(in) :: self
+         type(network_t), intent(out) :: network
+         type(mesh_t), intent(out) :: mesh
+      end subroutine present_network
+
+      !> Row of history.csv of the accepted state.
+      module function history(self) result(row)
+         implicit none(type, external)
+         class(two_levels_t), intent(in) :: self
+         type(history_row_t) :: row
+      end function history
+
+      !> Displacement, stress and pressure at the probes.
+      module subroutine probes(self, row, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(probe_row_t), intent(out) :: row
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine probes
+
+      !> Fields of the last accepted state, if there is one.
+      module subroutine snapshot(self, fields)
+         implicit none(type, external)
+         class(two_levels_t), intent(in) :: self
+         type(snapshot_t), allocatable, intent(out) :: fields
+      end subroutine snapshot
+
+      !> Time of the present state [s].
+      pure module function time(self)
+         implicit none(type, external)
+         class(two_levels_t), intent(in) :: self
+         real(rk) :: time
+      end function time
+
+      !> Time of the last accepted state, as text.
+      pure module function last_state(self) result(words)
+         implicit none(type, external)
+         class(two_levels_t), intent(in) :: self
+         character(len=:), allocatable :: words
+      end function last_state
+   end interface
 
 contains
 
@@ -112,7 +218,7 @@ contains
          call rest_wells(self)
          call self%find_tips(mesh%fracture)
       end associate
-      call self%set_scales()
+      call set_scales(self)
       if (scene%growth%intensities) then
          ! The body as reference has elements as large as the coarse cells; at the tips, where this
          ! matters, they are those of the windows.

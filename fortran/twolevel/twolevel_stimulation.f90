@@ -12,15 +12,15 @@
 module twolevel_stimulation
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
+   use growth_front, only: front_state_t
    use growth_network, only: fracture_length, total_length
-   use mesh_types, only: fracture_mesh_t
+   use mesh_types, only: fracture_mesh_t, network_t
    use report_rows, only: history_row_t
    use scene_regime, only: dimensionless_leakoff, dimensionless_toughness
+   use scene_types, only: scene_t
    use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: end_at_tips, fracture_volume
-   use twolevel_state, only: two_levels_t
-   use twolevel_well_rows, only: well_flows
    implicit none(type, external)
    private
 
@@ -63,9 +63,12 @@ contains
    end subroutine begin
 
    !> Update with an accepted step.
-   subroutine follow(self, levels, compressed, rock_outflow)
+   subroutine follow(self, start, fracture, state, least_jump, compressed, rock_outflow)
       class(stimulation_t), intent(inout) :: self
-      class(two_levels_t), intent(in) :: levels
+      type(network_t), intent(in) :: start  !< initial network
+      type(fracture_mesh_t), intent(in) :: fracture
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: least_jump  !< smallest jump of stimulated faces [m]
       real(rk), intent(in) :: compressed, rock_outflow  !< fluid volumes of the step [m2]
       real(rk), allocatable :: jump(:, :)
       real(rk) :: whole
@@ -73,44 +76,44 @@ contains
 
       self%compressed = self%compressed + compressed
       self%rock_outflow = self%rock_outflow + rock_outflow
-      associate (fracture => levels%problem%mesh%fracture)
-         if (fracture%n_cells == 0) return
-         jump = mean_jump(levels%now%coarse)
-         do i = 1, fracture%n_cells
-            associate (f => fracture%cell_fracture(i), s => fracture%cell_s(:, i))
-               if (.not. has_moved(self, levels, f, s, jump(:, i))) cycle
-               whole = fracture_length(levels%start, f)
-               call self%faces%add(f, [max(s(1), 0.0_rk), min(s(2), whole)])
-            end associate
-         end do
-      end associate
+      if (fracture%n_cells == 0) return
+      jump = mean_jump(state)
+      do i = 1, fracture%n_cells
+         associate (f => fracture%cell_fracture(i), s => fracture%cell_s(:, i))
+            if (.not. moved_by(self, f, s, jump(:, i)) > least_jump) cycle
+            whole = fracture_length(start, f)
+            call self%faces%add(f, [max(s(1), 0.0_rk), min(s(2), whole)])
+         end associate
+      end do
    end subroutine follow
 
-   !> Whether the faces of a cell have moved by more than `stimulated_jump` since the start.
-   pure logical function has_moved(self, levels, f, s, jump)
+   !> Slip or opening of a cell since the start; 0 where there was no fracture [m].
+   pure real(rk) function moved_by(self, f, s, jump)
       type(stimulation_t), intent(in) :: self
-      class(two_levels_t), intent(in) :: levels
       integer(ik), intent(in) :: f  !< fracture
       real(rk), intent(in) :: s(2)  !< arc lengths of the cell's ends [m]
       real(rk), intent(in) :: jump(2)  !< present jump [m]
       integer(ik) :: i
 
-      has_moved = .false.
+      moved_by = 0.0_rk
       associate (then => self%fracture, middle => 0.5_rk*sum(s))
          do i = 1, then%n_cells
             if (then%cell_fracture(i) /= f) cycle
             if (middle < then%cell_s(1, i) .or. middle > then%cell_s(2, i)) cycle
-            has_moved = max(abs(jump(2) - self%jump(2, i)), jump(1) - self%jump(1, i)) &
-                        > levels%scene%output%stimulated_jump
+            moved_by = max(abs(jump(2) - self%jump(2, i)), jump(1) - self%jump(1, i))
             return
          end do
       end associate
-   end function has_moved
+   end function moved_by
 
-   !> Fill in the columns of a row of history.csv.
-   pure subroutine describe(self, levels, row)
+   !> Fill in the columns of a row of history.csv, in which the rate of injection is set.
+   pure subroutine describe(self, scene, start, front, problem, state, row)
       class(stimulation_t), intent(in) :: self
-      class(two_levels_t), intent(in) :: levels
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start  !< initial network
+      type(front_state_t), intent(in) :: front
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       type(history_row_t), intent(inout) :: row
       type(fracture_mesh_t) :: fracture
       real(rk), allocatable :: length(:)
@@ -118,51 +121,49 @@ contains
       real(rk) :: rise
       integer(ik) :: i
 
-      row%rock_fluid = sum(levels%now%coarse%content) - self%content
+      row%rock_fluid = sum(state%content) - self%content
       row%rock_outflow = self%rock_outflow
-      row%injection_rate = sum(well_flows(levels%scene, levels%problem, levels%before%time, &
-                                          levels%now%coarse))
       if (size(row%well_pressure) > 0) then
-         associate (scene => levels%scene, rate => row%injection_rate)
+         associate (rate => row%injection_rate)
             row%dimensionless_toughness = &
-               dimensionless_toughness(scene, levels%rules%toughness, rate)
+               dimensionless_toughness(scene, scene%material%toughness, rate)
             row%dimensionless_leakoff = &
                dimensionless_leakoff(scene, maxval(row%well_pressure) - scene%initial%pressure, &
                                      rate, row%time)
          end associate
       end if
-      fracture = levels%problem%mesh%fracture
+      fracture = problem%mesh%fracture
       if (fracture%n_cells == 0) return
       row%fracture_fluid = row%fracture_volume - self%fracture_volume + self%compressed
-      call end_at_tips(levels%scene, levels%network, levels%tip, fracture)
+      call end_at_tips(scene, front, fracture)
       row%n_clusters = cluster_count(fracture)
       row%connections_per_branch = connections_per_branch(fracture)
-      row%stimulated_length = self%faces%length() + total_length(levels%network) &
-                              - total_length(levels%start)
+      row%stimulated_length = self%faces%length() + total_length(front%network) &
+                              - total_length(start)
 
-      if (size(levels%scene%injections) == 0) return
-      if (size(levels%scene%injections) == 1 .and. all(levels%scene%injections%fracture > 0)) then
+      if (size(scene%injections) == 0) return
+      if (size(scene%injections) == 1 .and. all(scene%injections%fracture > 0)) then
          rise = row%well_pressure(1) - self%rock_pressure
          if (rise > 0.0_rk) row%injectivity = row%injection_rate/rise
       end if
       length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
-      is_stimulated = [(counts(self, levels, fracture%cell_fracture(i), &
-                               0.5_rk*sum(levels%problem%mesh%fracture%cell_s(:, i))), &
+      is_stimulated = [(counts(self, start, fracture%cell_fracture(i), &
+                               0.5_rk*sum(problem%mesh%fracture%cell_s(:, i))), &
                         i=1, fracture%n_cells)]
       allocate (all_pass(fracture%n_cells), source=.true.)
-      is_connected = reached_cells(fracture, fed_cells(levels%problem, fracture), all_pass)
+      is_connected = reached_cells(fracture, fed_cells(problem, fracture), all_pass)
       row%connected_length = sum(length, mask=is_connected)
       row%connected_stimulated = sum(length, mask=is_connected .and. is_stimulated)
    end subroutine describe
 
    !> Whether a point of a fracture is stimulated: its faces have moved, or are new.
-   pure logical function counts(self, levels, f, s)
+   pure logical function counts(self, start, f, s)
       type(stimulation_t), intent(in) :: self
-      class(two_levels_t), intent(in) :: levels
+      type(network_t), intent(in) :: start  !< initial network
       integer(ik), intent(in) :: f  !< fracture
       real(rk), intent(in) :: s  !< arc length [m]
 
-      counts = s < 0.0_rk .or. s > fracture_length(levels%start, f) .or. self%faces%covers(f, s)
+      counts = s < 0.0_rk .or. s > fracture_length(start, f) .or. self%faces%covers(f, s)
    end function counts
 
    !> Whether each cell is supplied by wells, directly or through a joint.

@@ -17,7 +17,7 @@ program network_windows
    use report_simulation, only: simulation_t
    use scene_namelist, only: read_scene
    use scene_types, only: scene_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use verification_files, only: finish, stop_on, table_t, text_argument
    implicit none(type, external)
 
@@ -189,7 +189,7 @@ contains
       integer(ik), intent(in) :: number
       type(network_t), intent(in) :: network
       type(mechanics_simulation_t), allocatable :: body
-      type(twolevel_simulation_t), allocatable :: levels
+      type(two_levels_t), allocatable :: levels
       integer(ik) :: tip, w
 
       allocate (body)

@@ -18,7 +18,7 @@ program trust_in_k
    use report_simulation, only: simulation_t
    use scene_namelist, only: read_scene
    use scene_types, only: scene_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use verification_files, only: finish, stop_on, table_t, text_argument
    implicit none(type, external)
 
@@ -168,7 +168,7 @@ contains
    !> Both simulations of an arrangement.
    subroutine compare(arrangement)
       type(arrangement_t), intent(in) :: arrangement
-      type(twolevel_simulation_t), allocatable :: levels
+      type(two_levels_t), allocatable :: levels
       type(mechanics_simulation_t), allocatable :: body
       integer(ik) :: tip
 

@@ -2,8 +2,7 @@
 submodule(app_simulations) app_simulations_all
    use mechanics_body, only: body_spec
    use mechanics_simulation, only: mechanics_simulation_t
-   use twolevel_simulation, only: twolevel_simulation_t
-   use twolevel_state, only: coarse_spec
+   use twolevel_state, only: coarse_spec, two_levels_t
    implicit none(type, external)
 
 contains
@@ -28,7 +27,7 @@ contains
       type(scene_t), intent(in) :: scene
       class(simulation_t), allocatable, intent(out) :: simulation
 
-      type(twolevel_simulation_t), allocatable :: levels
+      type(two_levels_t), allocatable :: levels
       type(mechanics_simulation_t), allocatable :: body
 
       ! Moved: in an allocation of `simulation` itself gfortran 12 copies unset components.

@@ -6,7 +6,7 @@ module sample_scenes
    use coarse_state, only: step_report_t
    use sample_bodies, only: porous_body
    use scene_types, only: fracture_t, scene_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
@@ -51,7 +51,7 @@ contains
    !> Begin a scene, find its initial state, and evaluate the intensities in this state.
    subroutine evaluate_initial_state(scene, simulation, timers, error)
       type(scene_t), intent(in) :: scene
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(step_report_t) :: report

@@ -9,7 +9,7 @@ program test_twolevel_coarse_errors
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    use twolevel_faces, only: coarse_jumps
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use twolevel_thin_layers, only: layer_at_tip, layer_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
@@ -32,7 +32,7 @@ contains
    !> One fracture in its initial state, its windows evaluated.
    subroutine start(friction, simulation)
       real(rk), intent(in) :: friction
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(scene_t) :: scene
       type(error_t), allocatable :: error
 
@@ -48,7 +48,7 @@ contains
 
    !> A sticking fracture in uniform stress: both levels are exact, so the correction is zero.
    subroutine test_uniform_stress()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       integer :: i
 
@@ -69,7 +69,7 @@ contains
    !> The forces on the cells of a state in equilibrium are those of the boundary; where the faces
    !! slip, the estimate is no more than a few per cent, and is included in the tips' errors.
    subroutine test_balance()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       real(rk), allocatable :: force(:, :)
       integer :: i
@@ -103,7 +103,7 @@ contains
    !> A jump that is linear along the fracture equals the coarse jump at its third points, in all
    !! cells that lie completely in the window.
    subroutine test_linear_jump()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk), allocatable :: found(:, :, :)
       real(rk) :: s, worst
       integer(ik) :: cell, end, n
@@ -133,7 +133,7 @@ contains
    !! last cells, where the quarter-point element is exact, is 2/3 d^(3/2), and its first moment 2/5
    !! d^(5/2).
    subroutine test_root_jump()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk), allocatable :: found(:, :, :)
       real(rk) :: first_moment, length, mean
       integer(ik) :: last
@@ -155,7 +155,7 @@ contains
    !> Coarse jumps of the second window for a jump in its displacement on side -: linear in s, or
    !! the square root of the distance from the tip.
    function jumps_of(simulation, is_root) result(found)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       logical, intent(in) :: is_root
       real(rk), allocatable :: displacement(:, :), found(:, :, :)
       real(rk) :: jump(2), s, tip
@@ -181,14 +181,14 @@ contains
 
    !> Point where the fracture enters the second window [m].
    pure real(rk) function entry_of(simulation)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
 
       entry_of = minval(simulation%windows%slot(2)%window%model%mesh%face_s)
    end function entry_of
 
    !> A quadratic displacement, prescribed by its values and gradients at the coarse nodes.
    subroutine test_curved_edge()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk), allocatable :: edge(:, :), gradient(:, :, :), values(:, :)
       real(rk) :: worst
       integer(ik) :: v
@@ -225,7 +225,7 @@ contains
    !! much for twice the gradient.
    subroutine test_pressure_in_cells()
       real(rk), parameter :: uniform = 3.0e6_rk, gradient = 2.0e7_rk  ! [Pa], [Pa/m]
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk) :: once(2, 2), twice(2, 2), none(2, 2), k(2)
 
       call start(0.1_rk, simulation)
@@ -243,7 +243,7 @@ contains
    !! jump of pressure there.
    subroutine test_layer_at_tip()
       real(rk), parameter :: rock = 3.0e6_rk, beyond = 7.0e6_rk  ! [Pa]
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(layer_t) :: layer
       real(rk) :: bulk, bulk_undrained, shear, storage, undrained
       real(rk), allocatable :: own(:)
@@ -276,7 +276,7 @@ contains
 
    !> This part of the stated errors with a pressure in the rock that increases linearly along x.
    function passing_of(simulation, uniform, gradient) result(passing)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: uniform  !< at x = 1 m [Pa]
       real(rk), intent(in) :: gradient  !< [Pa/m]
       real(rk) :: passing(2, 2)  !< (2, tips) errors of K_I and K_II [Pa m^1/2]

@@ -9,7 +9,7 @@ program test_twolevel_event_log
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -24,7 +24,7 @@ contains
 
    !> A scene with a fracture and two tips, at 0.5 s.
    subroutine start(simulation)
-      type(twolevel_simulation_t), intent(out) :: simulation
+      type(two_levels_t), intent(out) :: simulation
       type(scene_t) :: scene
       integer :: end
 
@@ -45,7 +45,7 @@ contains
 
    !> One of two tips has grown by 0.1 m: both rows are of the state before growth.
    subroutine test_rows_of_tips()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
 
       call start(simulation)
       call simulation%tip(1)%move([0.7_rk, 1.0_rk], 0.25_rk)
@@ -70,7 +70,7 @@ contains
 
    !> One tip joins the boundary; the other stops before it, which is reported once.
    subroutine test_growth()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
 
       call start(simulation)
       call simulation%tip%begin_increment()
@@ -94,7 +94,7 @@ contains
    end subroutine test_growth
 
    subroutine kinds_are(simulation, expected)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       character(len=*), intent(in) :: expected(:)
       integer :: i
 
@@ -108,7 +108,7 @@ contains
 
    !> The first slip and the first opening of a fracture are events, later ones are none.
    subroutine test_contact()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(fracture_mesh_t) :: fracture
       logical, parameter :: always(1) = .true.
 
@@ -131,7 +131,7 @@ contains
 
    !> The scene ends once a tip has grown by the prescribed gain.
    subroutine test_gain()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
 
       call start(simulation)
       simulation%rules%stop_gain = 0.1_rk

@@ -13,7 +13,7 @@ program test_twolevel_handover
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    use twolevel_handover, only: hand_over
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    real(rk), parameter :: increment = 0.03_rk  !< l_max [m]
@@ -150,7 +150,7 @@ contains
    !! where the criterion leads straight on, within two degrees.
    subroutine test_correction()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(timers_t) :: timers
       type(step_report_t) :: report
       type(error_t), allocatable :: error

@@ -13,7 +13,7 @@ program test_twolevel_in_situ
    use scene_types, only: injection_t, probe_t, scene_t
    use testing_checks, only: checks_t
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -47,7 +47,7 @@ contains
    subroutine check_twins(is_sparse)
       logical, intent(in) :: is_sparse
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: loaded, in_situ
+      type(two_levels_t) :: loaded, in_situ
       type(history_row_t) :: one, other
       type(probe_row_t) :: probe, probe_in_situ
       type(snapshot_t) :: fields, fields_in_situ
@@ -73,8 +73,10 @@ contains
             call advance(loaded)
             call advance(in_situ)
          end if
-         one = history_of_levels(loaded)
-         other = history_of_levels(in_situ)
+         one = history_of_levels(loaded%scene, loaded%front_state_t, loaded%problem, loaded%now, &
+                                 loaded%before%time)
+     other = history_of_levels(in_situ%scene, in_situ%front_state_t, in_situ%problem, in_situ%now, &
+                                   in_situ%before%time)
          call same(one%well_pressure(1), other%well_pressure(1), 1.0e-9_rk, "pressure at the well")
          call same(one%max_slip, other%max_slip, 1.0e-9_rk, "slip")
          call same(one%fracture_volume, other%fracture_volume, 1.0e-9_rk, "volume")
@@ -106,7 +108,7 @@ contains
    end subroutine check_twins
 
    subroutine advance(simulation)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
 
@@ -143,7 +145,7 @@ contains
    !! remeshed around a tip, and no intensity in any window compared with 75 MPa.
    subroutine check_rest()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       integer :: round
 
@@ -177,7 +179,7 @@ contains
    !! crack, small compared with the body, has a difference of 20 %.
    subroutine check_gradient()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.2_rk, net = 8.0e6_rk, slope = 16.0e6_rk
       real(rk) :: k(2), modulus, unit

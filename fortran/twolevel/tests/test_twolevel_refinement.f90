@@ -16,7 +16,7 @@ program test_twolevel_refinement
    use report_rows, only: event_growth_uncertain
    use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: refinement_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
@@ -45,7 +45,7 @@ contains
    subroutine start(window, fine_ratio, simulation, toughness)
       real(rk), intent(in) :: window  !< [m]
       real(rk), intent(in) :: fine_ratio
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), parameter :: along = a*sqrt(0.5_rk)
       type(scene_t) :: scene
@@ -71,7 +71,7 @@ contains
    end subroutine start
 
    subroutine evaluate(simulation)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(error_t), allocatable :: error
 
       call simulation%evaluate(timers, error)
@@ -82,7 +82,7 @@ contains
 
    !> Refine the windows of uncertain tips.
    subroutine improve(simulation, any_improved)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       logical, intent(out) :: any_improved
       type(refinement_t), allocatable :: refinements(:)
 
@@ -93,7 +93,7 @@ contains
 
    !> Whether each tip's separate window has a mesh.
    function are_built(simulation)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       logical :: are_built(2)
       integer :: i
 
@@ -104,7 +104,7 @@ contains
    !! with the body shows; without this comparison there is no estimate. Then a larger window.
    subroutine test_small_window(has_reference)
       logical, intent(in) :: has_reference
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       logical :: any_improved
       integer :: i
       real(rk) :: toughness  !< K_eq is 1 % above this toughness, within its error [Pa m^1/2]
@@ -139,7 +139,7 @@ contains
    end subroutine test_small_window
 
    subroutine test_good_window()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       logical :: any_improved
       integer(ik) :: n_unknowns
 
@@ -161,7 +161,7 @@ contains
    !> ones are possible: then the errors of growth are stated. A pressure dp changes K_II of this
    !> crack by friction dp sqrt(pi a).
    subroutine test_poor_elements()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(growth_error_t) :: growth
       logical :: any_improved, is_noted(2)
       integer :: n
@@ -195,7 +195,7 @@ contains
    !> A window that would have to be nearly as large as the body is replaced by the body, which both
    !! tips share; then no error enters over an edge.
    subroutine test_body()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       logical :: any_improved
 
       call start(0.4_rk, 0.5_rk, simulation, usual_toughness)

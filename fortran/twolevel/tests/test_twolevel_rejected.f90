@@ -11,7 +11,7 @@ program test_twolevel_rejected
    use scene_types, only: injection_t, scene_t, time_t
    use twolevel_equilibrium, only: find_equilibrium
    use twolevel_levels_state, only: checkpoint_t, different_part, equal, part_t, parts
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    implicit none(type, external)
 
@@ -28,7 +28,7 @@ contains
 
    !> A copy is equal; a change of a part is found, and reported by its name.
    subroutine test_parts()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       type(checkpoint_t) :: copy, state
       type(part_t), allocatable :: list(:)
@@ -117,7 +117,7 @@ contains
       type(history_row_t), allocatable, intent(out) :: row(:)  !< (states)
       real(rk), allocatable, intent(out) :: k(:, :)  !< (tips, states) K_eq [Pa m^1/2]
       integer, intent(out) :: new_meshes  !< number of tries with a separate mesh
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       integer :: i
 
@@ -140,7 +140,7 @@ contains
    !> Two tries that are rejected for their time error: at once, and with the tips in equilibrium,
    !! or later.
    subroutine reject(simulation, length, new_meshes)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: length  !< length of the tries, over that of the step [-]
       integer, intent(inout) :: new_meshes  !< number of tries with a separate mesh
       type(error_t), allocatable :: error

@@ -9,7 +9,7 @@ program test_twolevel_segments
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t, time_t
    use testing_checks, only: checks_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    real(rk), parameter :: increment = 0.05_rk  !< l_max [m]
@@ -46,7 +46,7 @@ contains
    subroutine march(scene, name, simulation, states)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: name
-      type(twolevel_simulation_t), intent(out) :: simulation
+      type(two_levels_t), intent(out) :: simulation
       integer, intent(out) :: states  !< number of states until a tip has joined; 0: none has
       type(error_t), allocatable :: error
       integer :: k
@@ -79,7 +79,7 @@ contains
       real(rk), intent(in) :: gap  !< [m]
       real(rk), parameter :: half = 0.2_rk
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk) :: s
       integer :: states
 
@@ -108,7 +108,7 @@ contains
    !> End to end: one tip joins the other, which is deactivated.
    subroutine test_tips_of_two()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       integer :: states
 
       scene = injected_body()
@@ -123,7 +123,7 @@ contains
    !> A side of the body.
    subroutine test_side()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       integer :: states
 
       scene = injected_body()

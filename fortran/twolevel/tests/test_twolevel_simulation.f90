@@ -12,7 +12,7 @@ program test_twolevel_simulation
    use testing_checks, only: checks_t
    use twolevel_probe, only: measure_interaction
    use twolevel_results, only: cell_state
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    real(rk), parameter :: increment = 0.04_rk  !< l_max [m]
@@ -38,7 +38,7 @@ contains
    subroutine test_rock_well()
       real(rk), parameter :: limit = 8.0e6_rk
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk), allocatable :: flow(:)
@@ -61,7 +61,7 @@ contains
          if (allocated(error)) return
          call simulation%begin_step()
          do try = 1, 3
-            dt = merge(0.3_rk, 1.0_rk, try == 2)*simulation%dt
+            dt = merge(0.3_rk, 1.0_rk, try == 2)*simulation%step%dt
             if (simulation%is_initial) dt = 1.0_rk
             call simulation%try_step(dt, timers, report, error)
             call checks%no_error(error, "a try of it")
@@ -82,7 +82,7 @@ contains
    !> Three wells: at a point, over a whole fracture, and a second one at a point, at various times.
    subroutine test_wells()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       integer(ik) :: i, n
       real(rk) :: middle(2)
@@ -156,7 +156,7 @@ contains
    !> A step that does not converge changes nothing.
    subroutine test_refused_step()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk), allocatable :: pressure(:)
@@ -182,7 +182,7 @@ contains
 
    !> A step of the scene's length, accepted if it converges.
    subroutine step(simulation, report, error)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
@@ -198,7 +198,7 @@ contains
    subroutine test_growth(new_volume)
       character(len=*), intent(in) :: new_volume
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(state_t) :: before, first
       type(step_report_t) :: report
       type(error_t), allocatable :: error
@@ -271,7 +271,7 @@ contains
    !> Tips in equilibrium: no accepted state above the toughness, tips that advance are at the
    !! toughness, both ends grow equally, and all fluid is accounted for.
    subroutine test_equilibrium()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       real(rk) :: gain(2), ratio(2)
       integer :: grown, step
@@ -313,7 +313,7 @@ contains
    !> Measuring the tip interaction in the last step changes nothing. Either tip needs the fluid of
    !! the fracture for its growth, and mirrors the other.
    subroutine check_probe(simulation)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(state_t) :: state
       type(tip_t) :: tip(2)
       type(error_t), allocatable :: error
@@ -323,7 +323,7 @@ contains
       state = simulation%now%coarse
       tip = simulation%tip
       call simulation%now%interaction%begin(2)
-      call measure_interaction(simulation, spread(.true., 1, 2), simulation%dt, timers, &
+      call measure_interaction(simulation, spread(.true., 1, 2), simulation%step%dt, timers, &
                                has_measured, &
                                error)
       call checks%no_error(error, "tips are set back")
@@ -354,7 +354,7 @@ contains
    subroutine test_chosen_steps(law)
       character(len=*), intent(in) :: law  !< growth law
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       real(rk) :: before, drive
       logical :: has_grown
@@ -376,7 +376,7 @@ contains
          call checks%no_error(error, law//": a chosen step")
          if (allocated(error)) return
          if (simulation%is_initial) cycle
-         call checks%is_close(simulation%time() - before, simulation%dt, &
+         call checks%is_close(simulation%time() - before, simulation%step%dt, &
                               1.0e-12_rk*simulation%time(), law//": time goes on by the step")
          call checks%is_close(simulation%now%fluid%injected, 1.0e-7_rk*simulation%time(), &
                               1.0e-12_rk*simulation%now%fluid%injected, &
@@ -398,7 +398,7 @@ contains
 
    !> [m]
    function lengths(simulation) result(length)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       real(rk), allocatable :: length(:)
 
       associate (s => simulation%problem%mesh%fracture%cell_s)
@@ -408,7 +408,7 @@ contains
 
    !> Fluid volume of the fractures [m2].
    function volume(simulation)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       real(rk) :: volume
 
       volume = sum((simulation%now%coarse%aperture - simulation%problem%model%cells%roughness) &
@@ -417,7 +417,7 @@ contains
 
    !> Fluid stored in the fractures in a step by its compression, a c_p dp [m2].
    function compression(simulation, before) result(gain)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       type(state_t), intent(in) :: before
       real(rk) :: gain
 
@@ -428,7 +428,7 @@ contains
 
    !> The well supplies the same cells as at the start.
    subroutine check_shares(simulation)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       !> length of the fracture at the start [m]
       real(rk), parameter :: length = 0.3_rk*sqrt(2.0_rk)
       logical, allocatable :: is_old(:)

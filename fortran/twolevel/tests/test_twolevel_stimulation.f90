@@ -9,7 +9,7 @@ program test_twolevel_stimulation
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: injection_t, scene_t
    use testing_checks, only: checks_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    real(rk), parameter :: rate = 1.0e-7_rk  !< [m2/s]
@@ -45,7 +45,7 @@ contains
 
    !> Next state, with its growth.
    subroutine go_on(simulation, error)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(error_t), allocatable, intent(out) :: error
 
       call simulation%next_state(timers, error)
@@ -56,7 +56,7 @@ contains
    subroutine test_growth(law)
       character(len=*), intent(in) :: law
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(history_row_t) :: first, row
       type(error_t), allocatable :: error
       real(rk) :: whole
@@ -130,7 +130,7 @@ contains
       integer, intent(in) :: well  !< fracture that the well supplies
       real(rk), intent(in) :: connected  !< [m]
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(history_row_t) :: row
       type(error_t), allocatable :: error
 
@@ -156,7 +156,7 @@ contains
    !> Before a well starts nothing is injected; the pressure rises later only.
    subroutine test_before_the_well()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(history_row_t) :: row
       type(error_t), allocatable :: error
 

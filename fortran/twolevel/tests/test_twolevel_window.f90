@@ -14,7 +14,7 @@ program test_twolevel_window
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
@@ -47,7 +47,7 @@ contains
    subroutine start(scene, friction, dilation, simulation)
       type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: friction, dilation
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
 
@@ -69,7 +69,7 @@ contains
    subroutine test_undrained_constants(plane_stress)
       logical, intent(in) :: plane_stress
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(window_t) :: window
       type(window_tip_t) :: tips(1)
       type(error_t), allocatable :: error
@@ -114,7 +114,7 @@ contains
       logical, intent(in) :: moves  !< whether the edge moves
       real(rk), parameter :: half = 0.2_rk, slope = 0.1_rk, arm = 0.15_rk  ! 5.7 degrees
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(window_t) :: window
       type(window_tip_t) :: tips(1)
       type(error_t), allocatable :: error
@@ -147,7 +147,7 @@ contains
       logical, intent(in) :: moves  !< whether the edge moves
       real(rk), parameter :: half = 0.2_rk, arm = 0.15_rk
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(window_t) :: window
       type(window_tip_t) :: tips(1)
       type(error_t), allocatable :: error
@@ -178,7 +178,7 @@ contains
    !! positions; a face is mapped to the coarse cell that contains it.
    subroutine test_projection()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       integer :: w
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
@@ -243,7 +243,7 @@ contains
    subroutine test_uniform_stress()
       character(len=8), parameter :: conditions(3) = ["contact ", "jump    ", "traction"]
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       integer :: k, undrained, w
 
@@ -307,7 +307,7 @@ contains
    !! pressure of its fluid, and, in the comparisons, its jump or its traction at the nearer end.
    subroutine test_conditions()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       integer(ik) :: i
 
@@ -334,7 +334,7 @@ contains
    end subroutine test_conditions
 
    subroutine check_conditions(simulation, name, condition)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: condition  !< wanted
       type(contact_t) :: history
@@ -378,7 +378,7 @@ contains
    !! faces, held by friction, do not move. A new mesh takes over the contact.
    subroutine test_history()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       type(intensity_t) :: before(2)
 
@@ -404,7 +404,7 @@ contains
    !! window as large as the body, and there is no error by the coarse level.
    subroutine test_body()
       type(scene_t) :: scene
-      type(twolevel_simulation_t) :: sticking, together, apart
+      type(two_levels_t) :: sticking, together, apart
       type(error_t), allocatable :: error
       integer :: w
 
@@ -440,7 +440,7 @@ contains
 
    !> Check that both tips have their earlier intensities.
    subroutine compare(simulation, before, tolerance, name)
-      type(twolevel_simulation_t), intent(in) :: simulation
+      type(two_levels_t), intent(in) :: simulation
       type(intensity_t), intent(in) :: before(2)
       real(rk), intent(in) :: tolerance  !< relative to K_II [-]
       character(len=*), intent(in) :: name

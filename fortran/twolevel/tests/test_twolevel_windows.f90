@@ -13,13 +13,13 @@ program test_twolevel_windows
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
    real(rk), parameter :: length = 0.1_rk  !< length of the crack [m]
    type(checks_t) :: checks
    type(timers_t) :: timers
-   type(twolevel_simulation_t) :: simulation
+   type(two_levels_t) :: simulation
    real(rk) :: before, place(2)
 
    call start(simulation)
@@ -47,7 +47,7 @@ contains
    subroutine test_following()
       real(rk), parameter :: piece = 0.05_rk*length
       real(rk), parameter :: gains(4) = [-0.4_rk, 0.3_rk, 0.7_rk, 2.5_rk]*piece
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk) :: followed, place(2)
       integer(ik) :: k
 
@@ -71,7 +71,7 @@ contains
 
    !> The last segment at the first tip has the prescribed length, or there is only one segment.
    subroutine start(simulation, piece)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in), optional :: piece  !< [m]
       real(rk), parameter :: along = 0.5_rk*length*sqrt(0.5_rk)
       type(scene_t) :: scene
@@ -94,7 +94,7 @@ contains
 
    !> Move the first tip from its initial position along the crack; the coarse level stays.
    subroutine move(simulation, place, by)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: place(2)  !< initial position [m]
       real(rk), intent(in) :: by  !< [m]
       type(error_t), allocatable :: error
