@@ -12,6 +12,7 @@ module twolevel_notes
    use twolevel_excess, only: tolerance
    use scene_types, only: scene_t
    use twolevel_errors, only: tip_excess_t
+   use twolevel_jumps, only: jumps_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
@@ -32,6 +33,7 @@ module twolevel_notes
       logical, allocatable, private :: grew_together(:, :)
       !> (tips) the tip has separated from a tip of its group
       logical, allocatable, private :: has_separated(:)
+      type(jumps_t) :: jumps  !< growth without equilibrium
    contains
       procedure :: begin
       procedure :: note_onsets
@@ -49,6 +51,7 @@ contains
       allocate (self%approach(n))
       allocate (self%is_uncertain(n), self%has_separated(n), source=.false.)
       allocate (self%grew_together(n, n), source=.false.)
+      call self%jumps%begin(n)
    end subroutine begin
 
    !> Report the onset of growth: the time at which the tip reached K_IC, once the tip has advanced
@@ -165,12 +168,13 @@ contains
    end subroutine note_separation
 
    !> Update the estimated errors of length and pressure after a step of length dt.
-   subroutine note_stated_errors(scene, front, problem, dt, now)
+   subroutine note_stated_errors(scene, front, problem, dt, now, jumps)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: dt  !< [s]
       type(levels_state_t), intent(inout) :: now
+      type(jumps_t), intent(inout) :: jumps
       type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked
 
@@ -184,6 +188,7 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
+         call jumps%follow(tip, toughness, dt, now%coarse%time, tips%jump)
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                      total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate

@@ -35,6 +35,7 @@ contains
    call self%catalogue%begin(scene%output%out_of_plane_length, &
                              scene%output%stimulated_jump, scene%output%seismic_slip_rate)
    call self%notes%begin(size(self%tip))
+   if (self%scene%growth%enabled) self%summary%growth_jumps = 0
    call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
    if (.not. allocated(error)) call note_features(self)
    end procedure begin
@@ -108,6 +109,9 @@ contains
          call self%stepper%settle(pressure(self%now%grown))
       end if
    end if
+   if (states_errors(self)) call note_stated_errors(self%scene, self%front_state_t, &
+                                                    self%problem, self%step%dt, self%now, &
+                                                    self%notes%jumps)
    call note_well_rows(self)
    call note_state(self, row%mass_error_relative)
    end procedure next_state
@@ -237,9 +241,6 @@ contains
       call self%heed_limits(error)
       if (allocated(error)) return
    end if
-   if (states_errors(self)) call note_stated_errors(self%scene, self%front_state_t, &
-                                                    self%problem, &
-                                                    self%step%dt, self%now)
    if (may_grow .and. self%scene%growth%in_equilibrium()) then
       call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
    end if

@@ -186,8 +186,26 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       if (.not. is_unstable) return
       call self%chronicle%add_event(self%now%coarse%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")
+      call note_jumps(self)
       ! The rates of unstable growth do not apply to the next step.
       call self%follow_trend(at_rest=.false.)
    end subroutine accept_step
+
+   !> Report the tips that have advanced without equilibrium.
+   subroutine note_jumps(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk) :: error(size(self%tip)), from(2, size(self%tip)), pressure(2)
+      integer :: i
+
+      do i = 1, size(self%tip)
+         from(:, i) = self%last%front%tip(i)%xy
+      end do
+      pressure = [self%problem%well_pressure(self%scene, self%before), &
+                  self%problem%well_pressure(self%scene, self%now%coarse)]
+      error = 0.0_rk
+      if (allocated(self%now%stated_errors%tip)) error = self%now%stated_errors%tip
+      call self%notes%jumps%note(self%tip, from, error, self%rules%toughness, pressure, &
+                                 self%now%coarse%time, self%chronicle, self%summary)
+   end subroutine note_jumps
 
 end module twolevel_steps
