@@ -1,4 +1,4 @@
-!> Output of the state of both levels: the row of the history, fields, probes, numbers of unknowns.
+!> Output of the state of both levels: the row of the history, fields, probes.
 module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -13,18 +13,17 @@ module twolevel_results
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
-   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t, summary_t
+   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t
    use scene_types, only: probe_t, scene_t
    use report_simulation, only: snapshot_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_places, only: end_cell
    use twolevel_problem, only: cell_heights, coarse_problem_t
    use twolevel_well_rows, only: well_flows, well_pressures
-   use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
-   public :: cell_state, cell_states, count_unknowns, end_at_tips, history_of_levels
+   public :: cell_state, cell_states, end_at_tips, history_of_levels
    public :: fracture_volume, probes_of_levels
    public :: slip_potency, snapshot_of_levels
 
@@ -340,29 +339,5 @@ contains
          n = n + 1
       end associate
    end subroutine detach_tip
-
-   !> Numbers of unknowns by block, for run.json.
-   subroutine count_unknowns(scene, tips, problem, windows, reference, summary)
-      type(scene_t), intent(in) :: scene
-      type(tip_t), intent(in) :: tips(:)
-      type(coarse_problem_t), intent(in) :: problem
-      type(windows_t), intent(in) :: windows, reference
-      type(summary_t), intent(inout) :: summary
-
-      associate (mesh => problem%mesh, model => problem%model)
-         call summary%count_dofs("displacement", 2*mesh%n_cells)
-         call summary%count_dofs("matrix_pressure", mesh%n_cells)
-         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
-                                 + model%joints%branch_count())
-         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
-      end associate
-      if (.not. scene%growth%intensities) return
-      call summary%count_dofs("windows", windows%n_unknowns(tips))
-      if (scene%discretization%window_is_body) return
-      call summary%count_dofs("windows_reference", reference%n_unknowns(tips))
-   end subroutine count_unknowns
 
 end module twolevel_results

@@ -9,11 +9,12 @@ submodule(twolevel_state) twolevel_simulation
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: history_row_t, well_row_t
    use scene_sizes, only: sizes_text
+   use scene_types, only: growth_t
    use report_slip, only: slip_step_t
    use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
    use twolevel_notes, only: note_stated_errors, note_excess
-   use twolevel_results, only: cell_states, count_unknowns, end_at_tips, history_of_levels, &
+   use twolevel_results, only: cell_states, end_at_tips, history_of_levels, &
                                probes_of_levels, slip_potency, snapshot_of_levels
    use twolevel_steps, only: take_step
    use twolevel_stepping, only: refinement_t
@@ -27,17 +28,22 @@ submodule(twolevel_state) twolevel_simulation
 
 contains
 
-   module procedure begin
-   self%end_time = scene%time%end
-   call self%stepper%begin(scene%time)
-   call self%mesh_levels(scene, timers, error)
-   if (allocated(error)) return
-   call self%catalogue%begin(scene%output%out_of_plane_length, &
-                             scene%output%stimulated_jump, scene%output%seismic_slip_rate)
-   call self%notes%begin(size(self%tip))
-   call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
-   if (.not. allocated(error)) call note_features(self)
-   end procedure begin
+   module subroutine begin(self, scene, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      self%end_time = scene%time%end
+      call self%stepper%begin(scene%time)
+      call self%mesh_levels(scene, timers, error)
+      if (allocated(error)) return
+      call self%catalogue%begin(scene%output%out_of_plane_length, &
+                                scene%output%stimulated_jump, scene%output%seismic_slip_rate)
+      call self%notes%begin(size(self%tip))
+      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
+      if (.not. allocated(error)) call note_features(self)
+   end subroutine begin
 
    !> Report the features that the scene uses, and those that it does not use.
    subroutine note_features(self)
@@ -69,48 +75,51 @@ contains
       end associate
    end subroutine note_features
 
-   module procedure next_state
-   type(history_row_t) :: row
-   real(rk), allocatable :: pressure(:)
-   logical :: is_first
+   module subroutine next_state(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(history_row_t) :: row
+      real(rk), allocatable :: pressure(:)
+      logical :: is_first
 
-   is_first = .not. self%has_begun
-   self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
-   self%has_begun = .true.
-   call self%begin_step()
-   if (self%is_initial) then
-      call find_initial_state(self, timers, error)
-   else
-      if (is_first) then
-         call self%stimulation%begin(self%problem, self%now%coarse)
-         call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+      is_first = .not. self%has_begun
+      self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
+      self%has_begun = .true.
+      call self%begin_step()
+      if (self%is_initial) then
+         call find_initial_state(self, timers, error)
+      else
+         if (is_first) then
+            call self%stimulation%begin(self%problem, self%now%coarse)
+            call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+         end if
+         call take_step(self, timers, error)
       end if
-      call take_step(self, timers, error)
-   end if
-   if (.not. allocated(error)) then
-      call book_change(self)
-      self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
-      row = self%history()
-      call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
-                        self%now%fluid%mass_error, row%mass_error_relative)
-      call self%heed_limits(error)
-   end if
-   if (allocated(error)) then
-      call self%put_back()
-      return
-   end if
-   self%shows_growth = self%now%has_new_mesh
-   self%now%has_new_mesh = .false.
-   if (.not. self%is_initial) then
-      self%summary%steps = self%summary%steps + 1
-      if (.not. (self%owes_state .or. self%scene%growth%in_equilibrium())) then
-         pressure = self%problem%fracture_pressure(self%now%coarse)
-         call self%stepper%settle(pressure(self%now%grown))
+      if (.not. allocated(error)) then
+         call book_change(self)
+         self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
+         row = self%history()
+        call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
+                           self%now%fluid%mass_error, row%mass_error_relative)
+         call self%heed_limits(error)
       end if
-   end if
-   call note_well_rows(self)
-   call note_state(self, row%mass_error_relative)
-   end procedure next_state
+      if (allocated(error)) then
+         call self%put_back()
+         return
+      end if
+      self%shows_growth = self%now%has_new_mesh
+      self%now%has_new_mesh = .false.
+      if (.not. self%is_initial) then
+         self%summary%steps = self%summary%steps + 1
+         if (.not. (self%owes_state .or. self%scene%growth%in_equilibrium())) then
+            pressure = self%problem%fracture_pressure(self%now%coarse)
+            call self%stepper%settle(pressure(self%now%grown))
+         end if
+      end if
+      call note_well_rows(self)
+      call note_state(self, row%mass_error_relative)
+   end subroutine next_state
 
    !> Add the last step to the stimulation, the slip catalogue and the seismic moment; the slip of
    !! the initial state is no event.
@@ -197,57 +206,78 @@ contains
          summary%fracture_cells = self%problem%mesh%fracture%n_cells
          if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)
          call summary%add_newton(report%iterations)
-         call count_unknowns(self%scene, self%tip, self%problem, self%windows, self%reference, &
-                             summary)
+         call count_unknowns(self)
          call self%note_contact(self%problem%mesh%fracture, cell_states(self%now%coarse), always, &
                                 always)
       end associate
    end subroutine note_state
 
-   module procedure grow
-   logical :: may_grow
+   !> Numbers of unknowns by block, for run.json.
+   subroutine count_unknowns(self)
+      class(two_levels_t), intent(inout) :: self
 
-   may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
-   self%owes_state = .false.
-   if (self%scene%growth%intensities) then
-      if (may_grow .and. self%scene%growth%in_equilibrium()) then
-         call note_equilibrium(self, error)
-      else
-         call evaluate_tips(self, timers, error)
-         if (allocated(error)) return
-         if (may_grow) then
-            call follow_tips(self, timers, error)
-         else
-            self%tip%advance = 0.0_rk
-            call self%note_tips()
-         end if
-      end if
-      if (allocated(error)) return
-      associate (toughness => self%rules%toughness, time => self%now%coarse%time)
-         if (self%scene%growth%in_equilibrium()) then
-            call note_uncertain_tips(self, self%notes%is_uncertain)
-            call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
-                                        self%chronicle)
-            if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
-         end if
-         call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+      associate (mesh => self%problem%mesh, model => self%problem%model, summary => self%summary)
+         call summary%count_dofs("displacement", 2*mesh%n_cells)
+         call summary%count_dofs("matrix_pressure", mesh%n_cells)
+         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
+                                 + model%joints%branch_count())
+         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
+         if (.not. self%scene%growth%intensities) return
+         call summary%count_dofs("windows", self%windows%n_unknowns(self%tip))
+         if (self%scene%discretization%window_is_body) return
+         call summary%count_dofs("windows_reference", self%reference%n_unknowns(self%tip))
       end associate
-      call count_unknowns(self%scene, self%tip, self%problem, self%windows, self%reference, &
-                          self%summary)
-      call self%heed_limits(error)
-      if (allocated(error)) return
-   end if
-   if (states_errors(self)) call note_stated_errors(self%scene, self%front_state_t, &
-                                                    self%problem, &
-                                                    self%step%dt, self%now)
-   if (may_grow .and. self%scene%growth%in_equilibrium()) then
-      call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
-   end if
-   if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
-      if (.not. allocated(self%ending)) self%ending = "the scene's end time"
+   end subroutine count_unknowns
+
+   module subroutine grow(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: may_grow
+
+      may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
       self%owes_state = .false.
-   end if
-   end procedure grow
+      if (self%scene%growth%intensities) then
+         if (may_grow .and. self%scene%growth%in_equilibrium()) then
+            call note_equilibrium(self, error)
+         else
+            call evaluate_tips(self, timers, error)
+            if (allocated(error)) return
+            if (may_grow) then
+               call follow_tips(self, timers, error)
+            else
+               self%tip%advance = 0.0_rk
+               call self%note_tips()
+            end if
+         end if
+         if (allocated(error)) return
+         associate (toughness => self%rules%toughness, time => self%now%coarse%time)
+            if (self%scene%growth%in_equilibrium()) then
+               call note_uncertain_tips(self, self%notes%is_uncertain)
+               call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
+                                           self%chronicle)
+               if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
+            end if
+            call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+         end associate
+         call count_unknowns(self)
+         call self%heed_limits(error)
+         if (allocated(error)) return
+      end if
+     if (states_errors(self%scene%growth)) call note_stated_errors(self%scene, self%front_state_t, &
+                                                                    self%problem, &
+                                                                    self%step%dt, self%now)
+      if (may_grow .and. self%scene%growth%in_equilibrium()) then
+         call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
+      end if
+      if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
+         if (.not. allocated(self%ending)) self%ending = "the scene's end time"
+         self%owes_state = .false.
+      end if
+   end subroutine grow
 
    !> Evaluate the intensities in a state without growth, with refined windows where growth after it
    !! requires this.
@@ -283,10 +313,10 @@ contains
    end subroutine note_equilibrium
 
    !> Whether errors of length and pressure are estimated: not with increments of prescribed length.
-   pure logical function states_errors(self)
-      class(two_levels_t), intent(in) :: self
+   pure logical function states_errors(growth)
+      type(growth_t), intent(in) :: growth
 
-      states_errors = self%scene%growth%in_equilibrium() .or. .not. self%scene%growth%enabled
+      states_errors = growth%in_equilibrium() .or. .not. growth%enabled
    end function states_errors
 
    !> Grow by increments. If the last one changes the coarse mesh, the state on the new mesh has
@@ -317,50 +347,70 @@ contains
       end do
    end subroutine follow_tips
 
-   module procedure present_network
-   network = self%now%coarse_network
-   mesh = self%problem%mesh
-   if (.not. self%scene%growth%in_equilibrium()) return
-   network = self%network
-   call end_at_tips(self%scene, self%front_state_t, mesh%fracture)
-   end procedure present_network
+   module subroutine present_network(self, network, mesh)
+      class(two_levels_t), intent(in) :: self
+      type(network_t), intent(out) :: network
+      type(mesh_t), intent(out) :: mesh
 
-   module procedure history
-   row = history_of_levels(self%scene, self%front_state_t, self%problem, self%now, &
-                           self%before%time)
-   row%dt = merge(0.0_rk, self%step%dt, self%is_initial)
-   row%newton_iterations = self%step%report%iterations
-   row%seismic_moment = self%seismic_moment
-   if (row%dt > 0.0_rk .and. self%problem%mesh%fracture%n_cells > 0) then
-      associate (state => self%now%coarse)
-         row%max_slip_rate = maxval(abs(state%jump(2, :, :) - state%slip_before))/row%dt
-      end associate
-   end if
-   call self%stimulation%describe(self%scene, self%start, self%front_state_t, self%problem, &
-                                  self%now%coarse, row)
-   row%length_error = -1.0_rk
-   row%well_pressure_error = -1.0_rk
-   if (.not. states_errors(self)) return
-   row%length_error = self%now%stated_errors%length
-   row%well_pressure_error = self%now%stated_errors%pressure
-   end procedure history
+      network = self%now%coarse_network
+      mesh = self%problem%mesh
+      if (.not. self%scene%growth%in_equilibrium()) return
+      network = self%network
+      call end_at_tips(self%scene, self%front_state_t, mesh%fracture)
+   end subroutine present_network
 
-   module procedure probes
-   call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
-   end procedure probes
+   module function history(self) result(row)
+      class(two_levels_t), intent(in) :: self
+      type(history_row_t) :: row
 
-   module procedure snapshot
-   if (allocated(self%now%coarse%tractions)) then
-      fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
-   end if
-   end procedure snapshot
+      row = history_of_levels(self%scene, self%front_state_t, self%problem, self%now, &
+                              self%before%time)
+      row%dt = merge(0.0_rk, self%step%dt, self%is_initial)
+      row%newton_iterations = self%step%report%iterations
+      row%seismic_moment = self%seismic_moment
+      if (row%dt > 0.0_rk .and. self%problem%mesh%fracture%n_cells > 0) then
+         associate (state => self%now%coarse)
+            row%max_slip_rate = maxval(abs(state%jump(2, :, :) - state%slip_before))/row%dt
+         end associate
+      end if
+      call self%stimulation%describe(self%scene, self%start, self%front_state_t, self%problem, &
+                                     self%now%coarse, row)
+      row%length_error = -1.0_rk
+      row%well_pressure_error = -1.0_rk
+      if (.not. states_errors(self%scene%growth)) return
+      row%length_error = self%now%stated_errors%length
+      row%well_pressure_error = self%now%stated_errors%pressure
+   end function history
 
-   module procedure time
-   time = self%now%coarse%time
-   end procedure time
+   module subroutine probes(self, row, error)
+      class(two_levels_t), intent(inout) :: self
+      type(probe_row_t), intent(out) :: row
+      type(error_t), allocatable, intent(out) :: error
 
-   module procedure last_state
-   words = brief_text(self%now%coarse%time, 6)//" s"
-   end procedure last_state
+      call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
+   end subroutine probes
+
+   module subroutine snapshot(self, fields)
+      class(two_levels_t), intent(in) :: self
+      type(snapshot_t), allocatable, intent(out) :: fields
+
+      if (allocated(self%now%coarse%tractions)) then
+         fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
+      end if
+   end subroutine snapshot
+
+   pure module function time(self)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: time
+
+      time = self%now%coarse%time
+   end function time
+
+   pure module function last_state(self) result(words)
+      class(two_levels_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = brief_text(self%now%coarse%time, 6)//" s"
+   end function last_state
 
 end submodule twolevel_simulation

@@ -8,6 +8,7 @@ module twolevel_steps
    use base_tolerances, only: same_time
    use report_rows, only: event_step_cut, event_unstable
    use report_limits, only: limit_time_error
+   use scene_types, only: scene_t
    use twolevel_refinement, only: refine_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_state, only: two_levels_t
@@ -66,7 +67,8 @@ contains
          is_last = is_too_short
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
-         may_jump = is_last .or. (trial%goes_too_far .and. is_moment(self))
+         may_jump = is_last .or. (trial%goes_too_far .and. &
+                                  is_moment(self%scene, self%before%time, self%step%dt))
       end do
       is_unstable = is_unstable .or. trial%jumps
       if (self%now%trend%is_known() .and. .not. (self%step%is_after_switch .or. is_unstable)) then
@@ -87,12 +89,12 @@ contains
    end function way_out
 
    !> Whether the present step is so short that the time of a jump within it does not matter.
-   pure logical function is_moment(self)
-      class(two_levels_t), intent(in) :: self
+   pure logical function is_moment(scene, since, dt)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: since  !< start of the step [s]
+      real(rk), intent(in) :: dt  !< [s]
 
-      associate (time => self%before%time)
-         is_moment = self%step%dt <= punctual*(time - last_switch(self%scene, time))
-      end associate
+      is_moment = dt <= punctual*(since - last_switch(scene, since))
    end function is_moment
 
    !> Whether the equations are solved with the tips in equilibrium, whatever the time error.
