@@ -1,30 +1,21 @@
 !> What a run calls: time steps, with growth of the tips in each step, and the results of a state.
 submodule(twolevel_state) twolevel_simulation
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: rk
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use coarse_rock, only: shear_beside
-   use mesh_types, only: fracture_mesh_t
-   use report_rows, only: history_row_t, well_row_t
+   use report_rows, only: history_row_t
    use scene_sizes, only: sizes_text
    use scene_types, only: growth_t
-   use report_slip, only: slip_step_t
    use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
-   use twolevel_limits, only: watch_levels, watch_mesh, watch_windows
+   use twolevel_limits, only: watch_mesh, watch_windows
    use twolevel_notes, only: note_stated_errors, note_excess
-   use twolevel_results, only: cell_states, end_at_tips, history_of_levels, &
-                               probes_of_levels, slip_potency, snapshot_of_levels
-   use twolevel_steps, only: take_step
+   use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
    use twolevel_stepping, only: refinement_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_places, only: end_at_tips
    implicit none(type, external)
-
-   ! Names of the feature in the log.
-   character(len=*), parameter :: meeting = "intersections: flow from fracture to fracture "// &
-                                  "or out of the body"
-   character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
 
 contains
 
@@ -75,163 +66,6 @@ contains
       end associate
    end subroutine note_features
 
-   module subroutine next_state(self, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      type(history_row_t) :: row
-      real(rk), allocatable :: pressure(:)
-      logical :: is_first
-
-      is_first = .not. self%has_begun
-      self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
-      self%has_begun = .true.
-      call self%begin_step()
-      if (self%is_initial) then
-         call find_initial_state(self, timers, error)
-      else
-         if (is_first) then
-            call self%stimulation%begin(self%problem, self%now%coarse)
-            call self%well_results%begin(self%scene, self%problem, self%now%coarse)
-         end if
-         call take_step(self, timers, error)
-      end if
-      if (.not. allocated(error)) then
-         call book_change(self)
-         self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
-         row = self%history()
-        call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
-                           self%now%fluid%mass_error, row%mass_error_relative)
-         call self%heed_limits(error)
-      end if
-      if (allocated(error)) then
-         call self%put_back()
-         return
-      end if
-      self%shows_growth = self%now%has_new_mesh
-      self%now%has_new_mesh = .false.
-      if (.not. self%is_initial) then
-         self%summary%steps = self%summary%steps + 1
-         if (.not. (self%owes_state .or. self%scene%growth%in_equilibrium())) then
-            pressure = self%problem%fracture_pressure(self%now%coarse)
-            call self%stepper%settle(pressure(self%now%grown))
-         end if
-      end if
-      call note_well_rows(self)
-      call note_state(self, row%mass_error_relative)
-   end subroutine next_state
-
-   !> Add the last step to the stimulation, the slip catalogue and the seismic moment; the slip of
-   !! the initial state is no event.
-   subroutine book_change(self)
-      class(two_levels_t), intent(inout) :: self
-      type(fracture_mesh_t) :: fracture
-      real(rk), parameter :: rounding = 1.0e-12_rk  ! relative rounding error of slip
-      real(rk), allocatable :: potency(:), shear(:)
-
-      if (self%is_initial) then
-         call self%stimulation%begin(self%problem, self%now%coarse)
-      else
-         call self%stimulation%follow(self%start, self%problem%mesh%fracture, self%now%coarse, &
-                                      self%scene%output%stimulated_jump, &
-                                      self%step%report%compressed, self%step%report%rock_outflow)
-      end if
-      fracture = self%problem%mesh%fracture
-      if (fracture%n_cells == 0) return
-      call end_at_tips(self%scene, self%front_state_t, fracture)
-      potency = slip_potency(self%problem%model%condensed%length, self%now%coarse)
-      ! Cells ahead of a tip are intact rock.
-      where (.not. fracture%cell_s(2, :) > fracture%cell_s(1, :)) potency = 0.0_rk
-      shear = shear_beside(self%problem%model%rock, self%problem%mesh)
-      self%seismic_moment = self%seismic_moment + sum(shear*potency)
-      associate (traction => 0.5_rk*sum(self%now%coarse%traction(2, :, :), dim=1), &
-                 largest => maxval(abs(self%now%coarse%jump(2, :, :))))
-         ! Faces at the friction limit that do not move have slip within rounding errors.
-         where (potency <= rounding*largest*self%problem%model%condensed%length) potency = 0.0_rk
-         if (self%is_initial) then
-            call self%catalogue%remember(fracture, traction)
-         else
-            call self%note_slip(fracture, slip_step_t(self%step%dt, potency, shear, &
-                                                      cell_states(self%now%coarse), traction, &
-                                                      self%step%is_unstable))
-         end if
-      end associate
-   end subroutine book_change
-
-   !> Find the state before the first step.
-   subroutine find_initial_state(self, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-
-      call self%equilibrate(timers, self%step%report, error)
-      if (allocated(error)) return
-      self%step%report%mass_error = 0.0_rk
-      call self%follow_trend(at_rest=.true.)
-      if (self%step%report%converged) return
-      call raise_error(error, "", "no initial equilibrium was found: "//self%step%report%reason// &
-                       "; usual causes are fractures that nearly touch (separate or merge "// &
-                       "them, or use &initial fracture_pressure = 'undrained') and friction "// &
-                       "above 1")
-   end subroutine find_initial_state
-
-   !> Add the rows of the wells.
-   subroutine note_well_rows(self)
-      class(two_levels_t), intent(inout) :: self
-      type(well_row_t), allocatable :: rows(:)
-
-      if (size(self%scene%injections) == 0) return
-      if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
-      call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
-                                  merge(0.0_rk, self%step%dt, self%is_initial), rows)
-      self%chronicle%wells = [self%chronicle%wells, rows]
-   end subroutine note_well_rows
-
-   !> Update contact events and the extreme values of the run with an accepted state.
-   subroutine note_state(self, mass_error_relative)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: mass_error_relative  !< accumulated error of all steps [-]
-      logical :: always(size(self%scene%fractures))
-
-      always = .true.
-      associate (summary => self%summary, report => self%step%report)
-         summary%contact_residual = max(summary%contact_residual, report%contact_residual)
-         summary%condition_estimate = max(summary%condition_estimate, report%condition)
-         summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
-         summary%mass_error_relative = max(summary%mass_error_relative, mass_error_relative)
-         summary%lowest_pressure = min(summary%lowest_pressure, &
-                                       minval(self%problem%rock_pressure(self%now%coarse)), &
-                                       minval(self%problem%fracture_pressure(self%now%coarse)))
-         summary%cells = self%problem%mesh%n_cells
-         summary%fracture_cells = self%problem%mesh%fracture%n_cells
-         if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)
-         call summary%add_newton(report%iterations)
-         call count_unknowns(self)
-         call self%note_contact(self%problem%mesh%fracture, cell_states(self%now%coarse), always, &
-                                always)
-      end associate
-   end subroutine note_state
-
-   !> Numbers of unknowns by block, for run.json.
-   subroutine count_unknowns(self)
-      class(two_levels_t), intent(inout) :: self
-
-      associate (mesh => self%problem%mesh, model => self%problem%model, summary => self%summary)
-         call summary%count_dofs("displacement", 2*mesh%n_cells)
-         call summary%count_dofs("matrix_pressure", mesh%n_cells)
-         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
-                                 + model%joints%branch_count())
-         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
-         if (.not. self%scene%growth%intensities) return
-         call summary%count_dofs("windows", self%windows%n_unknowns(self%tip))
-         if (self%scene%discretization%window_is_body) return
-         call summary%count_dofs("windows_reference", self%reference%n_unknowns(self%tip))
-      end associate
-   end subroutine count_unknowns
-
    module subroutine grow(self, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -263,7 +97,7 @@ contains
             end if
             call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
          end associate
-         call count_unknowns(self)
+         call self%count_unknowns()
          call self%heed_limits(error)
          if (allocated(error)) return
       end if

@@ -33,11 +33,16 @@ module twolevel_state
    !> share of the longest step: within this time no fluid moves noticeably [-]
    real(rk), parameter :: undrained_share = 1.0e-6_rk
 
+   ! Names of the feature of intersections in the log.
+   character(len=*), parameter :: meeting = "intersections: flow from fracture to fracture "// &
+                                  "or out of the body"
+   character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
+
    !> The last step.
    type :: last_step_t
       real(rk) :: dt = 0.0_rk  !< length [s]
-      logical :: is_after_switch = .false.  !< it began at a switch of a well
-      logical :: ends_at_switch = .false.  !< it ended at a switch of a well
+      !> it began or ended at a switch of a well
+      logical :: is_after_switch = .false., ends_at_switch = .false.
       logical :: is_unstable = .false.  !< tips grew without equilibrium
       type(step_report_t) :: report
       character(len=:), allocatable :: why_cut  !< reason of the last cut
@@ -91,6 +96,7 @@ module twolevel_state
       procedure :: book_step
       procedure :: evaluate
       procedure :: has_reference
+      procedure :: count_unknowns
       procedure :: grow_coarse
       procedure :: remesh_coarse
    end type two_levels_t
@@ -117,7 +123,7 @@ module twolevel_state
       end subroutine remesh_coarse
    end interface
 
-   ! Bindings of simulation_t, in twolevel_simulation
+   ! Bindings of simulation_t: next_state in twolevel_steps, the others in twolevel_simulation
    interface
       !> Mesh both levels, without load.
       module subroutine begin(self, scene, timers, error)
@@ -326,10 +332,7 @@ contains
       real(rk) :: length
       integer :: i
 
-      length = 0.0_rk
-      do i = 1, size(self%scene%fractures)
-         length = length + self%scene%fractures(i)%length()
-      end do
+      length = sum([(self%scene%fractures(i)%length(), i=1, size(self%scene%fractures))])
       call self%now%trend%begin(self%now%coarse, at_rest, pressure_scale(self%scene), &
                                 self%scene%material%young, length)
    end subroutine follow_trend
@@ -472,5 +475,25 @@ contains
       has_reference = .not. self%scene%discretization%window_is_body .and. &
                       self%problem%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
+
+   !> Numbers of unknowns by block, for run.json.
+   subroutine count_unknowns(self)
+      class(two_levels_t), intent(inout) :: self
+
+      associate (mesh => self%problem%mesh, model => self%problem%model, summary => self%summary)
+         call summary%count_dofs("displacement", 2*mesh%n_cells)
+         call summary%count_dofs("matrix_pressure", mesh%n_cells)
+         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
+                                 + model%joints%branch_count())
+         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
+         if (.not. self%scene%growth%intensities) return
+         call summary%count_dofs("windows", self%windows%n_unknowns(self%tip))
+         if (self%scene%discretization%window_is_body) return
+         call summary%count_dofs("windows_reference", self%reference%n_unknowns(self%tip))
+      end associate
+   end subroutine count_unknowns
 
 end module twolevel_state
