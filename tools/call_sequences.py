@@ -38,8 +38,7 @@ def is_named(procedure: str, module: str, caller: str) -> bool:
 
 def defines(procedure: str, text: str) -> bool:
     """Whether a procedure of this name stands in a module."""
-    opening = rf"\b(?:subroutine|function|module procedure)\s+{procedure}\b"
-    return re.search(opening, text) is not None
+    return re.search(rf"\b(?:subroutine|function)\s+{procedure}\b", text) is not None
 
 
 def rank(module: str, components: list[str]) -> int:

@@ -10,11 +10,11 @@ module fine_tip_intensity
    use fine_tip_domain, only: face_traction, largest_radius, rosette_size
    use fine_tip_energy, only: displacement_correlation, release_rate
    use fine_tip_interaction, only: interaction_integrals, interactions_t
-   use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
+   use fine_tip_types, only: complete_errors, frame_of_tip, intensity_t, tip_frame_t
    implicit none(type, external)
    private
 
-   public :: complete_errors, intensity_of_tip, probe_of_tip, tip_intensity, tip_probe_t
+   public :: intensity_of_tip, probe_of_tip, tip_intensity, tip_probe_t
 
    ! The larger domain has a radius of some rosettes where there is room for them, and takes up half
    ! of the room where the rosette is small. A domain that shrank with the rosette would look the
@@ -51,7 +51,7 @@ contains
          call raise_error(error, "tip_intensity", "the window has no tip number "//trim(number))
          return
       end if
-      probe%frame = frame_of_tip(model, tip)
+      probe%frame = frame_of_tip(model%mesh, model%rocks, tip)
       room = largest_radius(model%mesh, probe%frame, model%rocks)
       probe%radius = min(room, max(share_of_room*room, &
                                    reach*rosette_size(model%mesh, probe%frame)))
@@ -124,20 +124,6 @@ contains
       if (allocated(error)) return
       call tip_intensity(model, loads, displacement, probe, intensity, error)
    end subroutine intensity_of_tip
-
-   !> Errors of the other two methods, by their distance from the first and its error.
-   elemental subroutine complete_errors(crack_modulus, intensity)
-      real(rk), intent(in) :: crack_modulus  !< E' [Pa]
-      type(intensity_t), intent(inout) :: intensity
-
-      associate (k1 => intensity%k1_corrected, k2 => intensity%k2_corrected)
-         intensity%k1_dc_error = abs(intensity%k1_dc - k1) + intensity%k1_error
-         intensity%k2_dc_error = abs(intensity%k2_dc - k2) + intensity%k2_error
-         intensity%g_error = abs(intensity%g_domain - (k1**2 + k2**2)/crack_modulus) &
-                             + 2.0_rk*(abs(k1)*intensity%k1_error + abs(k2)*intensity%k2_error) &
-                             /crack_modulus
-      end associate
-   end subroutine complete_errors
 
    !> Where the law of contact closes the faces next to the tip, their jump says more than any
    !! integral: [u]_n = tan(psi) |[u]_tau| leaves K_I = tan(psi) |K_II|, and no jump leaves neither.

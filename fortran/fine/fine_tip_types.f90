@@ -1,12 +1,12 @@
 !> Input and results of the procedures for a tip in this component.
 module fine_tip_types
    use base_kinds, only: ik, rk
-   use fine_elasticity, only: elasticity_t
-   use fine_model, only: fine_model_t
+   use fine_elasticity, only: elasticity_t, rocks_t
+   use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private
 
-   public :: frame_of_tip, intensity_t, tip_frame_t
+   public :: complete_errors, frame_of_tip, intensity_t, tip_frame_t
 
    !> Stress intensity factors of a tip [Pa m^1/2]. k1 > 0 opens; k2 > 0 where the shear stress
    !! ahead of the tip is positive in the tip's own axes (x ahead, y to its left).
@@ -41,22 +41,37 @@ module fine_tip_types
 contains
 
    !> The axes of a free tip.
-   pure function frame_of_tip(model, tip) result(frame)
-      type(fine_model_t), intent(in) :: model
+   pure function frame_of_tip(mesh, rocks, tip) result(frame)
+      type(fine_mesh_t), intent(in) :: mesh
+      type(rocks_t), intent(in) :: rocks
       integer(ik), intent(in) :: tip  !< 1 .. fracture%n_tips
       type(tip_frame_t) :: frame
 
-      associate (fine => model%mesh, fracture => model%mesh%fracture)
+      associate (fracture => mesh%fracture)
          frame%node = fracture%tip_node(tip)
          frame%fracture = fracture%tip_fracture(tip)
          frame%face = fracture%point_cells%at(fracture%tip_point(tip), 1_ik)
-         frame%cell = fine%face_cells(1, frame%face)
-         frame%rock = model%rocks%in_cell(frame%cell)
-         frame%origin = fine%xy(:, frame%node)
+         frame%cell = mesh%face_cells(1, frame%face)
+         frame%rock = rocks%in_cell(frame%cell)
+         frame%origin = mesh%xy(:, frame%node)
          frame%axes(1, :) = fracture%tip_direction(:, tip)
          frame%axes(2, :) = [-frame%axes(1, 2), frame%axes(1, 1)]
          frame%upper = merge(1.0_rk, -1.0_rk, fracture%tip_end(tip) == 2)
       end associate
    end function frame_of_tip
+
+   !> Errors of the other two methods, by their distance from the first and its error.
+   elemental subroutine complete_errors(crack_modulus, intensity)
+      real(rk), intent(in) :: crack_modulus  !< E' [Pa]
+      type(intensity_t), intent(inout) :: intensity
+
+      associate (k1 => intensity%k1_corrected, k2 => intensity%k2_corrected)
+         intensity%k1_dc_error = abs(intensity%k1_dc - k1) + intensity%k1_error
+         intensity%k2_dc_error = abs(intensity%k2_dc - k2) + intensity%k2_error
+         intensity%g_error = abs(intensity%g_domain - (k1**2 + k2**2)/crack_modulus) &
+                             + 2.0_rk*(abs(k1)*intensity%k1_error + abs(k2)*intensity%k2_error) &
+                             /crack_modulus
+      end associate
+   end subroutine complete_errors
 
 end module fine_tip_types

@@ -130,7 +130,7 @@ contains
                end if
                tip%intensity = self%body%intensity(k)
                tip%rosette_radius = fracture%tip_radius(k)
-               frame = frame_of_tip(self%body%model, k)
+               frame = frame_of_tip(self%body%model%mesh, self%body%model%rocks, k)
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
                                         frame%rock%crack_modulus())
                call tip%resist(relative_toughness(self%scene, self%network, tip%fracture, tip%end))

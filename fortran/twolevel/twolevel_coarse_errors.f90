@@ -28,13 +28,17 @@ module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_tips, timers_t
+   use coarse_state, only: state_t
+   use growth_front, only: growth_rules_t
    use growth_tip, only: tip_t
+   use mesh_types, only: fracture_mesh_t
    use twolevel_correction, only: improve
+   use twolevel_problem, only: coarse_problem_t
    use twolevel_state, only: two_levels_t
    use twolevel_thin_layers, only: layer_at_tip, layer_t, thin_layer_errors
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
-   use twolevel_windows, only: failure_t, first_failure
+   use twolevel_windows, only: failure_t, first_failure, windows_t
    implicit none(type, external)
    private
 
@@ -100,7 +104,7 @@ contains
       type(tip_t) :: tips(size(self%tip))
       integer(ik) :: i
 
-      if (.not. is_due(self)) then
+      if (.not. is_due(self%reference, self%tip, self%now%windows%tip, self%rules)) then
          do i = 1, size(tips, kind=ik)
             if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do
@@ -123,16 +127,19 @@ contains
    !> Whether the windows are to be compared with the body again: this requires no mesh, or a tip
    !! has advanced by the length of a segment since the last comparison, or its intensities have
    !! changed noticeably.
-   pure logical function is_due(self)
-      class(two_levels_t), intent(in) :: self
+   pure logical function is_due(reference, tips, seen, rules)
+      type(windows_t), intent(in) :: reference  !< the body as one window
+      type(tip_t), intent(in) :: tips(:)
+      type(window_tip_t), intent(in) :: seen(:)  !< (tips) in their windows
+      type(growth_rules_t), intent(in) :: rules
       integer(ik) :: i
 
-      is_due = .not. self%reference%has_to_mesh(self%tip)
-      do i = 1, size(self%tip, kind=ik)
-         if (.not. self%tip(i)%is_loaded()) cycle
-         associate (tip => self%now%windows%tip(i))
-            is_due = is_due .or. norm2(self%tip(i)%xy - tip%compared_at) &
-                     > self%rules%increment_of(self%tip(i)%fracture) &
+      is_due = .not. reference%has_to_mesh(tips)
+      do i = 1, size(tips, kind=ik)
+         if (.not. tips(i)%is_loaded()) cycle
+         associate (tip => seen(i))
+            is_due = is_due .or. norm2(tips(i)%xy - tip%compared_at) &
+                     > rules%increment_of(tips(i)%fracture) &
                      .or. .not. norm2([tip%found%k1, tip%found%k2] - tip%compared) &
                      <= like_before*norm2(tip%compared)
          end associate
@@ -199,16 +206,16 @@ contains
          do i = 1, size(tips, kind=ik)
             if (.not. self%tip(i)%is_loaded()) cycle
             associate (w => self%windows%window_of(i))
-               call judge_edges(self, self%windows%slot(w)%window, better(:, i), worse(:, i), &
-                                tips(i))
+               call judge_edges(mesh%fracture, self%windows%slot(w)%window, better(:, i), &
+                                worse(:, i), tips(i))
             end associate
          end do
       end associate
    end subroutine compare_edges
 
    !> Errors of a tip from its K with other edges.
-   pure subroutine judge_edges(self, window, better, worse, tip)
-      class(two_levels_t), intent(in) :: self
+   pure subroutine judge_edges(fracture, window, better, worse, tip)
+      type(fracture_mesh_t), intent(in) :: fracture
       type(window_t), intent(in) :: window  !< window of the tip
       real(rk), intent(in), dimension(2) :: better, worse  !< [Pa m^1/2]
       type(window_tip_t), intent(inout) :: tip
@@ -217,7 +224,7 @@ contains
          tip%lacking = better - found
          tip%uncertain = safety*hypot(shown(better - found, closed), &
                                       share_of_order*shown(worse - found, closed))
-         if (.not. holds_a_cell(self, window, tip)) then
+         if (.not. holds_a_cell(fracture, window, tip)) then
             tip%uncertain = norm2(found)
             if (closed) tip%uncertain(1) = abs(found(1))
          end if
@@ -255,47 +262,48 @@ contains
          associate (tip => self%now%windows%tip(i))
             tip%passing = safety*share_of_pressure &
                           *shown(rough(:, i) - [tip%found%k1, tip%found%k2], tip%found%closed) &
-                          + errors_of_layer(self, i)
+                          + errors_of_layer(self%problem, self%now%coarse, self%before%time, &
+                                            self%tip(i), tip)
          end associate
       end do
    end subroutine compare_pressures
 
    !> Possible errors of the intensities of a tip by a layer of fluid pressure thinner than a coarse
    !! cell.
-   pure function errors_of_layer(self, tip) result(errors)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: tip
+   pure function errors_of_layer(problem, state, since, tip, seen) result(errors)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: since  !< start of the last step [s]
+      type(tip_t), intent(in) :: tip
+      type(window_tip_t), intent(in) :: seen  !< the tip in its window
       real(rk) :: errors(2)  !< errors of K_I and K_II [Pa m^1/2]
       type(layer_t) :: layer
       real(rk) :: age
 
-      associate (of => self%tip(tip), found => self%now%windows%tip(tip)%found, &
-                 time => self%now%coarse%time)
-         layer = layer_at_tip(self%problem%mesh, self%problem%model%rock, self%now%coarse, &
-                              self%problem%values%nodal(3, :), of%fracture, of%end)
-         ! A tip that moves meets rock that the fluid has not reached.
-         age = time
-         if (of%advance > 0.0_rk) age = min(age, (time - self%before%time)*layer%cell/of%advance)
+      layer = layer_at_tip(problem%mesh, problem%model%rock, state, problem%values%nodal(3, :), &
+                           tip%fracture, tip%end)
+      ! A tip that moves meets rock that the fluid has not reached.
+      age = state%time
+      if (tip%advance > 0.0_rk) age = min(age, (state%time - since)*layer%cell/tip%advance)
+      associate (found => seen%found)
          errors = thin_layer_errors(layer, [found%k1, found%k2], found%closed, age)
       end associate
    end function errors_of_layer
 
    !> Whether the window contains a whole fracture cell. A window that contains no whole fracture
    !! cell gives no estimate, and its edge displacement does not resolve the tip.
-   pure logical function holds_a_cell(self, window, tip)
-      class(two_levels_t), intent(in) :: self
+   pure logical function holds_a_cell(fracture, window, tip)
+      type(fracture_mesh_t), intent(in) :: fracture
       type(window_t), intent(in) :: window
       type(window_tip_t), intent(in) :: tip
       integer(ik) :: cell
 
       holds_a_cell = .false.
-      associate (fracture => self%problem%mesh%fracture)
-         do cell = 1, fracture%n_cells
-            if (fracture%cell_fracture(cell) /= tip%fracture) cycle
-            holds_a_cell = window%holds(fracture%point_xy(:, fracture%cell_points(:, cell)))
-            if (holds_a_cell) return
-         end do
-      end associate
+      do cell = 1, fracture%n_cells
+         if (fracture%cell_fracture(cell) /= tip%fracture) cycle
+         holds_a_cell = window%holds(fracture%point_xy(:, fracture%cell_points(:, cell)))
+         if (holds_a_cell) return
+      end do
    end function holds_a_cell
 
    !> Errors of K_I and K_II from their differences. An error of one mode is an error of both: a

@@ -14,11 +14,15 @@ module twolevel_equilibrium
    use base_timers, only: timers_t
    use coarse_state, only: go_back, step_report_t
    use growth_advances, only: advances_t
+   use growth_front, only: growth_rules_t
    use growth_network, only: total_length
+   use growth_segment, only: segment_t
    use growth_targets, only: target_none
+   use growth_tip, only: tip_t
    use twolevel_refinement, only: find_refinements
    use twolevel_growth_errors, only: is_uncertain
    use twolevel_excess, only: arrivals, at_joints, first_onset, onset, tolerance
+   use twolevel_levels_state, only: levels_state_t
    use twolevel_moves, only: is_in_play, judge_tips, keep_together, separate_tips
    use twolevel_segments, only: are_at_ligaments, begin_segments, can_join, join_targets, &
                                 shared_excesses
@@ -87,7 +91,7 @@ contains
       type(search_t) :: search
       integer :: k, most
 
-      call begin_search(self, dt, is_last, may_jump, search)
+      call begin_search(self%tip, self%rules, self%now, dt, is_last, may_jump, search)
       most = merge(jump_tries_max, tries_max, may_jump)
       do k = 1, most
          call find_state(self, search, k == 1, timers, report, trial, error)
@@ -102,8 +106,10 @@ contains
    end subroutine find_equilibrium
 
    !> Put the tips at their predicted positions at the end of the step.
-   subroutine begin_search(self, dt, is_last, may_jump, search)
-      class(two_levels_t), intent(inout) :: self
+   subroutine begin_search(tips, rules, now, dt, is_last, may_jump, search)
+      type(tip_t), intent(in) :: tips(:)
+      type(growth_rules_t), intent(in) :: rules
+      type(levels_state_t), intent(inout) :: now
       real(rk), intent(in) :: dt  !< [s]
       logical, intent(in) :: is_last, may_jump
       type(search_t), intent(out) :: search
@@ -111,20 +117,20 @@ contains
       search%dt = dt
       search%is_last = is_last
       search%may_jump = may_jump
-      allocate (search%kind(size(self%tip)))
-      allocate (search%has_begun(size(self%tip)), source=.false.)
-      associate (toughness => self%rules%toughness, segment => self%now%segment)
-         call self%now%groups%find_groups(self%tip%excess(toughness), &
-                                          self%tip%relative_error(toughness), segment%gain, &
-                                          self%tip%arrested, self%increments(), &
-                                          self%now%interaction, search%kind)
+      allocate (search%kind(size(tips)))
+      allocate (search%has_begun(size(tips)), source=.false.)
+      associate (toughness => rules%toughness, segment => now%segment)
+         call now%groups%find_groups(tips%excess(toughness), tips%relative_error(toughness), &
+                                     segment%gain, tips%arrested, &
+                                     rules%increment_of(tips%fracture), now%interaction, &
+                                     search%kind)
          call segment%restart()
          if (.not. may_jump) then
             call segment%keep_pace(dt)
-            call keep_together(self%now%segment, search%kind)
+            call keep_together(now%segment, search%kind)
          end if
       end associate
-      call self%now%stated_errors%begin_step()
+      call now%stated_errors%begin_step()
    end subroutine begin_search
 
    !> Solve the coarse level and evaluate the intensities at the trial positions of the tips.
@@ -158,17 +164,14 @@ contains
                                           self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
       search%unmoved = self%tip%excess(self%rules%toughness)
-      if (.not. search%is_last) trial%onset = onset_of(self)
+      if (.not. search%is_last) then
+         trial%onset = first_onset(self%last%front%tip, self%tip, self%now%segment, &
+                                   self%rules%toughness)
+      end if
       search%is_over = trial%onset < 1.0_rk
-      if (.not. search%is_over) self%now%active = active_tips(self)
+      if (.not. search%is_over) self%now%active = active_tips(self%tip, self%now%segment, &
+                                                              self%rules%toughness)
    end subroutine find_state
-
-   !> Share of the step after which a tip begins to grow for the first time [-].
-   pure real(rk) function onset_of(self)
-      class(two_levels_t), intent(in) :: self
-
-      onset_of = first_onset(self%last%front%tip, self%tip, self%now%segment, self%rules%toughness)
-   end function onset_of
 
    !> Move the tips to where their excess is predicted to vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
@@ -210,7 +213,10 @@ contains
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
       ! Only now: while other tips still move, they may retreat.
-      if (.not. search%may_jump) trial%onset = onset_of(self)
+      if (.not. search%may_jump) then
+         trial%onset = first_onset(self%last%front%tip, self%tip, self%now%segment, &
+                                   self%rules%toughness)
+      end if
       search%is_over = trial%onset < 1.0_rk
       if (search%is_over) return
       call stop_gained(self, search, wants, trial)
@@ -293,7 +299,8 @@ contains
 
       associate (toughness => self%rules%toughness, &
                  before => self%last%front%tip%excess(self%rules%toughness))
-         if (any([(wants(i) .and. is_uncertain(self, i), i=1, size(wants, kind=ik))])) then
+         if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
+                                           toughness, self%load_pressure), i=1, size(wants))])) then
             call find_refinements(self, self%before%time, trial%refinements)
             search%is_over = size(trial%refinements) > 0
             if (search%is_over) return
@@ -355,14 +362,14 @@ contains
 
    !> Tips that may grow in a step, according to its first try: tips on open segments, and tips that
    !! are near their toughness within the error of their intensities.
-   pure function active_tips(self) result(active)
-      class(two_levels_t), intent(in) :: self
-      logical :: active(size(self%tip))
+   pure function active_tips(tips, segments, toughness) result(active)
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      logical :: active(size(tips))
 
-      associate (toughness => self%rules%toughness)
-         active = self%now%segment%is_open .or. self%tip%excess(toughness) &
-                  + self%tip%relative_error(toughness) > -lack_of_far
-      end associate
+      active = segments%is_open .or. &
+               tips%excess(toughness) + tips%relative_error(toughness) > -lack_of_far
    end function active_tips
 
    !> Evaluate the tips that the tries of a step have left out. All tips are evaluated from now on.

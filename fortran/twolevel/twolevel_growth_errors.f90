@@ -5,10 +5,12 @@
 !! the scene: the pressure with that of the loads, the position with the length of the fracture.
 !! K_IC is no such scale: K of a large fracture is many times K_IC.
 module twolevel_growth_errors
-   use base_kinds, only: ik, pi, rk
+   use base_kinds, only: pi, rk
    use growth_network, only: fracture_length
+   use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
+   use mesh_types, only: network_t
    use report_watch, only: doubtful, error_of_k
-   use twolevel_state, only: two_levels_t
    implicit none(type, external)
    private
 
@@ -33,32 +35,37 @@ module twolevel_growth_errors
 contains
 
    !> Consequences of the estimated error of K_eq of a tip.
-   pure type(growth_error_t) function growth_error(self, i) result(error)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: i  !< tip
+   pure function growth_error(tip, segment, network, toughness, load_pressure) result(error)
+      type(tip_t), intent(in) :: tip
+      type(segment_t), intent(in) :: segment  !< last path segment of the tip
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: load_pressure  !< largest pressure expected from the loads [Pa]
+      type(growth_error_t) :: error
       real(rk) :: length, off
 
-      associate (tip => self%tip(i), segment => self%now%segment(i))
-         length = fracture_length(self%network, tip%fracture)
-         off = error_of_k(tip)
-         error%pressure = off*tip%drive%resistance/(response*sqrt(0.5_rk*pi*length))
-         error%relative = error%pressure/self%load_pressure
-         if (.not. (segment%is_open .or. segment%gain > 0.0_rk)) return
-         error%position = off/tip%scale_of(self%rules%toughness)/abs(segment%falling_slope())
-         error%relative = max(error%relative, error%position/length)
-      end associate
+      length = fracture_length(network, tip%fracture)
+      off = error_of_k(tip)
+      error%pressure = off*tip%drive%resistance/(response*sqrt(0.5_rk*pi*length))
+      error%relative = error%pressure/load_pressure
+      if (.not. (segment%is_open .or. segment%gain > 0.0_rk)) return
+      error%position = off/tip%scale_of(toughness)/abs(segment%falling_slope())
+      error%relative = max(error%relative, error%position/length)
    end function growth_error
 
    !> Whether a tip grows, or might grow within the error of its K_eq, and the error has
    !! considerable consequences.
-   pure logical function is_uncertain(self, i)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: i  !< tip
+   pure logical function is_uncertain(tip, segment, network, toughness, load_pressure)
+      type(tip_t), intent(in) :: tip
+      type(segment_t), intent(in) :: segment  !< last path segment of the tip
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: load_pressure  !< largest pressure expected from the loads [Pa]
       type(growth_error_t) :: error
 
-      is_uncertain = doubtful(self%tip(i), self%rules%toughness)
+      is_uncertain = doubtful(tip, toughness)
       if (.not. is_uncertain) return
-      error = growth_error(self, i)
+      error = growth_error(tip, segment, network, toughness, load_pressure)
       is_uncertain = .not. error%relative <= acceptable
    end function is_uncertain
 

@@ -14,7 +14,7 @@ module twolevel_limits
                             limit_pressure_stiffness, limit_strain, limit_table
    use report_watch, only: watch_t, worst_place
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_scales, only: pressure_scale
+   use twolevel_setup, only: pressure_scale
    implicit none(type, external)
    private
 

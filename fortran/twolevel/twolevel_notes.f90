@@ -10,7 +10,7 @@ module twolevel_notes
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
-   use scene_types, only: scene_t
+   use scene_types, only: growth_t, scene_t
    use twolevel_errors, only: tip_excess_t
    use twolevel_jumps, only: jumps_t
    use twolevel_levels_state, only: levels_state_t
@@ -20,7 +20,7 @@ module twolevel_notes
    implicit none(type, external)
    private
 
-   public :: note_stated_errors, note_excess, notes_t
+   public :: note_stated_errors, note_excess, notes_t, states_errors
 
    !> Events written so far, and the data for those to come.
    type :: notes_t
@@ -166,6 +166,13 @@ contains
          end do
       end do
    end subroutine note_separation
+
+   !> Whether errors of length and pressure are estimated: not with increments of prescribed length.
+   pure logical function states_errors(growth)
+      type(growth_t), intent(in) :: growth
+
+      states_errors = growth%in_equilibrium() .or. .not. growth%enabled
+   end function states_errors
 
    !> Update the estimated errors of length and pressure after a step of length dt.
    subroutine note_stated_errors(scene, front, problem, dt, now, jumps)

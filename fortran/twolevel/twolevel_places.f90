@@ -4,17 +4,19 @@
 !! fracture or side. No fluid flows to the joint before the tip reaches it.
 module twolevel_places
    use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
    use base_tolerances, only: same_place
    use growth_front, only: front_state_t
-   use growth_network, only: end_gain, move_end
+   use growth_network, only: end_gain, end_place, fracture_length, move_end
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t, network_t
+   use mesh_types, only: fracture_mesh_t, network_t, point_interior, point_tip
+   use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
-   public :: advances, end_cell, place_tips, shut_tips, tip_cell_lengths
+   public :: advances, end_at_tips, end_cell, place_tips, shut_tips, tip_cell_lengths
 
 contains
 
@@ -112,5 +114,81 @@ contains
          length(i) = problem%model%condensed%length(end_cell(problem%mesh%fracture, tips(i)))
       end do
    end function tip_cell_lengths
+
+   !> With growth in equilibrium, end the last cells of the fractures at the tips: the cells of the
+   !! coarse mesh extend beyond the tips, closed, and may end at a joint that the crack has not
+   !! reached.
+   pure subroutine end_at_tips(scene, front, fracture)
+      type(scene_t), intent(in) :: scene
+      type(front_state_t), intent(in) :: front
+      type(fracture_mesh_t), intent(inout) :: fracture
+      real(rk) :: first, last
+      integer(ik) :: cell, end, i
+
+      if (.not. scene%growth%in_equilibrium()) return
+      do i = 1, size(front%tip, kind=ik)
+         if (front%tip(i)%is_free) call detach_tip(front%tip(i), fracture)
+      end do
+      do cell = 1, fracture%n_cells
+         associate (f => fracture%cell_fracture(cell))
+            first = front%network%s_start(f)
+            last = first + fracture_length(front%network, f)
+            do end = 1, 2
+               associate (s => fracture%cell_s(end, cell), &
+                          point => fracture%cell_points(end, cell))
+                  if (s < first) fracture%point_xy(:, point) = end_place(front%network, f, 1_ik)
+                  if (s > last) fracture%point_xy(:, point) = end_place(front%network, f, 2_ik)
+                  s = min(max(s, first), last)
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine end_at_tips
+
+   !> Give a fracture whose last cell ends at a joint, but whose tip has not reached the joint, a
+   !! separate tip point there, and remove its branch from the joint.
+   pure subroutine detach_tip(tip, fracture)
+      type(tip_t), intent(in) :: tip
+      type(fracture_mesh_t), intent(inout) :: fracture
+      integer(ik), allocatable :: cells(:)
+      integer(ik) :: cell, k, point
+      type(lists_t) :: point_cells
+
+      cell = end_cell(fracture, tip)
+      point = fracture%cell_points(tip%end, cell)
+      if (fracture%point_kind(point) == point_tip) return
+      cells = fracture%point_cells%of(point)
+      cells = pack(cells, cells /= cell)
+      associate (n => fracture%n_points, old => fracture%point_cells)
+         point_cells%first = [old%first, old%first(n + 1)]
+         point_cells%first(point + 1:n + 1) = point_cells%first(point + 1:n + 1) - 1
+         point_cells%item = [old%item(:old%first(point) - 1), cells, &
+                             old%item(old%first(point + 1):), cell]
+         fracture%point_cells = point_cells
+         fracture%point_xy = reshape([fracture%point_xy, tip%xy], [2_ik, n + 1])
+         fracture%point_kind = [fracture%point_kind, point_tip]
+         n = n + 1
+      end associate
+      fracture%cell_points(tip%end, cell) = fracture%n_points
+      ! The remaining branches may not form a joint any more.
+      associate (others => fracture%cell_fracture(cells))
+         if (size(cells) == 0) fracture%point_kind(point) = point_interior
+         if (size(cells) == 2) then
+            if (others(1) == others(2) .and. abs(cells(2) - cells(1)) == 1) then
+               fracture%point_kind(point) = point_interior
+            end if
+         end if
+      end associate
+      associate (n => fracture%n_tips)
+         fracture%tip_point = [fracture%tip_point, fracture%n_points]
+         fracture%tip_node = [fracture%tip_node, 0_ik]
+         fracture%tip_fracture = [fracture%tip_fracture, tip%fracture]
+         fracture%tip_end = [fracture%tip_end, tip%end]
+         fracture%tip_direction = reshape([(fracture%tip_direction(:, k), k=1, n), tip%direction], &
+                                          [2_ik, n + 1])
+         fracture%tip_radius = [fracture%tip_radius, 0.0_rk]
+         n = n + 1
+      end associate
+   end subroutine detach_tip
 
 end module twolevel_places

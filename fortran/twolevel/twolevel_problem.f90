@@ -59,6 +59,7 @@ module twolevel_problem
       procedure :: well_in_situ
       procedure :: rock_pressure
       procedure :: fracture_pressure
+      procedure :: fracture_volume
       procedure :: joint_pressure
       procedure :: thickness
    end type coarse_problem_t
@@ -364,5 +365,17 @@ contains
 
       y = [(sum(mesh%xy(2, mesh%cell_nodes(:, c)))/3.0_rk, c=1, mesh%n_cells)]
    end function cell_heights
+
+   !> Fluid volume in the fractures, without compression of the fluid and without the roughness of
+   !! new faces [m2].
+   pure real(rk) function fracture_volume(self, state) result(volume)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+
+      associate (s => self%mesh%fracture%cell_s)
+         volume = sum((state%aperture - state%void - self%model%cells%roughness) &
+                      *(s(2, :) - s(1, :)))
+      end associate
+   end function fracture_volume
 
 end module twolevel_problem

@@ -13,6 +13,7 @@ module twolevel_refinement
    use report_limits, only: limit_growth_error
    use report_rows, only: event_growth_uncertain, event_window
    use report_watch, only: uncertainty
+   use scene_types, only: domain_t
    use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, refinement_t
@@ -37,7 +38,8 @@ contains
       allocate (refinements(0))
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), toughness => self%rules%toughness)
-            if (.not. is_uncertain(self, i)) cycle
+            if (.not. is_uncertain(tip, self%now%segment(i), self%network, toughness, &
+                                   self%load_pressure)) cycle
             refinement%tip = i
             call choose(self, i, refinement%kind, what)
             if (.not. allocated(what)) cycle
@@ -59,15 +61,16 @@ contains
       integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
-         if (.not. is_uncertain(self, i)) cycle
-         error = growth_error(self, i)
-         associate (tip => self%tip(i), time => self%now%coarse%time)
+      associate (tip => self%tip(i), segment => self%now%segment(i), time => self%now%coarse%time, &
+                    toughness => self%rules%toughness)
+            if (.not. is_uncertain(tip, segment, self%network, toughness, self%load_pressure)) cycle
+            error = growth_error(tip, segment, self%network, toughness, self%load_pressure)
             call self%watch%see(limit_growth_error, 100.0_rk*error%relative, &
                                 brief_text(time, 6)//" s, fracture "// &
                                 self%scene%fractures(tip%fracture)%name, tip%xy)
             if (is_noted(i)) cycle
             is_noted(i) = .true.
-            consequences = "K known to "//brief_text(uncertainty(tip, self%rules%toughness), 3)// &
+            consequences = "K known to "//brief_text(uncertainty(tip, toughness), 3)// &
                            " % of K_IC or K_eq: pressure of growth known to "// &
                            brief_text(error%pressure, 3)//" Pa"
             if (error%position > 0.0_rk) consequences = consequences//", position to "// &
@@ -115,7 +118,8 @@ contains
             end if
          else if (window%can_be_larger()) then
             what = "a window of "//brief_text(2.0_rk*window%edge_length(), 3)//" m"
-            if (.not. costs_as_body(self, 2.0_rk*window%edge_length())) return
+            if (self%problem%mesh%fracture%n_cells > self%reference_most .or. .not. &
+                costs_as_body(self%scene%domain, 2.0_rk*window%edge_length())) return
             if (.not. uncertainty(self%tip(tip), self%rules%toughness) < far_off) return
             kind = improve_by_body
             what = "the body as its window"
@@ -151,17 +155,13 @@ contains
       end do
    end subroutine refine_windows
 
-   !> Whether a window of this size would cost about as much as the body, where the body can be the
-   !! window.
-   pure logical function costs_as_body(self, edge)
-      class(two_levels_t), intent(in) :: self
+   !> Whether a window of this size would cost about as much as the body.
+   pure logical function costs_as_body(domain, edge)
+      type(domain_t), intent(in) :: domain
       real(rk), intent(in) :: edge  !< [m]
       real(rk), parameter :: large = 0.3_rk  ! share of the body's shorter side [-]
 
-      associate (domain => self%scene%domain)
-         costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
-      end associate
-      costs_as_body = costs_as_body .and. self%problem%mesh%fracture%n_cells <= self%reference_most
+      costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
    end function costs_as_body
 
 end module twolevel_refinement

@@ -1,32 +1,28 @@
-!> Output of the state of both levels: the row of the history, fields, probes, numbers of unknowns.
+!> Output of the state of both levels: the row of the history, fields, probes.
 module twolevel_results
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_lists, only: lists_t
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stress, cell_stresses
    use coarse_state, only: state_t
    use coarse_nodes, only: nodal_fields, node_values
    use contact_law, only: state_open, state_slip, state_stick
    use growth_front, only: front_state_t
-   use growth_network, only: end_place, fracture_length, total_length
-   use growth_tip, only: tip_t
+   use growth_network, only: fracture_length, total_length
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
-   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t, summary_t
+   use report_rows, only: history_row_t, matrix_fields_t, probe_row_t
    use scene_types, only: probe_t, scene_t
    use report_simulation, only: snapshot_t
    use twolevel_levels_state, only: levels_state_t
-   use twolevel_places, only: end_cell
+   use twolevel_places, only: end_at_tips
    use twolevel_problem, only: cell_heights, coarse_problem_t
    use twolevel_well_rows, only: well_flows, well_pressures
-   use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
-   public :: cell_state, cell_states, count_unknowns, end_at_tips, history_of_levels
-   public :: fracture_volume, probes_of_levels
-   public :: slip_potency, snapshot_of_levels
+   public :: cell_state, cell_states, history_of_levels, probes_of_levels, slip_potency
+   public :: snapshot_of_levels
 
 contains
 
@@ -74,7 +70,7 @@ contains
             fracture = problem%mesh%fracture
             call end_at_tips(scene, front, fracture)
             row%n_intersections = count(is_intersection(fracture))
-            row%fracture_volume = fracture_volume(problem, state)
+            row%fracture_volume = problem%fracture_volume(state)
             row%max_slip = maxval(abs(state%jump(2, :, :)))
             row%max_opening = maxval(state%jump(1, :, :))
             states = cell_states(state)
@@ -100,18 +96,6 @@ contains
                                  *abs(model%in_situ%pressure_at(cell_heights(problem%mesh))))
       end associate
    end function content_in_situ
-
-   !> Fluid volume in the fractures, without compression of the fluid and without the roughness of
-   !! new faces [m2].
-   pure real(rk) function fracture_volume(problem, state) result(volume)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-
-      associate (s => problem%mesh%fracture%cell_s)
-         volume = sum((state%aperture - state%void - problem%model%cells%roughness) &
-                      *(s(2, :) - s(1, :)))
-      end associate
-   end function fracture_volume
 
    !> Magnitude of the slip of each fracture cell in the last step, times its length [m2].
    pure function slip_potency(length, state) result(potency)
@@ -264,105 +248,5 @@ contains
       is_intersection = [(all(fracture%point_kind(i) /= [point_interior, point_tip, &
                                                          point_boundary]), i=1, fracture%n_points)]
    end function is_intersection
-
-   !> With growth in equilibrium, end the last cells of the fractures at the tips: the cells of the
-   !! coarse mesh extend beyond the tips, closed, and may end at a joint that the crack has not
-   !! reached.
-   pure subroutine end_at_tips(scene, front, fracture)
-      type(scene_t), intent(in) :: scene
-      type(front_state_t), intent(in) :: front
-      type(fracture_mesh_t), intent(inout) :: fracture
-      real(rk) :: first, last
-      integer(ik) :: cell, end, i
-
-      if (.not. scene%growth%in_equilibrium()) return
-      do i = 1, size(front%tip, kind=ik)
-         if (front%tip(i)%is_free) call detach_tip(front%tip(i), fracture)
-      end do
-      do cell = 1, fracture%n_cells
-         associate (f => fracture%cell_fracture(cell))
-            first = front%network%s_start(f)
-            last = first + fracture_length(front%network, f)
-            do end = 1, 2
-               associate (s => fracture%cell_s(end, cell), &
-                          point => fracture%cell_points(end, cell))
-                  if (s < first) fracture%point_xy(:, point) = end_place(front%network, f, 1_ik)
-                  if (s > last) fracture%point_xy(:, point) = end_place(front%network, f, 2_ik)
-                  s = min(max(s, first), last)
-               end associate
-            end do
-         end associate
-      end do
-   end subroutine end_at_tips
-
-   !> Give a fracture whose last cell ends at a joint, but whose tip has not reached the joint, a
-   !! separate tip point there, and remove its branch from the joint.
-   pure subroutine detach_tip(tip, fracture)
-      type(tip_t), intent(in) :: tip
-      type(fracture_mesh_t), intent(inout) :: fracture
-      integer(ik), allocatable :: cells(:)
-      integer(ik) :: cell, k, point
-      type(lists_t) :: point_cells
-
-      cell = end_cell(fracture, tip)
-      point = fracture%cell_points(tip%end, cell)
-      if (fracture%point_kind(point) == point_tip) return
-      cells = fracture%point_cells%of(point)
-      cells = pack(cells, cells /= cell)
-      associate (n => fracture%n_points, old => fracture%point_cells)
-         point_cells%first = [old%first, old%first(n + 1)]
-         point_cells%first(point + 1:n + 1) = point_cells%first(point + 1:n + 1) - 1
-         point_cells%item = [old%item(:old%first(point) - 1), cells, &
-                             old%item(old%first(point + 1):), cell]
-         fracture%point_cells = point_cells
-         fracture%point_xy = reshape([fracture%point_xy, tip%xy], [2_ik, n + 1])
-         fracture%point_kind = [fracture%point_kind, point_tip]
-         n = n + 1
-      end associate
-      fracture%cell_points(tip%end, cell) = fracture%n_points
-      ! The remaining branches may not form a joint any more.
-      associate (others => fracture%cell_fracture(cells))
-         if (size(cells) == 0) fracture%point_kind(point) = point_interior
-         if (size(cells) == 2) then
-            if (others(1) == others(2) .and. abs(cells(2) - cells(1)) == 1) then
-               fracture%point_kind(point) = point_interior
-            end if
-         end if
-      end associate
-      associate (n => fracture%n_tips)
-         fracture%tip_point = [fracture%tip_point, fracture%n_points]
-         fracture%tip_node = [fracture%tip_node, 0_ik]
-         fracture%tip_fracture = [fracture%tip_fracture, tip%fracture]
-         fracture%tip_end = [fracture%tip_end, tip%end]
-         fracture%tip_direction = reshape([(fracture%tip_direction(:, k), k=1, n), tip%direction], &
-                                          [2_ik, n + 1])
-         fracture%tip_radius = [fracture%tip_radius, 0.0_rk]
-         n = n + 1
-      end associate
-   end subroutine detach_tip
-
-   !> Numbers of unknowns by block, for run.json.
-   subroutine count_unknowns(scene, tips, problem, windows, reference, summary)
-      type(scene_t), intent(in) :: scene
-      type(tip_t), intent(in) :: tips(:)
-      type(coarse_problem_t), intent(in) :: problem
-      type(windows_t), intent(in) :: windows, reference
-      type(summary_t), intent(inout) :: summary
-
-      associate (mesh => problem%mesh, model => problem%model)
-         call summary%count_dofs("displacement", 2*mesh%n_cells)
-         call summary%count_dofs("matrix_pressure", mesh%n_cells)
-         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
-         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
-                                 + model%joints%branch_count())
-         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
-      end associate
-      if (.not. scene%growth%intensities) return
-      call summary%count_dofs("windows", windows%n_unknowns(tips))
-      if (scene%discretization%window_is_body) return
-      call summary%count_dofs("windows_reference", reference%n_unknowns(tips))
-   end subroutine count_unknowns
 
 end module twolevel_results

@@ -3,57 +3,46 @@
 module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use base_tolerances, only: same_place
-   use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
+   use base_timers, only: phase_mesh, phase_tips, timers_t
    use mesh_geometry, only: cell_area
-   use coarse_in_situ, only: in_situ_state_t
-   use coarse_model, only: new_state, rest_fluid
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use growth_front, only: growth_rules_t
+   use coarse_model, only: new_state
+   use coarse_state, only: state_t, step_report_t
    use growth_network, only: fracture_length, network_of_scene
-   use mesh_builder, only: build_mesh, mesh_spec_t, remesh
-   use mesh_types, only: fracture_mesh_t, mesh_map_t, mesh_t, network_t
-   use scene_outline, only: outline_of_scene, outline_t
+   use mesh_builder, only: build_mesh
+   use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
-   use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
    use report_rows, only: history_row_t, probe_row_t
    use report_simulation, only: simulation_t, snapshot_t
-   use twolevel_handover, only: hand_over
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t
-   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
-   use twolevel_places, only: end_cell, shut_tips
    use twolevel_problem, only: coarse_problem_t, discard
-   use twolevel_scales, only: pressure_scale
+   use twolevel_setup, only: coarse_spec, first_cells, pressure_scale, rest_joints, rules_of_scene
+   use twolevel_tips, only: find_tip_intensities
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_stepping, only: stepper_t
    use twolevel_stimulation, only: stimulation_t
-   use twolevel_transfer, only: transfer_cells, transfer_state
-   use twolevel_wells, only: rate, share_wells, transfer_shares
+   use twolevel_wells, only: rate, share_wells
    use twolevel_unsolved, only: why_unsolved
    use twolevel_well_rows, only: well_results_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
-   public :: coarse_spec, two_levels_t
+   public :: two_levels_t
 
    !> share of the longest step: within this time no fluid moves noticeably [-]
    real(rk), parameter :: undrained_share = 1.0e-6_rk
 
-   !> Relative deficit of K_eq within which tips grow along with the first: the two methods for the
-   !! intensities differ by about as much [-].
-   real(rk), parameter :: together = 0.01_rk
-
-   !> Distance from the path within which ends and kinks of fractures lie on the path, in increments
-   !! and in cells: no mesh of good quality fits between [-].
-   real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
+   ! Names of the feature of intersections in the log.
+   character(len=*), parameter :: meeting = "intersections: flow from fracture to fracture "// &
+                                  "or out of the body"
+   character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
 
    !> The last step.
    type :: last_step_t
       real(rk) :: dt = 0.0_rk  !< length [s]
-      logical :: is_after_switch = .false.  !< it began at a switch of a well
-      logical :: ends_at_switch = .false.  !< it ended at a switch of a well
+      !> it began or ended at a switch of a well
+      logical :: is_after_switch = .false., ends_at_switch = .false.
       logical :: is_unstable = .false.  !< tips grew without equilibrium
       type(step_report_t) :: report
       character(len=:), allocatable :: why_cut  !< reason of the last cut
@@ -107,11 +96,34 @@ module twolevel_state
       procedure :: book_step
       procedure :: evaluate
       procedure :: has_reference
+      procedure :: count_unknowns
       procedure :: grow_coarse
       procedure :: remesh_coarse
    end type two_levels_t
 
-   ! Bindings of simulation_t, in twolevel_simulation
+   ! In twolevel_remeshing
+   interface
+      !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if
+      !! no growth follows.
+      module subroutine grow_coarse(self, grew, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         logical, intent(out) :: grew
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine grow_coarse
+
+      !> Remesh the coarse network around the points where it has changed, and transfer the state.
+      module subroutine remesh_coarse(self, centres, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine remesh_coarse
+   end interface
+
+   ! Bindings of simulation_t: next_state in twolevel_steps, the others in twolevel_simulation
    interface
       !> Mesh both levels, without load.
       module subroutine begin(self, scene, timers, error)
@@ -320,93 +332,10 @@ contains
       real(rk) :: length
       integer :: i
 
-      length = 0.0_rk
-      do i = 1, size(self%scene%fractures)
-         length = length + self%scene%fractures(i)%length()
-      end do
+      length = sum([(self%scene%fractures(i)%length(), i=1, size(self%scene%fractures))])
       call self%now%trend%begin(self%now%coarse, at_rest, pressure_scale(self%scene), &
                                 self%scene%material%young, length)
    end subroutine follow_trend
-
-   !> Parameters of growth: with increments of prescribed length tips join targets at once, in
-   !! equilibrium once the ligament breaks.
-   pure function rules_of_scene(scene) result(rules)
-      type(scene_t), intent(in) :: scene
-      type(growth_rules_t) :: rules
-      type(outline_t) :: outline
-      integer(ik) :: f, n
-
-      outline = outline_of_scene(scene)
-      rules = growth_rules_t(toughness=scene%material%toughness, &
-                             increment=scene%growth%increment, &
-                             stop_gain=scene%growth%stop_gain, exponent=scene%growth%exponent, &
-                             together=together, &
-                             joins=scene%growth%law /= "equilibrium", heads=.true., &
-                             near=max(near_way*scene%growth%increment, &
-                                      near_in_mesh*scene%discretization%size_fracture), &
-                             outline=outline%corners)
-      n = size(scene%fractures, kind=ik)
-      if (all(.not. scene%fractures%increment > 0.0_rk) .and. &
-          all(.not. scene%fractures%cell_size > 0.0_rk)) return
-      rules%own_increment = [(scene%increment_of(f), f=1, n)]
-      rules%increment = minval(rules%own_increment)
-      rules%own_near = [(max(near_way*scene%increment_of(f), &
-                             near_in_mesh*scene%cell_size_of(f)), f=1, n)]
-   end function rules_of_scene
-
-   !> Specification of the coarse mesh.
-   pure function coarse_spec(scene) result(spec)
-      type(scene_t), intent(in) :: scene
-      type(mesh_spec_t) :: spec
-
-      spec = mesh_spec_t(x_min=scene%domain%x_min, x_max=scene%domain%x_max, &
-                         y_min=scene%domain%y_min, y_max=scene%domain%y_max, &
-                         size_fracture=scene%discretization%size_fracture, &
-                         size_boundary=scene%discretization%size_boundary)
-      if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
-      call set_own_sizes(scene, spec)
-      call shape_body(scene, spec)
-      if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
-   end function coarse_spec
-
-   !> Contact law and residual aperture of the fracture cells of the scene.
-   pure subroutine first_cells(scene, fracture, cells)
-      type(scene_t), intent(in) :: scene
-      type(fracture_mesh_t), intent(in) :: fracture
-      type(fracture_cells_t), intent(inout) :: cells
-      integer(ik) :: i
-
-      associate (n => fracture%n_cells)
-         allocate (cells%law(n), cells%residual_aperture(n))
-         allocate (cells%injection(n), cells%roughness(n), source=0.0_rk)
-      end associate
-      do i = 1, fracture%n_cells
-         associate (given => scene%fractures(fracture%cell_fracture(i)))
-            cells%law(i) = law_of_fracture(given)
-            cells%residual_aperture(i) = given%aperture
-         end associate
-      end do
-      if (any(scene%fractures%skin > 0.0_rk)) then
-         cells%skin = scene%fractures(fracture%cell_fracture)%skin
-      end if
-   end subroutine first_cells
-
-   !> Joints are closed under the stress in situ without a jump: subtract this closure.
-   pure subroutine rest_joints(in_situ, fracture, cells)
-      type(in_situ_state_t), intent(in) :: in_situ
-      type(fracture_mesh_t), intent(in) :: fracture
-      type(fracture_cells_t), intent(inout) :: cells
-      real(rk) :: closed, slope
-      integer(ik) :: i
-
-      if (.not. in_situ%is_held) return
-      do i = 1, fracture%n_cells
-         if (.not. cells%law(i)%compliance > 0.0_rk) cycle
-         call cells%law(i)%closure(in_situ%contact_pressure(fracture, i), closed, slope)
-         cells%law(i)%closure_at_rest = closed
-         cells%residual_aperture(i) = cells%residual_aperture(i) - closed
-      end do
-   end subroutine rest_joints
 
    !> Undrained response to the load with fractures in equilibrium with the rock (model.md section
    !! 9).
@@ -529,79 +458,15 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: active(size(self%tip))
-      integer(ik) :: i
 
       call timers%heed(error)
       if (allocated(error)) return
-      active = .true.
-      if (allocated(self%now%active)) active = self%now%active
-      associate (now => self%now)
-         call follow_sides(self%scene, now%coarse%time, now%coarse%time)
-         call timers%start(phase_tips)
-         self%tip%is_shut = .false.
-         self%tip%is_carried = .false.
-         if (self%problem%mesh%fracture%n_cells > 0) then
-            self%tip%is_shut = shut_tips(self%tip, now%segment, self%problem%mesh%fracture, &
-                                         now%coarse%jump)
-         end if
-         call carry_intensities(self)
-         active = active .and. self%tip%is_loaded()
-         call self%problem%find_values(now%coarse)
-         call self%windows%evaluate(self%scene, self%network, self%tip, active, &
-                                    self%has_reference(), self%problem, now%coarse, &
-                                    now%undrained, now%windows, error)
-         call timers%stop(phase_tips)
-         do i = 1, size(self%tip, kind=ik)
-            if (.not. self%tip(i)%is_shut) cycle
-            call self%tip(i)%shut()
-            now%windows%tip(i)%found = self%tip(i)%intensity
-            call now%windows%tip(i)%forget_coarse_error()
-         end do
-         do i = 1, size(self%tip, kind=ik)
-            if (.not. active(i)) cycle
-            now%windows%tip(i)%jump_then = tip_jump(self, i)
-            now%windows%tip(i)%place_then = self%tip(i)%xy
-         end do
-      end associate
+      call follow_sides(self%scene, self%now%coarse%time, self%now%coarse%time)
+      call timers%start(phase_tips)
+      call find_tip_intensities(self%scene, self%has_reference(), self%front_state_t, &
+                                self%problem, self%now, self%windows, error)
+      call timers%stop(phase_tips)
    end subroutine evaluate
-
-   !> In a network, tips far below their toughness keep their intensities as long as the jump of the
-   !! coarse cell behind them is nearly constant: K is proportional to the jump. The change of the
-   !! jump since the last evaluation is part of their error.
-   subroutine carry_intensities(self)
-      class(two_levels_t), intent(inout) :: self
-      integer, parameter :: few = 8  ! tips are all evaluated
-      real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
-      real(rk), parameter :: far = 0.5_rk  ! lack of toughness, error included [-]
-      real(rk) :: change
-      integer(ik) :: i
-
-      if (.not. self%scene%growth%enabled .or. count(self%tip%is_loaded()) <= few) return
-      associate (toughness => self%rules%toughness)
-         do i = 1, size(self%tip, kind=ik)
-            associate (tip => self%tip(i), seen => self%now%windows%tip(i))
-               if (.not. tip%is_loaded() .or. norm2(tip%xy - seen%place_then) > 0.0_rk) cycle
-               if (.not. self%windows%has_mesh(i)) cycle
-               if (tip%excess(toughness) + tip%relative_error(toughness) > -far) cycle
-               change = norm2(tip_jump(self, i) - seen%jump_then)
-               if (change > constant*norm2(seen%jump_then)) cycle
-               change = change/max(norm2(seen%jump_then), tiny(1.0_rk))
-               call tip%carry(self%windows%intensity_of(i, seen), change)
-            end associate
-         end do
-      end associate
-   end subroutine carry_intensities
-
-   !> Mean opening and slip of the coarse cell behind a tip [m].
-   pure function tip_jump(self, i) result(jump)
-      class(two_levels_t), intent(in) :: self
-      integer(ik), intent(in) :: i
-      real(rk) :: jump(2)
-
-      jump = 0.5_rk*sum(self%now%coarse%jump(:, :, end_cell(self%problem%mesh%fracture, &
-                                                            self%tip(i))), dim=2)
-   end function tip_jump
 
    !> The windows are held against the whole body as one window.
    pure logical function has_reference(self)
@@ -611,100 +476,24 @@ contains
                       self%problem%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
 
-   !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if no
-   !! growth follows.
-   subroutine grow_coarse(self, grew, timers, error)
+   !> Numbers of unknowns by block, for run.json.
+   subroutine count_unknowns(self)
       class(two_levels_t), intent(inout) :: self
-      logical, intent(out) :: grew
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: centres(:, :)
-      logical :: is_straightened
-      real(rk) :: threshold
 
-      threshold = self%scene%growth%threshold*self%scene%discretization%size_fracture
-      if (any(self%has_gained())) threshold = same_place*self%rules%increment
-      call hand_over(threshold, self%network, self%tip, self%now%coarse_network, centres, &
-                     is_straightened)
-      grew = size(centres, 2) > 0
-      if (.not. grew) return
-      if (is_straightened) then
-         call self%windows%network_changed()
-         call self%reference%network_changed()
-      end if
-      call self%remesh_coarse(centres, timers, error)
-      call discard(self%kept_problem)
-   end subroutine grow_coarse
-
-   !> Remesh the coarse network around the points where it has changed, and transfer the state.
-   subroutine remesh_coarse(self, centres, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: centres(:, :)  !< (2, n) [m]
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      type(coarse_problem_t), allocatable :: problem
-      type(mesh_map_t) :: map
-      real(rk) :: radius
-      integer(ik) :: i, k, nearest
-
-      call timers%heed(error)
-      if (allocated(error)) return
-      allocate (problem)
-      radius = 0.0_rk  ! the largest of those of the tips that have gone on
-      do i = 1, size(centres, 2, kind=ik)
-         nearest = minloc([(norm2(self%tip(k)%xy - centres(:, i)), k=1, size(self%tip))], dim=1)
-         associate (f => self%tip(nearest)%fracture)
-            radius = max(radius, 5.0_rk*self%rules%increment_of(f), &
-                         3.0_rk*self%scene%cell_size_of(f))
-         end associate
-      end do
-      call timers%start(phase_remesh)
-      call remesh(self%problem%mesher, self%now%coarse_network, centres, radius, &
-                  self%scene%smallest_cell(), problem%mesher, problem%mesh, map, error)
-      call timers%stop(phase_remesh)
-      if (allocated(error)) return
-      call timers%start(phase_transfer)
-      call transfer_levels(self%scene, self%problem, map, problem, self%now)
-      call timers%stop(phase_transfer)
-      if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
-      call discard(self%problem)
-      call move_alloc(problem, self%problem)
-      call self%windows%coarse_changed()
-      call self%reference%coarse_changed()
-      call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
-      if (allocated(error)) return
-      call self%problem%feed_wells(self%scene, error)
-      if (allocated(error)) return
-      call rest_fluid(self%problem%model, self%now%coarse)
-      self%now%has_new_mesh = .true.
-   end subroutine remesh_coarse
-
-   !> Transfer cells, wells and state to a new coarse mesh.
-   subroutine transfer_levels(scene, old, map, new, now)
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: old
-      type(mesh_map_t), intent(in) :: map
-      type(coarse_problem_t), intent(inout) :: new
-      type(levels_state_t), intent(inout) :: now
-      type(state_t) :: state
-      type(overlaps_t) :: overlaps
-      real(rk) :: prefilled
-      integer(ik) :: i
-      logical :: is_prefilled
-
-      is_prefilled = scene%growth%new_volume == "prefilled"
-      call transfer_cells(old%mesh, new%mesh, old%model%cells, scene%growth%new_aperture, &
-                          is_prefilled, new%model%cells)
-      call transfer_state(map, old%mesh, new%mesh, new%model%cells, is_prefilled, now%coarse, &
-                          state, prefilled)
-      associate (before => old%mesh%fracture, after => new%mesh%fracture)
-         new%share = transfer_shares(scene%injections, before, after, old%share)
-         overlaps = fracture_overlaps(before, after)
-         now%grown = pack([(i, i=1, after%n_cells)], overlaps%is_new([(i, i=1, after%n_cells)]))
+      associate (mesh => self%problem%mesh, model => self%problem%model, summary => self%summary)
+         call summary%count_dofs("displacement", 2*mesh%n_cells)
+         call summary%count_dofs("matrix_pressure", mesh%n_cells)
+         call summary%count_dofs("fracture_jump", 4*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_face_pressure", 2*mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_pressure", mesh%fracture%n_cells)
+         call summary%count_dofs("fracture_flow", size(model%connections, 2) &
+                                 + model%joints%branch_count())
+         if (model%joints%n > 0) call summary%count_dofs("intersection_pressure", model%joints%n)
+         if (.not. self%scene%growth%intensities) return
+         call summary%count_dofs("windows", self%windows%n_unknowns(self%tip))
+         if (self%scene%discretization%window_is_body) return
+         call summary%count_dofs("windows_reference", self%reference%n_unknowns(self%tip))
       end associate
-      now%coarse = state
-      call now%trend%transfer(map)
-      now%fluid%prefilled = now%fluid%prefilled + prefilled
-   end subroutine transfer_levels
+   end subroutine count_unknowns
 
 end module twolevel_state

@@ -1,39 +1,102 @@
 !> From one accepted state of both levels to the next: a time step is tried, cut as often as
-!! necessary, and accepted.
-module twolevel_steps
+!! necessary, and committed. `commit_step` is the one place where a step becomes the accepted state.
+submodule(twolevel_state) twolevel_steps
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
-   use report_rows, only: event_step_cut, event_unstable
+   use coarse_rock, only: shear_beside
+   use mesh_types, only: fracture_mesh_t
+   use report_rows, only: event_step_cut, event_unstable, history_row_t, well_row_t
    use report_limits, only: limit_time_error
+   use report_slip, only: slip_step_t
+   use scene_types, only: scene_t
    use twolevel_refinement, only: refine_windows
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
-   use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: refinement_t, trial_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_limits, only: watch_levels
+   use twolevel_notes, only: note_stated_errors, states_errors
+   use twolevel_places, only: end_at_tips
+   use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
    implicit none(type, external)
-   private
-
-   public :: take_step
 
 contains
 
-   !> Take one step from the stored state, cut as often as necessary. Growth is unstable where tips
-   !! find no equilibrium in a step that is short compared with the time since the wells were
-   !! switched, or in the shortest step, whose time error is not checked: then the step consists of
-   !! this growth alone, until its arrest.
-   subroutine take_step(self, timers, error)
+   module subroutine next_state(self, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(trial_t) :: trial
-      logical :: is_last, is_too_short, is_unstable, may_jump
       real(rk) :: wanted
+      logical :: is_first
 
+      is_first = .not. self%has_begun
+      self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
+      self%has_begun = .true.
+      call self%begin_step()
+      if (self%is_initial) then
+         call find_initial_state(self, timers, error)
+      else
+         if (is_first) then
+            call self%stimulation%begin(self%problem, self%now%coarse)
+            call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+         end if
+         call find_step(self, trial, wanted, timers, error)
+         if (.not. allocated(error)) call accept_step(self, trial, wanted)
+      end if
+      if (.not. allocated(error)) call commit_step(self, error)
+      if (allocated(error)) call self%put_back()
+   end subroutine next_state
+
+   !> Make the state that was found the accepted one: sums over the run, limits, and the event log.
+   !! An error if a limit stops the run.
+   subroutine commit_step(self, error)
+      class(two_levels_t), intent(inout) :: self
+      type(error_t), allocatable, intent(out) :: error
+      type(history_row_t) :: row
+      real(rk), allocatable :: pressure(:)
+
+      call book_change(self)
+      self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
+      row = self%history()
+      call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
+                        self%now%fluid%mass_error, row%mass_error_relative)
+      call self%heed_limits(error)
+      if (allocated(error)) return
+      self%shows_growth = self%now%has_new_mesh
+      self%now%has_new_mesh = .false.
+      if (.not. self%is_initial) then
+         self%summary%steps = self%summary%steps + 1
+         if (.not. (self%owes_state .or. self%scene%growth%in_equilibrium())) then
+            pressure = self%problem%fracture_pressure(self%now%coarse)
+            call self%stepper%settle(pressure(self%now%grown))
+         end if
+      end if
+      if (states_errors(self%scene%growth)) then
+         call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
+                                 self%now, self%notes%jumps)
+      end if
+      call note_well_rows(self)
+      call note_state(self, row%mass_error_relative)
+   end subroutine commit_step
+
+   !> Find a step from the stored state, cut as often as necessary. Growth is unstable where tips
+   !! find no equilibrium in a step that is short compared with the time since the wells were
+   !! switched, or in the shortest step, whose time error is not checked: then the step consists of
+   !! this growth alone, until its arrest.
+   subroutine find_step(self, trial, wanted, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(trial_t), intent(out) :: trial  !< of the step
+      real(rk), intent(out) :: wanted  !< length of the step before it was cut [s]
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_last, is_too_short, is_unstable, may_jump
+
+      wanted = 0.0_rk
       if (self%stepper%is_stuck()) then
          call raise_error(error, "", "no progress in time: hundreds of steps were cut to about "// &
                           brief_text(self%step%dt, 4)//" s, the last because "//self%step%why_cut)
@@ -66,15 +129,15 @@ contains
          is_last = is_too_short
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
-         may_jump = is_last .or. (trial%goes_too_far .and. is_moment(self))
+         may_jump = is_last .or. (trial%goes_too_far .and. &
+                                  is_moment(self%scene, self%before%time, self%step%dt))
       end do
       is_unstable = is_unstable .or. trial%jumps
       if (self%now%trend%is_known() .and. .not. (self%step%is_after_switch .or. is_unstable)) then
          call self%watch%see(limit_time_error, trial%time_error, self%last_state())
       end if
-      call accept_step(self, trial, is_unstable)
-      if (is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) self%stepper%next = wanted
-   end subroutine take_step
+      self%step%is_unstable = is_unstable
+   end subroutine find_step
 
    !> Advice for the user where the equations are not solved in the shortest step.
    pure function way_out(trial) result(words)
@@ -87,12 +150,12 @@ contains
    end function way_out
 
    !> Whether the present step is so short that the time of a jump within it does not matter.
-   pure logical function is_moment(self)
-      class(two_levels_t), intent(in) :: self
+   pure logical function is_moment(scene, since, dt)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: since  !< start of the step [s]
+      real(rk), intent(in) :: dt  !< [s]
 
-      associate (time => self%before%time)
-         is_moment = self%step%dt <= punctual*(time - last_switch(self%scene, time))
-      end associate
+      is_moment = dt <= punctual*(since - last_switch(scene, since))
    end function is_moment
 
    !> Whether the equations are solved with the tips in equilibrium, whatever the time error.
@@ -160,30 +223,33 @@ contains
                                     //brief_text(self%step%dt, 4)//" s: "//self%step%why_cut)
    end subroutine cut_step
 
-   !> Accept a tried step.
-   subroutine accept_step(self, trial, is_unstable)
+   !> Set the state and the control of the next step after a step.
+   subroutine accept_step(self, trial, wanted)
       class(two_levels_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
-      logical, intent(in) :: is_unstable
+      real(rk), intent(in) :: wanted  !< length of the step before it was cut [s]
 
       call note_wells(self, self%step%dt, self%step%ends_at_switch)
 self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene, self%before%time) &
                                  <= self%now%coarse%time*(1.0_rk + same_time)
       call self%book_step(self%step%dt)
-      self%step%is_unstable = is_unstable
       self%tip%advance = 0.0_rk
       if (self%scene%growth%in_equilibrium()) then
          ! The speed of the tips does not apply to the next step if cracks have joined, or without
          ! equilibrium.
-       call accept_equilibrium(self, merge(0.0_rk, self%step%dt, is_unstable .or. trial%has_joined))
+         call accept_equilibrium(self, merge(0.0_rk, self%step%dt, &
+                                             self%step%is_unstable .or. trial%has_joined))
          call self%notes%note_competition(self%tip, self%now%interaction, self%increments(), &
                                           self%now%coarse%time, self%chronicle)
       end if
       call self%stepper%step_done(trial, self%step%dt)
+      if (self%step%is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) then
+         self%stepper%next = wanted
+      end if
       call self%now%trend%accept(self%before, self%now%coarse, self%step%dt)
       ! The rates of a step in which cracks have joined do not apply to the next step.
       if (trial%has_joined) call self%follow_trend(at_rest=.false.)
-      if (.not. is_unstable) return
+      if (.not. self%step%is_unstable) return
       call self%chronicle%add_event(self%now%coarse%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")
       call note_jumps(self)
@@ -208,4 +274,95 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
                                  self%now%coarse%time, self%chronicle, self%summary)
    end subroutine note_jumps
 
-end module twolevel_steps
+   !> Add the last step to the stimulation, the slip catalogue and the seismic moment; the slip of
+   !! the initial state is no event.
+   subroutine book_change(self)
+      class(two_levels_t), intent(inout) :: self
+      type(fracture_mesh_t) :: fracture
+      real(rk), parameter :: rounding = 1.0e-12_rk  ! relative rounding error of slip
+      real(rk), allocatable :: potency(:), shear(:)
+
+      if (self%is_initial) then
+         call self%stimulation%begin(self%problem, self%now%coarse)
+      else
+         call self%stimulation%follow(self%start, self%problem%mesh%fracture, self%now%coarse, &
+                                      self%scene%output%stimulated_jump, &
+                                      self%step%report%compressed, self%step%report%rock_outflow)
+      end if
+      fracture = self%problem%mesh%fracture
+      if (fracture%n_cells == 0) return
+      call end_at_tips(self%scene, self%front_state_t, fracture)
+      potency = slip_potency(self%problem%model%condensed%length, self%now%coarse)
+      ! Cells ahead of a tip are intact rock.
+      where (.not. fracture%cell_s(2, :) > fracture%cell_s(1, :)) potency = 0.0_rk
+      shear = shear_beside(self%problem%model%rock, self%problem%mesh)
+      self%seismic_moment = self%seismic_moment + sum(shear*potency)
+      associate (traction => 0.5_rk*sum(self%now%coarse%traction(2, :, :), dim=1), &
+                 largest => maxval(abs(self%now%coarse%jump(2, :, :))))
+         ! Faces at the friction limit that do not move have slip within rounding errors.
+         where (potency <= rounding*largest*self%problem%model%condensed%length) potency = 0.0_rk
+         if (self%is_initial) then
+            call self%catalogue%remember(fracture, traction)
+         else
+            call self%note_slip(fracture, slip_step_t(self%step%dt, potency, shear, &
+                                                      cell_states(self%now%coarse), traction, &
+                                                      self%step%is_unstable))
+         end if
+      end associate
+   end subroutine book_change
+
+   !> Find the state before the first step.
+   subroutine find_initial_state(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%equilibrate(timers, self%step%report, error)
+      if (allocated(error)) return
+      self%step%report%mass_error = 0.0_rk
+      call self%follow_trend(at_rest=.true.)
+      if (self%step%report%converged) return
+      call raise_error(error, "", "no initial equilibrium was found: "//self%step%report%reason// &
+                       "; usual causes are fractures that nearly touch (separate or merge "// &
+                       "them, or use &initial fracture_pressure = 'undrained') and friction "// &
+                       "above 1")
+   end subroutine find_initial_state
+
+   !> Add the rows of the wells.
+   subroutine note_well_rows(self)
+      class(two_levels_t), intent(inout) :: self
+      type(well_row_t), allocatable :: rows(:)
+
+      if (size(self%scene%injections) == 0) return
+      if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+      call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
+                                  merge(0.0_rk, self%step%dt, self%is_initial), rows)
+      self%chronicle%wells = [self%chronicle%wells, rows]
+   end subroutine note_well_rows
+
+   !> Update contact events and the extreme values of the run with an accepted state.
+   subroutine note_state(self, mass_error_relative)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: mass_error_relative  !< accumulated error of all steps [-]
+      logical :: always(size(self%scene%fractures))
+
+      always = .true.
+      associate (summary => self%summary, report => self%step%report)
+         summary%contact_residual = max(summary%contact_residual, report%contact_residual)
+         summary%condition_estimate = max(summary%condition_estimate, report%condition)
+         summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
+         summary%mass_error_relative = max(summary%mass_error_relative, mass_error_relative)
+         summary%lowest_pressure = min(summary%lowest_pressure, &
+                                       minval(self%problem%rock_pressure(self%now%coarse)), &
+                                       minval(self%problem%fracture_pressure(self%now%coarse)))
+         summary%cells = self%problem%mesh%n_cells
+         summary%fracture_cells = self%problem%mesh%fracture%n_cells
+         if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)
+         call summary%add_newton(report%iterations)
+         call self%count_unknowns()
+         call self%note_contact(self%problem%mesh%fracture, cell_states(self%now%coarse), always, &
+                                always)
+      end associate
+   end subroutine note_state
+
+end submodule twolevel_steps

@@ -18,9 +18,9 @@ module twolevel_stimulation
    use report_rows, only: history_row_t
    use scene_regime, only: dimensionless_leakoff, dimensionless_toughness
    use scene_types, only: scene_t
+   use twolevel_places, only: end_at_tips
    use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_results, only: end_at_tips, fracture_volume
    implicit none(type, external)
    private
 
@@ -58,7 +58,7 @@ contains
       self%content = sum(state%content)
       if (self%fracture%n_cells == 0) return
       self%jump = mean_jump(state)
-      self%fracture_volume = fracture_volume(problem, state)
+      self%fracture_volume = problem%fracture_volume(state)
       self%rock_pressure = pressure_around_wells(problem, state)
    end subroutine begin
 

@@ -12,7 +12,7 @@ module twolevel_well_limits
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_state, only: go_back, state_t, step_report_t
-   use coarse_wells, only: control_limited, control_pressure, control_rate
+   use coarse_wells, only: control_limited, control_pressure, control_rate, wells_t
    use report_rows, only: event_well
    use scene_types, only: injection_t
    use twolevel_state, only: two_levels_t
@@ -28,29 +28,29 @@ module twolevel_well_limits
 contains
 
    !> (controlled wells) Whether each well is limited by its pressure in the present state.
-   pure function are_at_limit(self) result(at_limit)
-      class(two_levels_t), intent(in) :: self
-      logical :: at_limit(self%problem%model%wells%n_all)
+   pure function are_at_limit(wells, now) result(at_limit)
+      type(wells_t), intent(in) :: wells
+      type(state_t), intent(in) :: now
+      logical :: at_limit(wells%n_all)
       integer(ik) :: w
 
-      associate (wells => self%problem%model%wells, now => self%now%coarse)
-         at_limit = [(wells%is_at_limit(w, now%well_rate(w), now%well_head(w)), &
-                      w=1, wells%n_all)]
-      end associate
+      at_limit = [(wells%is_at_limit(w, now%well_rate(w), now%well_head(w)), w=1, wells%n_all)]
    end function are_at_limit
 
    !> (controlled wells) Whether each well was limited before a step of length dt; none at the start
    !! of a stage.
-   pure function were_at_limit(self, dt) result(were)
-      class(two_levels_t), intent(in) :: self
+   pure function were_at_limit(injections, wells, at_limit, time, dt) result(were)
+      type(injection_t), intent(in) :: injections(:)
+      type(wells_t), intent(in) :: wells
+      logical, intent(in) :: at_limit(:)  !< (controlled wells) before the step
+      real(rk), intent(in) :: time  !< start of the step [s]
       real(rk), intent(in) :: dt  !< [s]
-      logical :: were(self%problem%model%wells%n_all)
+      logical :: were(wells%n_all)
       integer(ik) :: w
 
-      associate (time => self%before%time, wells => self%scene%injections, &
-                 number => self%problem%model%wells%number)
-         were = [(self%now%at_limit(w) .and. wells(number(w))%stage_at(time + 0.5_rk*dt) &
-                  == wells(number(w))%stage_at(time*(1.0_rk - same_time)), w=1, size(were))]
+      associate (number => wells%number)
+         were = [(at_limit(w) .and. injections(number(w))%stage_at(time + 0.5_rk*dt) &
+                  == injections(number(w))%stage_at(time*(1.0_rk - same_time)), w=1, size(were))]
       end associate
    end function were_at_limit
 
@@ -70,8 +70,9 @@ contains
 
       share = 1.0_rk
       if (size(changes) == 0) return
-      were = were_at_limit(self, dt)
-      changes = are_at_limit(self) .neqv. were
+      were = were_at_limit(self%scene%injections, self%problem%model%wells, self%now%at_limit, &
+                           self%before%time, dt)
+      changes = are_at_limit(self%problem%model%wells, self%now%coarse) .neqv. were
       changes = changes .and. self%problem%model%wells%control == control_limited
       do w = 1, size(changes, kind=ik)
          if (.not. changes(w)) cycle
@@ -111,7 +112,7 @@ contains
       end do
       any_changed = .false.
       if (self%problem%model%wells%n_all == 0) return
-      at_limit = are_at_limit(self)
+      at_limit = are_at_limit(self%problem%model%wells, self%now%coarse)
       do w = 1, size(at_limit, kind=ik)
          if (at_limit(w) .eqv. self%now%at_limit(w)) cycle
          any_changed = .true.
@@ -153,7 +154,7 @@ contains
       type(step_report_t) :: report
 
       share = 0.0_rk
-      if (.not. was_at_limit .and. is_beyond(self, w)) return
+      if (.not. was_at_limit .and. is_beyond(self%problem%model%wells, self%before, w)) return
       held = self%now%coarse
       associate (before => self%before, problem => self%problem, wells => self%problem%model%wells)
          call go_back(held, before)
@@ -164,7 +165,7 @@ contains
             if (was_at_limit) then
                share = part(before%well_rate(w), wells%rate(w), held%well_rate(w))
             else
-               share = part(head_at_rate(self, w), wells%pressure(w), held%well_head(w))
+               share = part(head_at_rate(wells, before, w), wells%pressure(w), held%well_head(w))
                ! Right after a switch pressures rise with the square root of time.
                if (.not. before%time > last_switch(self%scene, before%time)) share = share**2
             end if
@@ -174,29 +175,27 @@ contains
    end subroutine find_share
 
    !> Whether a well that begins to flow at its rate is at its limit at once, or beyond it.
-   pure logical function is_beyond(self, w)
-      class(two_levels_t), intent(in) :: self
+   pure logical function is_beyond(wells, before, w)
+      type(wells_t), intent(in) :: wells
+      type(state_t), intent(in) :: before
       integer(ik), intent(in) :: w  !< controlled well
 
-      associate (wells => self%problem%model%wells)
-         is_beyond = wells%is_at_limit(w, 0.0_rk, head_at_rate(self, w))
-      end associate
+      is_beyond = wells%is_at_limit(w, 0.0_rk, head_at_rate(wells, before, w))
    end function is_beyond
 
    !> Head pressure of a well that has just begun to flow at its rate: the losses act at once,
    !! unless the storage of the well takes the fluid [Pa].
-   pure real(rk) function head_at_rate(self, w) result(head)
-      class(two_levels_t), intent(in) :: self
+   pure real(rk) function head_at_rate(wells, before, w) result(head)
+      type(wells_t), intent(in) :: wells
+      type(state_t), intent(in) :: before
       integer(ik), intent(in) :: w  !< controlled well
       real(rk) :: lost_now, lost_then, slope
 
-      associate (wells => self%problem%model%wells, before => self%before)
-         head = before%well_head(w)
-         if (wells%storage(w) > 0.0_rk) return
-         call wells%lost(w, before%well_flow(w), lost_then, slope)
-         call wells%lost(w, wells%rate(w), lost_now, slope)
-         head = head - lost_then + lost_now
-      end associate
+      head = before%well_head(w)
+      if (wells%storage(w) > 0.0_rk) return
+      call wells%lost(w, before%well_flow(w), lost_then, slope)
+      call wells%lost(w, wells%rate(w), lost_now, slope)
+      head = head - lost_then + lost_now
    end function head_at_rate
 
    !> Share of a change from one value to another at which a bound is passed [-].

@@ -267,7 +267,7 @@ contains
 
       crack_modulus = self%model%elasticity%crack_modulus()
       if (tip == 0 .or. size(self%model%rocks%of_cell) == 1) return
-      frame = frame_of_tip(self%model, tip)
+      frame = frame_of_tip(self%model%mesh, self%model%rocks, tip)
       crack_modulus = frame%rock%crack_modulus()
    end function crack_modulus
 

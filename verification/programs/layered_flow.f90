@@ -18,7 +18,7 @@ program layered_flow
    use mesh_geometry, only: cell_area, face_length
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: initial_t, region_t, scene_t
-   use twolevel_state, only: coarse_spec
+   use twolevel_setup, only: coarse_spec
    use verification_files, only: finish, real_argument, stop_on, table_t, text_argument
    use verification_meshes, only: cell_centre
    implicit none(type, external)

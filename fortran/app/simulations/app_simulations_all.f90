@@ -2,7 +2,8 @@
 submodule(app_simulations) app_simulations_all
    use mechanics_body, only: body_spec
    use mechanics_simulation, only: mechanics_simulation_t
-   use twolevel_state, only: coarse_spec, two_levels_t
+   use twolevel_setup, only: coarse_spec
+   use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
 contains

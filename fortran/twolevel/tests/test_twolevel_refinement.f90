@@ -122,7 +122,10 @@ contains
          end if
          call checks%is_true(all(now%k1_error <= 0.0_rk), "closed faces have no K_I all the same")
       end associate
-      call checks%is_true(all([(is_uncertain(simulation, int(i, ik)), i=1, 2)]), "uncertain tips")
+      call checks%is_true(all([(is_uncertain(simulation%tip(i), simulation%now%segment(i), &
+                                             simulation%network, toughness, &
+                                             simulation%load_pressure), i=1, 2)]), &
+                          "uncertain tips")
       call improve(simulation, any_improved)
       call checks%is_true(any_improved .and. .not. any(are_built(simulation)), "to be built")
       call checks%is_true(all([(simulation%windows%slot(i)%window%times_larger == 1, i=1, 2)]), &
@@ -176,7 +179,8 @@ contains
          call checks%is_true(all(simulation%now%windows%tip%times_finer == n), "finer and finer")
       end do
       call checks%is_true(n == 5, "four times")
-      growth = growth_error(simulation, 1_ik)
+      growth = growth_error(simulation%tip(1), simulation%now%segment(1), simulation%network, &
+                            usual_toughness, simulation%load_pressure)
       call checks%is_close(growth%pressure, 0.1_rk*usual_toughness/(friction*sqrt(pi*a)), 0.01_rk, &
                            "error of the pressure")
       call checks%is_close(growth%relative, growth%pressure/20.0e6_rk, 1.0e-9_rk, "over the load")

@@ -1,0 +1,111 @@
+!> Growth of the coarse mesh with the network: remeshing around the tips, and the transfer of the
+!! state to the new mesh.
+submodule(twolevel_state) twolevel_remeshing
+   use base_kinds, only: ik
+   use base_timers, only: phase_remesh, phase_transfer
+   use base_tolerances, only: same_place
+   use coarse_model, only: rest_fluid
+   use mesh_builder, only: remesh
+   use mesh_types, only: mesh_map_t
+   use twolevel_handover, only: hand_over
+   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
+   use twolevel_transfer, only: transfer_cells, transfer_state
+   use twolevel_wells, only: transfer_shares
+   implicit none(type, external)
+
+contains
+
+   module subroutine grow_coarse(self, grew, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      logical, intent(out) :: grew
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: centres(:, :)
+      logical :: is_straightened
+      real(rk) :: threshold
+
+      threshold = self%scene%growth%threshold*self%scene%discretization%size_fracture
+      if (any(self%has_gained())) threshold = same_place*self%rules%increment
+      call hand_over(threshold, self%network, self%tip, self%now%coarse_network, centres, &
+                     is_straightened)
+      grew = size(centres, 2) > 0
+      if (.not. grew) return
+      if (is_straightened) then
+         call self%windows%network_changed()
+         call self%reference%network_changed()
+      end if
+      call self%remesh_coarse(centres, timers, error)
+      call discard(self%kept_problem)
+   end subroutine grow_coarse
+
+   module subroutine remesh_coarse(self, centres, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: centres(:, :)
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(coarse_problem_t), allocatable :: problem
+      type(mesh_map_t) :: map
+      real(rk) :: radius
+      integer(ik) :: i, k, nearest
+
+      call timers%heed(error)
+      if (allocated(error)) return
+      allocate (problem)
+      radius = 0.0_rk  ! the largest of those of the tips that have gone on
+      do i = 1, size(centres, 2, kind=ik)
+         nearest = minloc([(norm2(self%tip(k)%xy - centres(:, i)), k=1, size(self%tip))], dim=1)
+         associate (f => self%tip(nearest)%fracture)
+            radius = max(radius, 5.0_rk*self%rules%increment_of(f), &
+                         3.0_rk*self%scene%cell_size_of(f))
+         end associate
+      end do
+      call timers%start(phase_remesh)
+      call remesh(self%problem%mesher, self%now%coarse_network, centres, radius, &
+                  self%scene%smallest_cell(), problem%mesher, problem%mesh, map, error)
+      call timers%stop(phase_remesh)
+      if (allocated(error)) return
+      call timers%start(phase_transfer)
+      call transfer_levels(self%scene, self%problem, map, problem, self%now)
+      call timers%stop(phase_transfer)
+      if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
+      call discard(self%problem)
+      call move_alloc(problem, self%problem)
+      call self%windows%coarse_changed()
+      call self%reference%coarse_changed()
+      call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
+      if (allocated(error)) return
+      call self%problem%feed_wells(self%scene, error)
+      if (allocated(error)) return
+      call rest_fluid(self%problem%model, self%now%coarse)
+      self%now%has_new_mesh = .true.
+   end subroutine remesh_coarse
+
+   !> Transfer cells, wells and state to a new coarse mesh.
+   subroutine transfer_levels(scene, old, map, new, now)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: old
+      type(mesh_map_t), intent(in) :: map
+      type(coarse_problem_t), intent(inout) :: new
+      type(levels_state_t), intent(inout) :: now
+      type(state_t) :: state
+      type(overlaps_t) :: overlaps
+      real(rk) :: prefilled
+      integer(ik) :: i
+      logical :: is_prefilled
+
+      is_prefilled = scene%growth%new_volume == "prefilled"
+      call transfer_cells(old%mesh, new%mesh, old%model%cells, scene%growth%new_aperture, &
+                          is_prefilled, new%model%cells)
+      call transfer_state(map, old%mesh, new%mesh, new%model%cells, is_prefilled, now%coarse, &
+                          state, prefilled)
+      associate (before => old%mesh%fracture, after => new%mesh%fracture)
+         new%share = transfer_shares(scene%injections, before, after, old%share)
+         overlaps = fracture_overlaps(before, after)
+         now%grown = pack([(i, i=1, after%n_cells)], overlaps%is_new([(i, i=1, after%n_cells)]))
+      end associate
+      now%coarse = state
+      call now%trend%transfer(map)
+      now%fluid%prefilled = now%fluid%prefilled + prefilled
+   end subroutine transfer_levels
+
+end submodule twolevel_remeshing
