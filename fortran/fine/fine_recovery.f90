@@ -222,7 +222,7 @@ contains
       field%kolosov = rock%kolosov()
       field%shear_modulus = rock%shear_modulus()
       ! The unit of the intensities that makes all columns of one size.
-      unit = sum(samples%area(samples%around%of(node)))**0.25_rk
+      unit = sqrt(sqrt(sum(samples%area(samples%around%of(node)))))
       normal = 0.0_rk
       right = 0.0_rk
       do i = 1, samples%around%length(node)
