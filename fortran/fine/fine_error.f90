@@ -13,7 +13,7 @@
 module fine_error
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_plane, only: triangle_area
+   use base_plane, only: norm2, triangle_area
    use fine_elasticity, only: elasticity_t
    use fine_element, only: tip_rule, tip_rule_size
    use fine_faces, only: face_loaded

@@ -11,6 +11,7 @@
 module fine_recovery
    use algebra_lapack, only: dpotrf, dpotrs
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t

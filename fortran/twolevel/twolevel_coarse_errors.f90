@@ -27,6 +27,7 @@
 module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_timers, only: phase_tips, timers_t
    use growth_tip, only: tip_t
    use twolevel_correction, only: improve

@@ -4,6 +4,7 @@
 !! fracture or side. No fluid flows to the joint before the tip reaches it.
 module twolevel_places
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_tolerances, only: same_place
    use growth_front, only: front_state_t
    use growth_network, only: end_gain, move_end

@@ -3,6 +3,7 @@
 module twolevel_state
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
+   use base_plane, only: norm2
    use base_tolerances, only: same_place
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use mesh_geometry, only: cell_area
