@@ -16,6 +16,7 @@
 !! where other tips have grown past it.
 module growth_advances
    use base_kinds, only: rk
+   use base_plane, only: norm2
    use growth_competition, only: complementary_advances, broyden_update
    implicit none(type, external)
    private

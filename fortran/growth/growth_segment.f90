@@ -1,6 +1,7 @@
 !> The last straight segment of the path of a tip, and the position of the tip along it.
 module growth_segment
    use base_kinds, only: rk
+   use base_plane, only: norm2
    implicit none(type, external)
    private
 

@@ -10,6 +10,7 @@
 !! holds at the end of the step (backward Euler for the path; local symmetry).
 module growth_tip
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_tip_types, only: intensity_t
    use growth_law, only: growth_drive_t, in_grains, new_tip
    use growth_targets, only: target_none

@@ -27,6 +27,7 @@
 module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_timers, only: phase_tips, timers_t
    use coarse_state, only: state_t
    use growth_front, only: growth_rules_t

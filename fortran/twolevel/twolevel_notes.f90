@@ -3,6 +3,7 @@
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
+   use base_plane, only: norm2
    use growth_interaction, only: could_separate, interaction_t
    use growth_front, only: front_state_t
    use growth_network, only: total_length

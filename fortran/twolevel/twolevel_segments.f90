@@ -13,7 +13,7 @@
 module twolevel_segments
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_plane, only: point_distance, turned
+   use base_plane, only: norm2, point_distance, turned
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use coarse_state, only: go_back

@@ -2,6 +2,7 @@
 module twolevel_tips
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use growth_front, only: front_state_t
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t

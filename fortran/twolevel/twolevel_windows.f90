@@ -8,6 +8,7 @@
 module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_state, only: state_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
