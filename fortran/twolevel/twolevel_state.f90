@@ -439,7 +439,7 @@ contains
             self%tip%is_shut = shut_tips(self%tip, now%segment, self%problem%mesh%fracture, &
                                          now%coarse%jump)
          end if
-         call carry_intensities(self)
+         call carry_intensities(self, active)
          active = active .and. self%tip%is_loaded()
          call self%problem%find_values(now%coarse)
          call self%windows%evaluate(self%scene, self%network, self%tip, active, &
@@ -451,50 +451,64 @@ contains
             call self%tip(i)%shut()
             now%windows%tip(i)%found = self%tip(i)%intensity
             call now%windows%tip(i)%forget_coarse_error()
+            call now%windows%tip(i)%forget_jump()
          end do
          do i = 1, size(self%tip, kind=ik)
-            if (.not. active(i)) cycle
-            now%windows%tip(i)%jump_then = tip_jump(self, i)
-            now%windows%tip(i)%place_then = self%tip(i)%xy
+            if (.not. self%tip(i)%is_loaded()) cycle
+            if (.not. any(active(self%windows%served_with(i)))) cycle
+            call now%windows%tip(i)%note_jump(tip_jump(self, i), self%tip(i)%xy)
          end do
       end associate
    end subroutine evaluate
 
-   !> In a network, tips far below their toughness keep their intensities as long as the jump of the
-   !! coarse cell behind them is nearly constant: K is proportional to the jump. The change of the
-   !! jump since the last evaluation is part of their error.
-   subroutine carry_intensities(self)
+   !> In a network, tips far below their toughness keep their intensities as long as the jump behind
+   !! them is nearly constant: K is proportional to the jump. The change of the jump since the last
+   !! evaluation is part of their error. Tips of one window are evaluated together, and tips whose
+   !! errors by the coarse level have not been estimated since are evaluated again; so are all
+   !! after the undrained response, where K is larger for the same jump.
+   subroutine carry_intensities(self, active)
       class(two_levels_t), intent(inout) :: self
+      logical, intent(in) :: active(:)  !< (tips) active tips
       integer, parameter :: few = 8  ! tips are all evaluated
-      real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
       real(rk), parameter :: far = 0.5_rk  ! lack of toughness, error included [-]
-      real(rk) :: change
+      logical :: can_be(size(self%tip))
       integer(ik) :: i
 
       if (.not. self%scene%growth%enabled .or. count(self%tip%is_loaded()) <= few) return
-      associate (toughness => self%rules%toughness)
+      associate (toughness => self%rules%toughness, known => self%now%windows%tip)
          do i = 1, size(self%tip, kind=ik)
-            associate (tip => self%tip(i), seen => self%now%windows%tip(i))
-               if (.not. tip%is_loaded() .or. norm2(tip%xy - seen%place_then) > 0.0_rk) cycle
-               if (.not. self%windows%has_mesh(i)) cycle
-               if (tip%excess(toughness) + tip%relative_error(toughness) > -far) cycle
-               change = norm2(tip_jump(self, i) - seen%jump_then)
-               if (change > constant*norm2(seen%jump_then)) cycle
-               change = change/max(norm2(seen%jump_then), tiny(1.0_rk))
-               call tip%carry(self%windows%intensity_of(i, seen), change)
+            associate (tip => self%tip(i))
+               can_be(i) = tip%is_loaded() .and. &
+                           self%windows%has_mesh(i, self%now%undrained) .and. &
+                           known(i)%has_same_jump(tip_jump(self, i), tip%xy) .and. &
+                           tip%excess(toughness) + tip%relative_error(toughness) <= -far
             end associate
+         end do
+         do i = 1, size(self%tip, kind=ik)
+            if (.not. can_be(i)) cycle
+            associate (company => self%windows%served_with(i))
+               if (any(active(company) .and. self%tip(company)%is_loaded() &
+                       .and. .not. can_be(company))) cycle
+            end associate
+            call self%tip(i)%carry(self%windows%intensity_of(i, known(i)), &
+                                   known(i)%change_of_jump(tip_jump(self, i)))
          end do
       end associate
    end subroutine carry_intensities
 
-   !> Mean opening and slip of the coarse cell behind a tip [m].
+   !> Mean opening and slip of the coarse cell behind a tip, over the root of its length: as K, it
+   !! does not depend on the cell [m^1/2].
    pure function tip_jump(self, i) result(jump)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: i
       real(rk) :: jump(2)
 
-      jump = 0.5_rk*sum(self%now%coarse%jump(:, :, end_cell(self%problem%mesh%fracture, &
-                                                            self%tip(i))), dim=2)
+      jump = 0.0_rk
+      if (.not. self%tip(i)%is_free .or. self%problem%mesh%fracture%n_cells == 0) return
+      associate (cell => end_cell(self%problem%mesh%fracture, self%tip(i)))
+         jump = 0.5_rk*sum(self%now%coarse%jump(:, :, cell), dim=2) &
+                /sqrt(self%problem%model%condensed%length(cell))
+      end associate
    end function tip_jump
 
    !> The windows are held against the whole body as one window.
