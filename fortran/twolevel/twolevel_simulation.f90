@@ -277,7 +277,8 @@ contains
                                                        self%problem, &
                                                        self%dt, self%now)
       if (may_grow .and. self%is_equilibrium()) then
-         call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
+         call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
+                                         self%increments(), self%chronicle)
       end if
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"
