@@ -133,8 +133,8 @@ contains
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
 
-   !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ by
-   !! more than their errors: only errors have separated them, and it is chance which one is ahead.
+   !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ
+   !! by more than their errors: only errors have separated them, and it is chance which is ahead.
    !! Tips that have ended on a target have another reason to stay behind.
    subroutine note_separation(self, tips, now, toughness, increment, chronicle)
       class(notes_t), intent(inout) :: self

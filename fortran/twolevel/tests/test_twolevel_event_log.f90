@@ -148,8 +148,8 @@ contains
       call checks%is_true(.not. simulation%is_over(), "but for one more state")
    end subroutine test_gain
 
-   !> Two tips have grown in one group and separate. An event tells it if their K_eq were equal, once
-   !! the difference of their gains exceeds the sum of their errors and a tenth of the shorter
+   !> Two tips have grown in one group and separate. An event tells it if their K_eq were equal,
+   !! once the difference of their gains exceeds the sum of their errors and a tenth of the shorter
    !! increment; none tells a difference with a reason.
    subroutine test_separation()
       real(rk), parameter :: equal(2) = [0.0_rk, -0.02_rk], other(2) = [0.0_rk, -0.3_rk]
