@@ -41,7 +41,8 @@ module growth_advances
       real(rk), allocatable, private :: length(:)  !< distance between the bounds [m]
       !> distance from the upper bound within which a tip is put onto the bound [m]
       real(rk), allocatable, private :: sliver(:)
-      real(rk), allocatable, private :: scale(:)  !< scale of the natural residual [1/m]
+      !> (tips) scale of the natural residual, and slope of the excess as estimated first [1/m]
+      real(rk), allocatable, private :: scale(:)
       real(rk), allocatable, private :: best(:)  !< position with the least residual so far [m]
       real(rk), allocatable, private :: excess(:)  !< value at `best` [-]
       real(rk), private :: residual = huge(1.0_rk)  !< value at `best` [-]
@@ -218,7 +219,10 @@ contains
                to = far
                if (far - near > 2.0_rk*resolution*length) to = 0.5_rk*(near + far)
             else
-               step = max(0.9_rk*excess/max(-self%matrix(i, i), 2.0_rk*flat/length), &
+               ! Positions far ahead, where the excess may be flat, may have spoilt the matrix: the
+               ! first steps are no longer than by the slope as estimated first.
+               step = max(0.9_rk*excess/max(-self%matrix(i, i), 2.0_rk*flat/length, &
+                                            self%scale(i)*0.25_rk**(self%monotone_steps - 1)), &
                           2.0_rk*resolution*length*growth**self%monotone_steps)
                to = min(self%upper(i), place + step)
             end if

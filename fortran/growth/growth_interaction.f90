@@ -76,6 +76,7 @@ module growth_interaction
    contains
       procedure :: find_groups
       procedure :: remove_tip
+      procedure :: differ_by_chance
       procedure :: accept
    end type tip_groups_t
 
@@ -166,7 +167,8 @@ contains
       end do
    end function matrix_for
 
-   !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally.
+   !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally,
+   !! by equal shares of their segments: their increments are equal.
    subroutine find_groups(self, drive, off, gain, is_arrested, increment, interaction, kind)
       class(tip_groups_t), intent(inout) :: self
       real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
@@ -194,6 +196,7 @@ contains
             end if
             alike(i, j) = apart <= max(least, hypot(off(i), off(j))) .and. &
                           abs(gain(i) - gain(j)) <= same_gain*shorter .and. &
+                          abs(increment(i) - increment(j)) <= same_gain*shorter .and. &
                           .not. (is_arrested(i) .or. is_arrested(j)) .and. &
                           .not. any(self%is_alone([i, j]))
          end do
@@ -232,6 +235,20 @@ contains
 
       self%is_alone(tip) = .true.
    end subroutine remove_tip
+
+   !> Whether K_eq of two tips of one group that have just separated are equal within their errors,
+   !! so that only these have separated them.
+   pure logical function differ_by_chance(self, i, j, drive, off)
+      class(tip_groups_t), intent(in) :: self
+      integer(ik), intent(in) :: i, j
+      real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
+      real(rk), intent(in) :: off(:)  !< estimated error of the excess [-]
+
+      associate (both => hypot(off(i), off(j)))
+         differ_by_chance = abs(drive(i) - drive(j)) <= max(by_chance, both) .and. &
+                            abs(self%usual(i) - self%usual(j)) <= max(same_mean, both)
+      end associate
+   end function differ_by_chance
 
    !> Update the mean excess after an accepted step.
    subroutine accept(self, drive, advance, increment)

@@ -94,6 +94,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_loaded()) cycle
+         self%now%windows%tip(i)%is_compared = .true.
          self%tip(i)%intensity = self%windows%intensity_of(i, self%now%windows%tip(i))
       end do
    end subroutine estimate

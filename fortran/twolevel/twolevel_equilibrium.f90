@@ -30,7 +30,7 @@ module twolevel_equilibrium
    use twolevel_probe, only: previous_try_t, measure_interaction
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
-   use twolevel_tip_layers, only: find_tip_layers
+   use twolevel_tip_layers, only: close_tips, find_tip_layers, is_viscous
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
@@ -160,6 +160,7 @@ contains
       end if
       call self%evaluate(timers, error)
       if (allocated(error)) return
+      call close_tips(self)
       call self%now%stated_errors%see_try(total_length(self%network), &
                                           self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
@@ -294,9 +295,10 @@ contains
       type(timers_t), intent(inout) :: timers
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: excess(size(self%tip))
+      real(rk) :: beyond(size(self%tip)), excess(size(self%tip))
       integer(ik) :: i
 
+      beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
                  before => self%last%front%tip%excess(self%rules%toughness))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
@@ -305,8 +307,11 @@ contains
             search%is_over = size(trial%refinements) > 0
             if (search%is_over) return
          end if
+         ! A tip that stays at the end of its segment for a part of the step is slower than it will
+         ! be: where viscosity decides, its excess says little.
          if (any(wants .and. (search%has_begun .or. &
-                              self%tip%excess(toughness) > excess_max))) then
+                              (self%tip%excess(toughness) > excess_max .and. &
+                               .not. is_viscous(self%tip))))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! jumps have no rates
          end if
@@ -325,7 +330,12 @@ contains
       if (allocated(error)) return
       if (.not. search%may_jump) then
          do i = 1, size(wants)
-            if (wants(i)) call self%now%segment(i)%set_out(excess(i))
+            if (.not. wants(i)) cycle
+            if (is_viscous(self%tip(i))) then
+               call self%now%segment(i)%set_out_to(beyond(i))
+            else
+               call self%now%segment(i)%set_out(excess(i))
+            end if
          end do
          call keep_together(self%now%segment, search%kind)
       end if

@@ -30,8 +30,8 @@ module twolevel_notes
       !> (tips) considerable errors of growth have been stated
       logical, allocatable :: is_uncertain(:)
       logical, private :: was_bifurcation = .false.  !< tips competed in the last step with growth
-      !> (tips, tips) the two tips have grown as members of one group
-      logical, allocatable, private :: grew_together(:, :)
+      !> (tips, tips) whether the two tips have grown as members of one group, and have separated
+      integer, allocatable, private :: relation(:, :)
       !> (tips) the tip has separated from a tip of its group
       logical, allocatable, private :: has_separated(:)
       type(jumps_t) :: jumps  !< growth without equilibrium
@@ -42,6 +42,10 @@ module twolevel_notes
       procedure :: note_separation
    end type notes_t
 
+   ! Tips have not grown as members of one group, or have separated with another K_eq; they are
+   ! members of one group; they have separated by chance.
+   integer, parameter :: apart = 0, together = 1, separated = 2
+
 contains
 
    !> Start before any growth.
@@ -51,7 +55,7 @@ contains
 
       allocate (self%approach(n))
       allocate (self%is_uncertain(n), self%has_separated(n), source=.false.)
-      allocate (self%grew_together(n, n), source=.false.)
+      allocate (self%relation(n, n), source=apart)
       call self%jumps%begin(n)
    end subroutine begin
 
@@ -133,12 +137,14 @@ contains
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
 
-   !> Tips that have grown in one group, but whose gains differ by more than their errors: only
-   !! errors have separated them, and it is chance which one is ahead.
-   subroutine note_separation(self, tips, now, increment, chronicle)
+   !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ
+   !! by more than their errors: only errors have separated them, and it is chance which is ahead.
+   !! Tips that have ended on a target have another reason to stay behind.
+   subroutine note_separation(self, tips, now, toughness, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       type(levels_state_t), intent(in) :: now
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
       type(chronicle_t), intent(inout) :: chronicle
       real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the shorter increment
@@ -148,10 +154,19 @@ contains
       if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
          do i = 1, j - 1
-            associate (gain => now%segment([i, j])%gain, kind => now%groups%kind, &
+            associate (gain => now%segment([i, j])%gain, groups => now%groups, &
                        error => now%stated_errors%tip, shorter => minval(increment([i, j])))
-               if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
-               if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
+               if (any(tips([i, j])%arrested)) then
+                  self%relation(i, j) = apart
+               else if (groups%kind(i) == groups%kind(j) .and. all(gain > 0.0_rk)) then
+                  self%relation(i, j) = together
+               else if (self%relation(i, j) == together) then
+                  self%relation(i, j) = &
+                     merge(separated, apart, &
+                           groups%differ_by_chance(i, j, tips%excess(toughness), &
+                                                   tips%relative_error(toughness)))
+               end if
+               if (self%relation(i, j) /= separated .or. all(self%has_separated([i, j]))) cycle
                if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))

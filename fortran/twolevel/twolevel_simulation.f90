@@ -102,7 +102,8 @@ contains
          if (allocated(error)) return
       end if
       if (may_grow .and. self%scene%growth%in_equilibrium()) then
-         call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
+         call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
+                                         self%increments(), self%chronicle)
       end if
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"

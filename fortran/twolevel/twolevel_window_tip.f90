@@ -25,15 +25,21 @@ module twolevel_window_tip
       real(rk) :: compared_at(2) = 0.0_rk  !< where the tip was then [m]
       real(rk) :: of_elements = 0.0_rk  !< the part that smaller elements would mend [Pa m^1/2]
       real(rk) :: of_edge = 0.0_rk  !< the part that a larger window would mend [Pa m^1/2]
-      !> At the last evaluation: mean opening and slip of the coarse cell behind the tip [m], and
-      !! the position of the tip [m]
+      !> At the last evaluation: opening and slip behind the tip, proportional to K [m^1/2], and the
+      !! position of the tip [m]
       real(rk) :: jump_then(2) = 0.0_rk, place_then(2) = huge(1.0_rk)
+      !> the errors by the coarse level have been estimated for the last evaluation
+      logical :: is_compared = .false.
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
    contains
       procedure :: element_size
       procedure :: rosette_radius
       procedure :: can_be_finer
       procedure :: forget_coarse_error
+      procedure :: note_jump
+      procedure :: forget_jump
+      procedure :: has_same_jump
+      procedure :: change_of_jump
       procedure :: with_coarse_error
    end type window_tip_t
 
@@ -81,6 +87,45 @@ contains
       self%of_edge = 0.0_rk
       self%passing = 0.0_rk
    end subroutine forget_coarse_error
+
+   !> Store the jump behind the tip at an evaluation.
+   pure subroutine note_jump(self, jump, place)
+      class(window_tip_t), intent(inout) :: self
+      real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
+      real(rk), intent(in) :: place(2)  !< position of the tip [m]
+
+      self%jump_then = jump
+      self%place_then = place
+      self%is_compared = .false.
+   end subroutine note_jump
+
+   !> The next evaluation is due: no jump is known.
+   elemental subroutine forget_jump(self)
+      class(window_tip_t), intent(inout) :: self
+
+      self%place_then = huge(1.0_rk)
+      self%is_compared = .false.
+   end subroutine forget_jump
+
+   !> Whether the tip is where it was at the last evaluation, with nearly the same jump behind it,
+   !! and the errors of this evaluation are known.
+   pure logical function has_same_jump(self, jump, place)
+      class(window_tip_t), intent(in) :: self
+      real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
+      real(rk), intent(in) :: place(2)  !< position of the tip [m]
+      real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
+
+      has_same_jump = self%is_compared .and. .not. norm2(place - self%place_then) > 0.0_rk .and. &
+                      norm2(jump - self%jump_then) <= constant*norm2(self%jump_then)
+   end function has_same_jump
+
+   !> Change of the jump since the last evaluation, relative [-].
+   pure real(rk) function change_of_jump(self, jump) result(change)
+      class(window_tip_t), intent(in) :: self
+      real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
+
+      change = norm2(jump - self%jump_then)/max(norm2(self%jump_then), tiny(1.0_rk))
+   end function change_of_jump
 
    !> Intensities of the last solution, with the last estimate of the errors by the coarse level.
    pure function with_coarse_error(self, crack_modulus) result(intensity)
