@@ -1,6 +1,7 @@
 !> A tip in a window: its intensities and their error estimates.
 module twolevel_window_tip
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_tip_types, only: complete_errors, intensity_t
    use scene_types, only: scene_t
    implicit none(type, external)

@@ -18,7 +18,7 @@ program test_twolevel_carried
    use testing_checks, only: checks_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_places, only: end_cell, shut_tips
-   use twolevel_simulation, only: twolevel_simulation_t
+   use twolevel_state, only: two_levels_t
    use twolevel_window_tip, only: window_tip_t
    use twolevel_windows_state, only: windows_state_t
    implicit none(type, external)
@@ -41,7 +41,7 @@ contains
 
    !> A network of fractures with a well each, in its initial state.
    subroutine start(simulation, n, toughness, is_body, cell)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       integer, intent(in) :: n  !< fractures
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       logical, intent(in) :: is_body  !< one window
@@ -79,7 +79,7 @@ contains
 
    !> Evaluate the tips with their errors.
    subroutine evaluate(simulation)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(error_t), allocatable :: error
 
       call simulation%evaluate(timers, error)
@@ -90,7 +90,7 @@ contains
 
    !> The next state.
    subroutine step(simulation, dt)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: dt  !< [s]
       type(step_report_t) :: report
       type(error_t), allocatable :: error
@@ -103,7 +103,7 @@ contains
 
    !> Evaluate all tips of the present state, and return to the state with those that are kept.
    function evaluated(simulation) result(tips)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       type(tip_t), allocatable :: tips(:), kept(:)
       type(windows_state_t) :: windows
 
@@ -124,7 +124,7 @@ contains
       integer, intent(in) :: n  !< fractures
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       logical, intent(in) :: is_body
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(tip_t), allocatable :: tips(:)
       real(rk) :: off(2), worst
       integer :: carried, i, k, mended
@@ -157,7 +157,7 @@ contains
 
    !> Eight tips or fewer are all evaluated.
    subroutine test_few()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
 
       call start(simulation, 4, 1.0e7_rk, .false.)
       call step(simulation, 1.0e-3_rk)
@@ -167,7 +167,7 @@ contains
 
    !> Tips within half of their toughness are all evaluated.
    subroutine test_near_toughness()
-      type(twolevel_simulation_t), allocatable :: simulation
+      type(two_levels_t), allocatable :: simulation
       real(rk) :: toughness
       logical, allocatable :: is_near(:)
 
@@ -194,7 +194,7 @@ contains
    !! another length alone does not change it. The mean opening of a cell of length d at a tip
    !! is (2/3) (8 K/E') sqrt(d/(2 pi)).
    subroutine test_cell_length()
-      type(twolevel_simulation_t), allocatable :: simulation
+      type(two_levels_t), allocatable :: simulation
       real(rk), parameter :: sizes(2) = [0.05_rk, 0.025_rk]
       real(rk) :: modulus, of_jump
       integer :: i, k
@@ -217,7 +217,7 @@ contains
 
    !> A tip whose faces have stuck and move now is evaluated, not kept at K = 0.
    subroutine test_reopening()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk), allocatable :: jump(:, :, :)
       real(rk) :: known
 

@@ -179,7 +179,7 @@ contains
       real(rk), intent(in), optional :: increments(2)  !< [m]
       logical, intent(in), optional :: arrested  !< the tip behind is
       integer(ik), intent(in), optional :: first  !< group of the second tip at first
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       real(rk) :: increment(2)
       integer :: k
 
@@ -219,7 +219,7 @@ contains
 
    !> Note the separation of tips in the present state.
    subroutine note(simulation, increment)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
 
       call simulation%notes%note_separation(simulation%tip, simulation%now, toughness, increment, &
