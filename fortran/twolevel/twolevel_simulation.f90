@@ -1,19 +1,22 @@
-!> What a run calls: time steps, with growth of the tips in each step, and the results of a state.
+!> The start of a simulation, and the growth of its tips between steps.
 submodule(twolevel_state) twolevel_simulation
    use base_errors, only: error_t
-   use base_kinds, only: rk
-   use base_number, only: brief_text
-   use base_timers, only: timers_t
+   use base_kinds, only: ik, pi, rk
+   use base_timers, only: phase_mesh, timers_t
    use base_tolerances, only: same_time
-   use report_rows, only: history_row_t
+   use coarse_model, only: new_state
+   use growth_network, only: fracture_length, network_of_scene
+   use mesh_builder, only: build_mesh
    use scene_sizes, only: sizes_text
+   use scene_types, only: scene_t
    use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
    use twolevel_limits, only: watch_mesh, watch_windows
-   use twolevel_notes, only: note_excess, states_errors
-   use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
+   use twolevel_notes, only: note_excess
    use twolevel_stepping, only: refinement_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
-   use twolevel_places, only: end_at_tips
+   use twolevel_schedule, only: follow_sides
+   use twolevel_setup, only: coarse_spec, first_cells, pressure_scale, rest_joints, rules_of_scene
+   use twolevel_wells, only: share_wells
    implicit none(type, external)
 
 contains
@@ -26,7 +29,7 @@ contains
 
       self%end_time = scene%time%end
       call self%stepper%begin(scene%time)
-      call self%mesh_levels(scene, timers, error)
+      call mesh_levels(self, scene, timers, error)
       if (allocated(error)) return
       call self%catalogue%begin(scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump, scene%output%seismic_slip_rate)
@@ -35,6 +38,71 @@ contains
       call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
+
+   !> Mesh, discretize and set the state before the load.
+   subroutine mesh_levels(self, scene, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%set_scene(scene)
+      call follow_sides(self%scene, 0.0_rk, 0.0_rk)
+      self%start = network_of_scene(scene)
+      self%network = self%start
+      self%now%coarse_network = self%start
+      self%rules = rules_of_scene(scene)
+      allocate (self%problem)
+      associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
+         call timers%start(phase_mesh)
+         call build_mesh(coarse_spec(scene), now%coarse_network, problem%mesher, mesh, error)
+         call timers%stop(phase_mesh)
+         if (allocated(error)) return
+         call first_cells(self%scene, mesh%fracture, problem%model%cells)
+         call share_wells(self%scene%injections, mesh%fracture, problem%share)
+         call problem%model%set_mesh(mesh, self%scene, timers, error)
+         if (allocated(error)) return
+         call problem%feed_wells(self%scene, error)
+         if (allocated(error)) return
+         if (allocated(problem%model%in_situ)) then
+            call rest_joints(problem%model%in_situ, mesh%fracture, problem%model%cells)
+         end if
+         call new_state(mesh, problem%model%cells, scene%initial, problem%model, now%coarse)
+         call self%rest_wells()
+         call self%find_tips(mesh%fracture)
+      end associate
+      call set_scales(self)
+      if (scene%growth%intensities) then
+         ! The body as reference has elements as large as the coarse cells; at the tips, where this
+         ! matters, they are those of the windows.
+         associate (coarser => 1.0_rk/scene%discretization%fine_ratio, &
+                    is_body => scene%discretization%window_is_body)
+            call self%windows%begin(self%tip, is_body, merge(1.0_rk, coarser, is_body), &
+                                    self%now%windows)
+            if (.not. is_body) call self%reference%begin(self%tip, .true., coarser, &
+                                                         self%now%reference)
+         end associate
+      end if
+      allocate (self%now%grown(0), self%now%segment(size(self%tip)))
+      call self%now%interaction%begin(size(self%tip))
+      call self%follow_trend(at_rest=.false.)
+   end subroutine mesh_levels
+
+   !> Set the pressure of the loads, and the least scale of K_eq of each tip: a share of K at this
+   !! pressure in its fracture.
+   pure subroutine set_scales(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), parameter :: share = 0.01_rk
+      integer(ik) :: i
+
+      self%load_pressure = pressure_scale(self%scene)
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            tip%least_scale = share*self%load_pressure &
+                              *sqrt(0.5_rk*pi*fracture_length(self%network, tip%fracture))
+         end associate
+      end do
+   end subroutine set_scales
 
    !> Report the features that the scene uses, and those that it does not use.
    subroutine note_features(self)
@@ -171,71 +239,5 @@ contains
          if (coarse_grew .or. allocated(self%ending)) return
       end do
    end subroutine follow_tips
-
-   module subroutine present_network(self, network, mesh)
-      class(two_levels_t), intent(in) :: self
-      type(network_t), intent(out) :: network
-      type(mesh_t), intent(out) :: mesh
-
-      network = self%now%coarse_network
-      mesh = self%problem%mesh
-      if (.not. self%scene%growth%in_equilibrium()) return
-      network = self%network
-      call end_at_tips(self%scene, self%front_state_t, mesh%fracture)
-   end subroutine present_network
-
-   module function history(self) result(row)
-      class(two_levels_t), intent(in) :: self
-      type(history_row_t) :: row
-
-      row = history_of_levels(self%scene, self%front_state_t, self%problem, self%now, &
-                              self%before%time)
-      row%dt = merge(0.0_rk, self%step%dt, self%is_initial)
-      row%newton_iterations = self%step%report%iterations
-      row%seismic_moment = self%seismic_moment
-      if (row%dt > 0.0_rk .and. self%problem%mesh%fracture%n_cells > 0) then
-         associate (state => self%now%coarse)
-            row%max_slip_rate = maxval(abs(state%jump(2, :, :) - state%slip_before))/row%dt
-         end associate
-      end if
-      call self%stimulation%describe(self%scene, self%start, self%front_state_t, self%problem, &
-                                     self%now%coarse, row)
-      row%length_error = -1.0_rk
-      row%well_pressure_error = -1.0_rk
-      if (.not. states_errors(self%scene%growth)) return
-      row%length_error = self%now%stated_errors%length
-      row%well_pressure_error = self%now%stated_errors%pressure
-   end function history
-
-   module subroutine probes(self, row, error)
-      class(two_levels_t), intent(inout) :: self
-      type(probe_row_t), intent(out) :: row
-      type(error_t), allocatable, intent(out) :: error
-
-      call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
-   end subroutine probes
-
-   module subroutine snapshot(self, fields)
-      class(two_levels_t), intent(in) :: self
-      type(snapshot_t), allocatable, intent(out) :: fields
-
-      if (allocated(self%now%coarse%tractions)) then
-         fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
-      end if
-   end subroutine snapshot
-
-   pure module function time(self)
-      class(two_levels_t), intent(in) :: self
-      real(rk) :: time
-
-      time = self%now%coarse%time
-   end function time
-
-   pure module function last_state(self) result(words)
-      class(two_levels_t), intent(in) :: self
-      character(len=:), allocatable :: words
-
-      words = brief_text(self%now%coarse%time, 6)//" s"
-   end function last_state
 
 end submodule twolevel_simulation

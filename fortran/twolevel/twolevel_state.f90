@@ -2,26 +2,26 @@
 !! and windows. A step begins from this state, and rejected tries restore it.
 module twolevel_state
    use base_errors, only: error_t
-   use base_kinds, only: ik, pi, rk
-   use base_timers, only: phase_mesh, phase_tips, timers_t
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text
+   use base_timers, only: phase_tips, timers_t
    use mesh_geometry, only: cell_area
-   use coarse_model, only: new_state
    use coarse_state, only: state_t, step_report_t
-   use growth_network, only: fracture_length, network_of_scene
-   use mesh_builder, only: build_mesh
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use report_rows, only: history_row_t, probe_row_t
    use report_simulation, only: simulation_t, snapshot_t
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
-   use twolevel_notes, only: notes_t
+   use twolevel_notes, only: notes_t, states_errors
+   use twolevel_places, only: end_at_tips
    use twolevel_problem, only: coarse_problem_t, discard
-   use twolevel_setup, only: coarse_spec, first_cells, pressure_scale, rest_joints, rules_of_scene
+   use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
+   use twolevel_setup, only: pressure_scale
    use twolevel_tips, only: find_tip_intensities
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_stepping, only: stepper_t
    use twolevel_stimulation, only: stimulation_t
-   use twolevel_wells, only: rate, share_wells
+   use twolevel_wells, only: rate
    use twolevel_unsolved, only: why_unsolved
    use twolevel_well_rows, only: well_results_t
    use twolevel_windows, only: windows_t
@@ -83,13 +83,13 @@ module twolevel_state
       procedure :: snapshot
       procedure :: time
       procedure :: last_state
-      procedure :: mesh_levels
       procedure :: begin_step
       procedure :: remember
       procedure :: put_back
       procedure :: present_state
       procedure :: follow_trend
       procedure :: equilibrate
+      procedure :: rest_wells
       procedure :: try_step
       procedure :: step_error
       procedure :: errs
@@ -101,7 +101,7 @@ module twolevel_state
       procedure :: remesh_coarse
    end type two_levels_t
 
-   ! In twolevel_remeshing
+   ! In the submodules twolevel_remeshing, twolevel_steps and twolevel_simulation
    interface
       !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if
       !! no growth follows.
@@ -121,10 +121,7 @@ module twolevel_state
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine remesh_coarse
-   end interface
 
-   ! Bindings of simulation_t: next_state in twolevel_steps, the others in twolevel_simulation
-   interface
       !> Mesh both levels, without load.
       module subroutine begin(self, scene, timers, error)
          implicit none(type, external)
@@ -150,118 +147,9 @@ module twolevel_state
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine grow
-
-      !> Network and coarse mesh; with growth in equilibrium the last cells end at the tips.
-      module subroutine present_network(self, network, mesh)
-         implicit none(type, external)
-         class(two_levels_t), intent(in) :: self
-         type(network_t), intent(out) :: network
-         type(mesh_t), intent(out) :: mesh
-      end subroutine present_network
-
-      !> Row of history.csv of the accepted state.
-      module function history(self) result(row)
-         implicit none(type, external)
-         class(two_levels_t), intent(in) :: self
-         type(history_row_t) :: row
-      end function history
-
-      !> Displacement, stress and pressure at the probes.
-      module subroutine probes(self, row, error)
-         implicit none(type, external)
-         class(two_levels_t), intent(inout) :: self
-         type(probe_row_t), intent(out) :: row
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine probes
-
-      !> Fields of the last accepted state, if there is one.
-      module subroutine snapshot(self, fields)
-         implicit none(type, external)
-         class(two_levels_t), intent(in) :: self
-         type(snapshot_t), allocatable, intent(out) :: fields
-      end subroutine snapshot
-
-      !> Time of the present state [s].
-      pure module function time(self)
-         implicit none(type, external)
-         class(two_levels_t), intent(in) :: self
-         real(rk) :: time
-      end function time
-
-      !> Time of the last accepted state, as text.
-      pure module function last_state(self) result(words)
-         implicit none(type, external)
-         class(two_levels_t), intent(in) :: self
-         character(len=:), allocatable :: words
-      end function last_state
    end interface
 
 contains
-
-   !> Mesh, discretize and set the state before the load.
-   subroutine mesh_levels(self, scene, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-
-      call self%set_scene(scene)
-      call follow_sides(self%scene, 0.0_rk, 0.0_rk)
-      self%start = network_of_scene(scene)
-      self%network = self%start
-      self%now%coarse_network = self%start
-      self%rules = rules_of_scene(scene)
-      allocate (self%problem)
-      associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
-         call timers%start(phase_mesh)
-         call build_mesh(coarse_spec(scene), now%coarse_network, problem%mesher, mesh, error)
-         call timers%stop(phase_mesh)
-         if (allocated(error)) return
-         call first_cells(self%scene, mesh%fracture, problem%model%cells)
-         call share_wells(self%scene%injections, mesh%fracture, problem%share)
-         call problem%model%set_mesh(mesh, self%scene, timers, error)
-         if (allocated(error)) return
-         call problem%feed_wells(self%scene, error)
-         if (allocated(error)) return
-         if (allocated(problem%model%in_situ)) then
-            call rest_joints(problem%model%in_situ, mesh%fracture, problem%model%cells)
-         end if
-         call new_state(mesh, problem%model%cells, scene%initial, problem%model, now%coarse)
-         call rest_wells(self)
-         call self%find_tips(mesh%fracture)
-      end associate
-      call set_scales(self)
-      if (scene%growth%intensities) then
-         ! The body as reference has elements as large as the coarse cells; at the tips, where this
-         ! matters, they are those of the windows.
-         associate (coarser => 1.0_rk/scene%discretization%fine_ratio, &
-                    is_body => scene%discretization%window_is_body)
-            call self%windows%begin(self%tip, is_body, merge(1.0_rk, coarser, is_body), &
-                                    self%now%windows)
-            if (.not. is_body) call self%reference%begin(self%tip, .true., coarser, &
-                                                         self%now%reference)
-         end associate
-      end if
-      allocate (self%now%grown(0), self%now%segment(size(self%tip)))
-      call self%now%interaction%begin(size(self%tip))
-      call self%follow_trend(at_rest=.false.)
-   end subroutine mesh_levels
-
-   !> Set the pressure of the loads, and the least scale of K_eq of each tip: a share of K at this
-   !! pressure in its fracture.
-   pure subroutine set_scales(self)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), parameter :: share = 0.01_rk
-      integer(ik) :: i
-
-      self%load_pressure = pressure_scale(self%scene)
-      do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i))
-            tip%least_scale = share*self%load_pressure &
-                              *sqrt(0.5_rk*pi*fracture_length(self%network, tip%fracture))
-         end associate
-      end do
-   end subroutine set_scales
 
    !> Begin a step: accept contact in the windows as evaluated last.
    subroutine begin_step(self)
@@ -350,7 +238,7 @@ contains
                                           undrained_share*self%scene%time%longest(), &
                                           self%now%coarse, timers, report, error)
       if (.not. allocated(error)) call explain(self, 0.0_rk, report)
-      call rest_wells(self)
+      call self%rest_wells()
    end subroutine equilibrate
 
    !> Try one step of the coarse level. Nothing changes unless it converges.
@@ -495,5 +383,77 @@ contains
          call summary%count_dofs("windows_reference", self%reference%n_unknowns(self%tip))
       end associate
    end subroutine count_unknowns
+
+   !> Network and coarse mesh; with growth in equilibrium the last cells end at the tips.
+   subroutine present_network(self, network, mesh)
+      class(two_levels_t), intent(in) :: self
+      type(network_t), intent(out) :: network
+      type(mesh_t), intent(out) :: mesh
+
+      network = self%now%coarse_network
+      mesh = self%problem%mesh
+      if (.not. self%scene%growth%in_equilibrium()) return
+      network = self%network
+      call end_at_tips(self%scene, self%front_state_t, mesh%fracture)
+   end subroutine present_network
+
+   !> Row of history.csv of the accepted state.
+   function history(self) result(row)
+      class(two_levels_t), intent(in) :: self
+      type(history_row_t) :: row
+
+      row = history_of_levels(self%scene, self%front_state_t, self%problem, self%now, &
+                              self%before%time)
+      row%dt = merge(0.0_rk, self%step%dt, self%is_initial)
+      row%newton_iterations = self%step%report%iterations
+      row%seismic_moment = self%seismic_moment
+      if (row%dt > 0.0_rk .and. self%problem%mesh%fracture%n_cells > 0) then
+         associate (state => self%now%coarse)
+            row%max_slip_rate = maxval(abs(state%jump(2, :, :) - state%slip_before))/row%dt
+         end associate
+      end if
+      call self%stimulation%describe(self%scene, self%start, self%front_state_t, self%problem, &
+                                     self%now%coarse, row)
+      row%length_error = -1.0_rk
+      row%well_pressure_error = -1.0_rk
+      if (.not. states_errors(self%scene%growth)) return
+      row%length_error = self%now%stated_errors%length
+      row%well_pressure_error = self%now%stated_errors%pressure
+   end function history
+
+   !> Displacement, stress and pressure at the probes.
+   subroutine probes(self, row, error)
+      class(two_levels_t), intent(inout) :: self
+      type(probe_row_t), intent(out) :: row
+      type(error_t), allocatable, intent(out) :: error
+
+      call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
+   end subroutine probes
+
+   !> Fields of the last accepted state, if there is one.
+   subroutine snapshot(self, fields)
+      class(two_levels_t), intent(in) :: self
+      type(snapshot_t), allocatable, intent(out) :: fields
+
+      if (allocated(self%now%coarse%tractions)) then
+         fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
+      end if
+   end subroutine snapshot
+
+   !> Time of the present state [s].
+   pure function time(self)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: time
+
+      time = self%now%coarse%time
+   end function time
+
+   !> Time of the last accepted state, as text.
+   pure function last_state(self) result(words)
+      class(two_levels_t), intent(in) :: self
+      character(len=:), allocatable :: words
+
+      words = brief_text(self%now%coarse%time, 6)//" s"
+   end function last_state
 
 end module twolevel_state
