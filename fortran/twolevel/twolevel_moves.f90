@@ -143,8 +143,8 @@ contains
 
       first = [(min(0.0_rk, maxval(tips%excess(toughness), mask=kind == kind(i))), i=1, size(kind))]
       lags = (wants .or. (segments%is_open .and. segments%reached > segments%lowest())) .and. &
-             lacks(tips, first) .and. &
-             (lacks(before, 0.0_rk) .or. .not. (segments%gain > 0.0_rk .and. before%advance > 0.0_rk))
+             lacks(tips, first) .and. (lacks(before, 0.0_rk) .or. &
+                                       .not. (segments%gain > 0.0_rk .and. before%advance > 0.0_rk))
       any_parted = .false.
       do i = 1, size(kind, kind=ik)
          if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle
