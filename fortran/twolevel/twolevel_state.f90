@@ -23,7 +23,7 @@ module twolevel_state
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_places, only: end_cell, shut_tips
    use twolevel_problem, only: coarse_problem_t, discard
-   use twolevel_scales, only: pressure_scale
+   use twolevel_scales, only: keep_above_zero, pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_wells, only: rate, share_wells, transfer_shares
@@ -89,11 +89,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call self%set_scene(scene)
+      call keep_above_zero(self%scene)
       call follow_sides(self%scene, 0.0_rk, 0.0_rk)
       self%start = network_of_scene(scene)
       self%network = self%start
       self%now%coarse_network = self%start
-      self%rules = rules_of_scene(scene)
+      self%rules = rules_of_scene(self%scene)
       allocate (self%problem)
       associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
          call timers%start(phase_mesh)
