@@ -126,7 +126,7 @@ contains
       self%drive = growth_drive_t()
    end subroutine deactivate
 
-   !> Scale of the excess over the toughness [Pa m^1/2].
+   !> Scale of the excess over the toughness, over the resistance as K_eq [Pa m^1/2].
    elemental real(rk) function scale_of(self, toughness)
       class(tip_t), intent(in) :: self
       real(rk), intent(in) :: toughness  !< K_IC of the scene's rock [Pa m^1/2]
