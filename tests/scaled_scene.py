@@ -99,7 +99,7 @@ def _times(value: Any, factor: float) -> Any:
     return value * factor if isinstance(value, float) and factor != 1.0 else value
 
 
-def table(path: Path, units: Units = Units()) -> list[dict[str, float]]:  # noqa: B008
+def table(path: Path, units: Units = Units()) -> list[dict[str, float]]:
     """Numbers of a table of a run in the units before the change, by rows."""
     known = columns()[path.name]
     with path.open(encoding="utf-8", newline="") as file:

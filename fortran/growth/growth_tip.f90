@@ -126,12 +126,12 @@ contains
       self%drive = growth_drive_t()
    end subroutine deactivate
 
-   !> Scale of the excess over the toughness [Pa m^1/2].
+   !> Scale of the excess over the toughness, over the resistance as K_eq [Pa m^1/2].
    elemental real(rk) function scale_of(self, toughness)
       class(tip_t), intent(in) :: self
-      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+      real(rk), intent(in) :: toughness  !< K_IC of the scene's rock [Pa m^1/2]
 
-      scale_of = max(toughness, self%least_scale)
+      scale_of = max(toughness, self%least_scale/self%drive%resistance)
    end function scale_of
 
    !> K_eq minus K_IC, over the scale [-].

@@ -15,7 +15,8 @@ submodule(twolevel_state) twolevel_simulation
    use twolevel_stepping, only: refinement_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_schedule, only: follow_sides
-   use twolevel_setup, only: coarse_spec, first_cells, pressure_scale, rest_joints, rules_of_scene
+   use twolevel_setup, only: coarse_spec, first_cells, keep_above_zero, &
+                              pressure_scale, rest_joints, rules_of_scene
    use twolevel_wells, only: share_wells
    implicit none(type, external)
 
@@ -47,11 +48,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call self%set_scene(scene)
+      call keep_above_zero(self%scene)
       call follow_sides(self%scene, 0.0_rk, 0.0_rk)
       self%start = network_of_scene(scene)
       self%network = self%start
       self%now%coarse_network = self%start
-      self%rules = rules_of_scene(scene)
+      self%rules = rules_of_scene(self%scene)
       allocate (self%problem)
       associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
          call timers%start(phase_mesh)
