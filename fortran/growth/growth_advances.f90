@@ -107,9 +107,15 @@ contains
          end if
          has_moved = .true.
          self%is_monotone = .true.
-         self%place = self%lower
          self%near = self%lower
          self%far = spread(huge(1.0_rk), 1, size(self%lower))
+         if (any(self%place > self%lower)) then
+            self%place = self%lower
+            return
+         end if
+         self%best = self%place
+         self%excess = excess
+         call self%advance(tolerance, has_moved)
       else
          self%best = self%place
          self%excess = excess
@@ -161,6 +167,8 @@ contains
       real(rk) :: scaled(size(excess), size(excess))
       integer :: j
 
+      ! The excess at nearly the same position shows nothing but the error of the mesh.
+      if (.not. any(abs(self%place - self%best) > 0.5_rk*resolution*self%length)) return
       associate (length => self%length)
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
@@ -188,6 +196,7 @@ contains
       has_moved = .false.
       if (is_stuck) return
       to = max(self%lower, self%best + change)
+      where (to < self%lower + resolution*self%length) to = self%lower
       where (to > self%upper - self%sliver) to = self%upper
       has_moved = any(abs(to - self%place) > resolution*self%length)
       self%place = to

@@ -7,7 +7,15 @@ module twolevel_window_tip
    implicit none(type, external)
    private
 
-   public :: window_tip_t
+   public :: of_edge, of_elements, window_tip_t
+
+   ! Parts of the error that a refinement reduces.
+   integer, parameter :: of_elements = 1  !< by smaller elements
+   integer, parameter :: of_edge = 2  !< by a larger window, or by the body as window
+
+   !> A refinement has had no effect if the error is still more than this share of the error before
+   !! [-], until the error has become so many times as large [-].
+   real(rk), parameter :: no_effect = 0.95_rk, other_state = 2.0_rk
 
    !> Largest number of refinements. Each halves the rosette; from the second on each also halves
    !! the other elements.
@@ -17,6 +25,8 @@ module twolevel_window_tip
    type :: window_tip_t
       integer(ik) :: fracture = 0, end = 0  !< in the network
       integer :: times_finer = 0  !< number of refinements
+      !> (of_elements, of_edge) error of the intensities before the last refinement [Pa m^1/2]
+      real(rk) :: refined_at(2) = huge(1.0_rk)
       !> intensities of the last solution, without the error by the coarse level
       type(intensity_t) :: found
       !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), by
@@ -36,6 +46,7 @@ module twolevel_window_tip
       procedure :: element_size
       procedure :: rosette_radius
       procedure :: can_be_finer
+      procedure :: is_futile
       procedure :: forget_coarse_error
       procedure :: note_jump
       procedure :: forget_jump
@@ -77,6 +88,19 @@ contains
 
       can_be_finer = self%times_finer < finer_most
    end function can_be_finer
+
+   !> Whether the last refinement of one kind has not reduced the error, so that the next would not
+   !! either.
+   elemental logical function is_futile(self, part, error)
+      class(window_tip_t), intent(in) :: self
+      integer, intent(in) :: part  !< of_elements or of_edge
+      real(rk), intent(in) :: error  !< of the intensities now [Pa m^1/2]
+
+      associate (before => self%refined_at(part))
+         is_futile = before < huge(1.0_rk) .and. error > no_effect*before .and. &
+                     error < other_state*before
+      end associate
+   end function is_futile
 
    !> Reset the contribution of the coarse level.
    elemental subroutine forget_coarse_error(self)

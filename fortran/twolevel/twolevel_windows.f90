@@ -9,6 +9,7 @@ module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
+   use base_tolerances, only: same_place
    use coarse_state, only: state_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
@@ -401,7 +402,7 @@ contains
 
       associate (tip => tips(i), before => window%made%place(:, i))
          moved = norm2(tip%xy - before)
-         has_moved = moved > 0.0_rk
+         has_moved = moved > same_place*norm2(tip%xy - tip%origin)
          if (has_moved) has_moved = overlaps(window, tip%origin, before) .or. &
                                     overlaps(window, tip%origin, tip%xy)
          if (.not. has_moved) return

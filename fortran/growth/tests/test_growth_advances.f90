@@ -36,6 +36,8 @@ program test_growth_advances
    call test_moving()
    call test_random_problems()
    call test_order()
+   call test_retreat()
+   call test_steep_guess()
    call checks%finish()
 
 contains
@@ -53,6 +55,38 @@ contains
          if (.not. has_moved .or. advances%evaluations > 100) exit
       end do
    end subroutine solve
+
+   !> A tip whose excess is negative everywhere ends exactly at its lower bound, whatever the digits
+   !! of the bound are.
+   subroutine test_retreat()
+      real(rk), parameter :: lower(3) = [0.025_rk, 1.0_rk/3.0_rk, 0.7_rk/11.0_rk]
+      type(advances_t) :: advances
+      logical :: has_moved
+      integer :: i
+
+      do i = 1, size(lower)
+         call advances%begin(lower(i:i), [0.5_rk], [0.4_rk], reshape([-0.2_rk], [1, 1]))
+         do
+            call advances%improve([-0.6_rk - advances%place(1)], tolerance, has_moved)
+            if (.not. has_moved .or. advances%evaluations > 20) exit
+         end do
+         call checks%is_close(advances%place(1), lower(i), 0.0_rk, "at the lower bound")
+         call checks%is_true(advances%evaluations == 2, "in two evaluations")
+      end do
+   end subroutine test_retreat
+
+   !> With a guess of the slope that is far too steep the tip still leaves its lower bound.
+   subroutine test_steep_guess()
+      type(advances_t) :: advances
+      logical :: has_moved
+
+      call advances%begin([0.0_rk], [1.0_rk], [0.0_rk], reshape([-1.0e6_rk], [1, 1]))
+      do
+         call advances%improve([0.2_rk - advances%place(1)], tolerance, has_moved)
+         if (.not. has_moved .or. advances%evaluations > 50) exit
+      end do
+      call checks%is_close(advances%place(1), 0.2_rk, tolerance, "in equilibrium")
+   end subroutine test_steep_guess
 
    !> Double cantilever beam of 1 m at a given opening: K falls as the length to the power of -2.
    subroutine test_cantilever()

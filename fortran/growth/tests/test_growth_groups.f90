@@ -174,8 +174,10 @@ contains
 
       call interaction%begin(2)
       if (present(lead)) then
-         call interaction%store_column(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
-         call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
+         call interaction%store_column(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], &
+                                       [.true., .true.], segment)
+         call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], &
+                                       [.true., .true.], segment)
       end if
       drive = 1.0_rk
       gain = 0.0_rk
