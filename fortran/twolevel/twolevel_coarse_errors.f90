@@ -29,7 +29,7 @@ module twolevel_coarse_errors
    use base_kinds, only: ik, rk
    use base_timers, only: phase_tips, timers_t
    use coarse_state, only: state_t
-   use growth_front, only: growth_rules_t
+   use growth_front, only: front_state_t, growth_rules_t
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t
    use twolevel_correction, only: improve
@@ -101,26 +101,23 @@ contains
    subroutine compare_with_body(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
-      type(tip_t) :: tips(size(self%tip))
+      type(front_state_t) :: front
       integer(ik) :: i
 
       if (.not. is_due(self%reference, self%tip, self%now%windows%tip, self%rules)) then
-         do i = 1, size(tips, kind=ik)
+         do i = 1, size(self%tip, kind=ik)
             if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do
          return
       end if
-      tips = self%tip
-      associate (now => self%now)
-         call self%reference%evaluate(self%scene, self%network, tips, tips%is_loaded(), .false., &
-                                      self%problem, now%coarse, now%undrained, now%reference, &
-                                      error)
-      end associate
+      front = self%front_state_t
+      call self%reference%evaluate(self%scene, front, front%tip%is_loaded(), self%problem, &
+                                   self%now%coarse, self%now%reference, error)
       if (allocated(error)) return
-      do i = 1, size(tips, kind=ik)
-         if (.not. tips(i)%is_loaded()) cycle
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. self%tip(i)%is_loaded()) cycle
          call compare_tip(self%now%reference%tip(i), self%now%windows%tip(i))
-         self%now%windows%tip(i)%compared_at = tips(i)%xy
+         self%now%windows%tip(i)%compared_at = self%tip(i)%xy
       end do
    end subroutine compare_with_body
 

@@ -193,7 +193,8 @@ contains
       call judge_tips(self%now%segment, self%now%interaction, &
                       shared_excesses(self%front_state_t, self%now, self%rules), &
                       are_at_ligaments(self%front_state_t, self%now, self%rules), &
-                      self%tip%arrested, search%kind, search%advances, moves, wants)
+                      search%kind, search%advances, moves, wants)
+      wants = wants .and. .not. self%tip%arrested
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 

@@ -18,13 +18,12 @@ contains
    !> Move the tips on open segments to where their excess is predicted to vanish; other tips begin
    !! a segment if they exceed the toughness. Tips of one group take the largest of their excesses,
    !! and so advance equally.
-   subroutine judge_tips(segments, interaction, alone, is_at_ligament, is_arrested, kind, &
+   subroutine judge_tips(segments, interaction, alone, is_at_ligament, kind, &
                          search, moves, wants)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
       type(interaction_t), intent(in) :: interaction
       real(rk), intent(in) :: alone(:)  !< (tips) excess of K_eq over K_IC of each tip [-]
       logical, intent(in) :: is_at_ligament(:)  !< (tips) only a ligament is left ahead of the tip
-      logical, intent(in) :: is_arrested(:)
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       !> search for the positions of the tips on their segments
       type(advances_t), intent(inout) :: search
@@ -37,7 +36,7 @@ contains
       ! advance. Without the increment, equal tips would all wait.
       where (is_at_ligament) excess = excess + 2.0_rk*tolerance
       call move_groups(segments, interaction, kind, excess, search, moves)
-      wants = .not. (moves .or. excess <= tolerance .or. is_arrested)
+      wants = .not. (moves .or. excess <= tolerance)
       where (segments%is_open) wants = wants .and. segments%is_complete()
    end subroutine judge_tips
 
