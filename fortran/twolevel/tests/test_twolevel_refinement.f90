@@ -14,11 +14,11 @@ program test_twolevel_refinement
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use report_rows, only: event_growth_uncertain
-   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
-   use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: refinement_t
-   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_refinement, only: find_refinements, growth_error, growth_error_t, is_uncertain, &
+                                  note_uncertain_tips, refine_windows
    implicit none(type, external)
 
    real(rk), parameter :: a = 0.05_rk  !< half-length [m]
