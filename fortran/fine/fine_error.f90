@@ -20,7 +20,7 @@ module fine_error
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovered_stress, recovery_t
-   use fine_tip_intensity, only: tip_probe_t
+   use fine_tip_interaction, only: tip_probe_t
    use fine_tip_types, only: complete_errors, intensity_t
    implicit none(type, external)
    private

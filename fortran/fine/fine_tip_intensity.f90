@@ -9,12 +9,12 @@ module fine_tip_intensity
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: face_traction, largest_radius, rosette_size
    use fine_tip_energy, only: displacement_correlation, release_rate
-   use fine_tip_interaction, only: interaction_integrals, interactions_t
+   use fine_tip_interaction, only: interaction_integrals, tip_probe_t
    use fine_tip_types, only: complete_errors, frame_of_tip, intensity_t, tip_frame_t
    implicit none(type, external)
    private
 
-   public :: intensity_of_tip, probe_of_tip, tip_intensity, tip_probe_t
+   public :: intensity_of_tip, probe_of_tip, tip_intensity
 
    ! The larger domain has a radius of some rosettes where there is room for them, and takes up half
    ! of the room where the rosette is small. A domain that shrank with the rosette would look the
@@ -27,13 +27,6 @@ module fine_tip_intensity
    !> Above this ratio of Poisson elements around tips show a wrong normal traction, and friction
    !! follows it; by the mean beyond the domain, up to so many radii, it is judged.
    real(rk), parameter :: nearly_incompressible = 0.49_rk, judged_reach = 3.0_rk
-
-   !> What the intensities of a tip are found by on one mesh, whatever its loads and solution.
-   type :: tip_probe_t
-      type(tip_frame_t) :: frame
-      real(rk) :: radius = 0.0_rk, radius_inner = 0.0_rk  !< of the two domains [m]
-      type(interactions_t) :: interactions  !< on these
-   end type tip_probe_t
 
 contains
 

@@ -32,7 +32,7 @@ module fine_tip_interaction
    implicit none(type, external)
    private
 
-   public :: interaction_integrals, interactions_t
+   public :: interaction_integrals, interactions_t, tip_probe_t
 
    !> The integrals of both modes on some domains about a tip of one mesh.
    type :: interactions_t
@@ -51,6 +51,13 @@ module fine_tip_interaction
       procedure :: intensities
       procedure :: extraction_forces
    end type interactions_t
+
+   !> What the intensities of a tip are found by on one mesh, whatever its loads and solution.
+   type :: tip_probe_t
+      type(tip_frame_t) :: frame
+      real(rk) :: radius = 0.0_rk, radius_inner = 0.0_rk  !< of the two domains [m]
+      type(interactions_t) :: interactions  !< on these
+   end type tip_probe_t
 
 contains
 

@@ -15,6 +15,7 @@ module growth_control
 
    !> State of the iteration for the advances of a group.
    type :: length_control_t
+      real(rk) :: tolerance = 0.0_rk  !< tolerance of the excess [-]
       integer, private :: leader = 0  !< 0: not chosen yet
       integer, allocatable, private :: others(:)
       type(advances_t), private :: advances  !< search for the advances of `others`
@@ -28,14 +29,13 @@ contains
    !> Next estimate of the advances, from the excess at the present advances and a load at which no
    !! tip exceeds its toughness. The tips may be groups of equal tips. `has_moved` is false where
    !! all tips are in equilibrium within the tolerance.
-   subroutine improve(self, excess, matrix, slope, room, shortest, tolerance, advance, has_moved)
+   subroutine improve(self, excess, matrix, slope, room, shortest, advance, has_moved)
       class(length_control_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) K_eq/K_IC - 1 [-]
       real(rk), intent(in) :: matrix(:, :)  !< first estimate of M, over K_IC [1/m]
       real(rk), intent(in) :: slope(:)  !< c, over K_IC [-]
       real(rk), intent(in) :: room(:)  !< distances to the ends of the segments [m]
       real(rk), intent(in) :: shortest(:)  !< shortest advances that the mesh resolves [m]
-      real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       real(rk), intent(inout) :: advance(:)  !< [m]
       logical, intent(out) :: has_moved
       real(rk), dimension(size(excess)) :: at_leader, before, share
@@ -55,7 +55,7 @@ contains
             call self%advances%begin(0.0_rk*room(others), room(others), advance(others), reduced)
          end associate
       end if
-      call self%advances%improve(at_leader(self%others), tolerance, has_moved)
+      call self%advances%improve(at_leader(self%others), self%tolerance, has_moved)
       if (.not. has_moved) return
       where (self%advances%place < shortest(self%others))
          self%advances%place = merge(shortest(self%others), 0.0_rk, &

@@ -13,7 +13,8 @@ module mechanics_body
    use fine_mesh, only: fine_mesh_t, tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
+   use fine_tip_intensity, only: probe_of_tip, tip_intensity
+   use fine_tip_interaction, only: tip_probe_t
    use fine_tip_types, only: intensity_t
    use growth_network, only: end_pieces
    use mechanics_faces, only: body_loads, face_conditions, held_boundary, prescribe_slip

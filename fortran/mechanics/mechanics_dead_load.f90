@@ -6,7 +6,6 @@ module mechanics_dead_load
    use base_kinds, only: rk
    use base_number, only: brief_text
    use base_timers, only: timers_t
-   use mechanics_equilibrium, only: increment_t
    use mechanics_state, only: loaded_body_t
    use report_rows, only: event_unstable
    implicit none(type, external)
@@ -46,27 +45,26 @@ contains
 
    !> After an increment, which ends at the equilibrium load: if that is smaller than before and the
    !! load does not fall, evaluate the state at the load before the increment.
-   subroutine end_increment(self, body, increment, timers, error)
+   subroutine end_increment(self, body, is_loose, timers, error)
       class(dead_load_t), intent(inout) :: self
       class(loaded_body_t), intent(inout) :: body
-      type(increment_t), intent(inout) :: increment
+      logical, intent(in) :: is_loose  !< no load factor gives an equilibrium
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: borne, share
       logical :: bears_less
 
-      if (.not. increment%has_grown) return
       associate (load => body%scene%load)
          borne = body%factor
          bears_less = (body%factor - self%factor)*(body%bounds(2) - body%bounds(1)) < 0.0_rk
-         if (increment%is_loose .or. (load%control == "dead" .and. bears_less)) then
+         if (is_loose .or. (load%control == "dead" .and. bears_less)) then
             if (.not. self%is_unstable) then
                call body%chronicle%add_event(self%factor, event_unstable, "unstable growth begins")
                self%is_unstable = .true.
                self%length = 0.0_rk
                self%released = 0.0_rk
             end if
-            if (.not. increment%is_loose) call body%respond(self%factor, timers, error)
+            if (.not. is_loose) call body%respond(self%factor, timers, error)
             if (allocated(error)) return
             call add_growth(self, body, 1.0_rk)
          else if (self%is_unstable) then

@@ -411,10 +411,10 @@ contains
          excess = values_of_groups(tip_group, means(tip_group, -search%lack))/needed
          slope = values_of_groups(tip_group, means(tip_group, search%slope(search%tip)))/needed
          shortest = values_of_groups(tip_group, max(0.0_rk, least*body%rules%increment - accepted))
+         search%control%tolerance = tolerance
          call search%control%improve(excess, matrix_of_groups(tip_group, self%matrix)/needed, &
                                      slope, values_of_groups(tip_group, search%remaining), &
-                                     shortest, &
-                                     tolerance, advance, has_moved)
+                                     shortest, advance, has_moved)
          search%advance = advance(tip_group)
       end associate
    end subroutine correct

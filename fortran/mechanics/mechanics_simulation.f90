@@ -115,13 +115,6 @@ contains
       end associate
    end subroutine begin_part
 
-   !> Tips grow in equilibrium, and not by the Paris-type law.
-   pure logical function is_equilibrium(self)
-      class(mechanics_simulation_t), intent(in) :: self
-
-      is_equilibrium = self%scene%growth%enabled .and. self%scene%growth%law == "equilibrium"
-   end function is_equilibrium
-
    !> Add an accepted state to the summary and the event log, and keep its fields.
    subroutine note_state(self)
       class(mechanics_simulation_t), intent(inout) :: self
@@ -161,7 +154,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: any_grew
 
-      if (is_equilibrium(self)) then
+      if (self%scene%growth%in_equilibrium()) then
          call grow_in_equilibrium(self, timers, error)
          return
       end if
@@ -214,8 +207,8 @@ contains
          call self%dead_load%begin_increment(self)
          call find_limit(self, limit, timers, error)
          if (.not. allocated(error)) call self%increment%take(self, limit, timers, error)
-         if (.not. allocated(error)) then
-            call self%dead_load%end_increment(self, self%increment, timers, error)
+         if (self%increment%has_grown .and. .not. allocated(error)) then
+            call self%dead_load%end_increment(self, self%increment%is_loose, timers, error)
          end if
          if (self%is_cut) then  ! no equilibrium is left, and that is how the scene ends
             self%ending = "a part of the body has separated"//self%programme%not_reached()
@@ -320,7 +313,7 @@ contains
 
       network = self%network
       mesh = self%body%mesh
-      if (.not. (is_equilibrium(self) .and. allocated(self%shown_network%xy))) return
+      if (.not. (self%scene%growth%in_equilibrium() .and. allocated(self%shown_network%xy))) return
       network = self%shown_network
       mesh = self%shown_mesh
    end subroutine present_network

@@ -19,11 +19,8 @@ module twolevel_equilibrium
    use growth_segment, only: segment_t
    use growth_targets, only: target_none
    use growth_tip, only: tip_t
-   use twolevel_refinement, only: find_refinements
-   use twolevel_growth_errors, only: is_uncertain
-   use twolevel_excess, only: arrivals, at_joints, first_onset, onset, tolerance
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_levels_state, only: levels_state_t
-   use twolevel_moves, only: is_in_play, judge_tips, keep_together, separate_tips
    use twolevel_segments, only: are_at_ligaments, begin_segments, can_join, join_targets, &
                                 shared_excesses
    use twolevel_places, only: advances, place_tips
@@ -31,7 +28,9 @@ module twolevel_equilibrium
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_tip_layers, only: close_tips, find_tip_layers, is_viscous
-   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_moves, only: arrivals, at_joints, first_onset, is_in_play, judge_tips, &
+                             keep_together, onset, separate_tips, tolerance
+   use twolevel_refinement, only: find_refinements, is_uncertain
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
    implicit none(type, external)
@@ -201,7 +200,8 @@ contains
       call judge_tips(self%now%segment, self%now%interaction, &
                       shared_excesses(self%front_state_t, self%now, self%rules), &
                       are_at_ligaments(self%front_state_t, self%now, self%rules), &
-                      self%tip%arrested, search%kind, search%advances, moves, wants)
+                      search%kind, search%advances, moves, wants)
+      wants = wants .and. .not. self%tip%arrested
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
 

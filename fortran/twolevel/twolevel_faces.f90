@@ -20,7 +20,23 @@ module twolevel_faces
    implicit none(type, external)
    private
 
-   public :: coarse_jumps, face_map_t, match_faces
+   public :: coarse_values_t, coarse_jumps, face_map_t, match_faces
+
+   !> Coarse values that windows use.
+   type :: coarse_values_t
+      !> unknowns from which the following values are computed [m], [m], [Pa]
+      real(rk), allocatable :: of(:, :)
+      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      !> Displacement and gradient for an interpolation that is exact for quadratic fields
+      !! (nodal_fields)
+      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
+      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
+      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
+      !> (coarse fracture cells) of coarse_tip_layer where a tip lies in one, else 0 [1/m^(1/2)]
+      real(rk), allocatable :: viscous(:)
+      logical :: undrained = .false.  !< no fluid has moved since the load changed
+   end type coarse_values_t
 
    !> Map from the fracture cells of a window to the coarse fracture cells.
    type :: face_map_t

@@ -10,7 +10,7 @@ module twolevel_jumps
    use base_number, only: brief_text
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_growth_jump, summary_t
-   use twolevel_excess, only: tolerance
+   use twolevel_moves, only: tolerance
    use twolevel_onset, only: approach_t
    implicit none(type, external)
    private

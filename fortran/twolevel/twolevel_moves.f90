@@ -1,30 +1,88 @@
 !> Changes of the tip positions from one try of a step to the next: of single tips, of tip groups,
-!! or of all tips together.
+!! or of all tips together; and the share of a step after which tips reach their toughness or a
+!! target.
 module twolevel_moves
    use base_kinds, only: ik, rk
    use growth_advances, only: advances_t
    use growth_competition, only: numbered
-   use growth_interaction, only: tip_groups_t, lags_behind, interaction_t
+   use growth_interaction, only: interaction_t, lags_behind, tip_groups_t
    use growth_segment, only: segment_t, sliver
    use growth_tip, only: tip_t
-   use twolevel_excess, only: tolerance
    implicit none(type, external)
    private
 
-   public :: is_in_play, judge_tips, keep_together, separate_tips
+   public :: arrivals, at_joints, first_onset, is_in_play, judge_tips, keep_together, onset
+   public :: separate_tips, tolerance
+
+   real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
+
+   !> Admissible excess of a tip that reaches a target [-].
+   real(rk), parameter :: at_joints = 2.0_rk*tolerance
+
+   !> Deficit of K_eq/K_IC before a step below which a tip begins to grow at the start of the step
+   !! [-].
+   real(rk), parameter :: onset_lack = 5.0e-3_rk
 
 contains
+
+   !> Share of the step after which a tip begins to grow for the first time, in the tried state [-].
+   pure real(rk) function first_onset(before, tips, segments, toughness)
+      type(tip_t), intent(in) :: before(:)  !< tips at the start of the step
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+
+      first_onset = onset(before%excess(toughness), tips%excess(toughness), &
+                          .not. (tips%arrested .or. segments%gain > 0.0_rk))
+   end function first_onset
+
+   !> Share of the step after which the first of the tips that count reaches the toughness; 1 where
+   !! none begins to grow, or one does at the end of the step.
+   pure function onset(before, after, counts)
+      real(rk), intent(in) :: before(:), after(:)  !< excesses of the tips [-]
+      logical, intent(in) :: counts(:)
+      real(rk) :: onset
+      integer :: i
+
+      onset = 1.0_rk
+      do i = 1, size(before)
+         if (.not. counts(i) .or. before(i) > -onset_lack) cycle
+         if (after(i) <= tolerance) cycle
+         onset = min(onset, -before(i)/(after(i) - before(i)))
+      end do
+   end function onset
+
+   !> Estimated shares of the step after which tips at the ends of their segments have reached them
+   !! and exceed their toughness by more than `allowed`: the tips would have advanced further until
+   !! their excess vanishes [-]. Tips on a ligament exceed it when their intensity has risen so far.
+   pure function arrivals(before, tips, segments, toughness, allowed) result(share)
+      type(tip_t), intent(in) :: before(:)  !< tips at the start of the step
+      type(tip_t), intent(in) :: tips(:)
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: allowed  !< excess of K_eq over K_IC [-]
+      real(rk), dimension(size(tips)) :: beyond, excess, room, rise, share
+
+      excess = tips%excess(toughness)
+      room = segments%length - segments%accepted
+      beyond = max(0.0_rk, excess)/abs(segments%falling_slope())
+      share = room/max(room + beyond, tiny(1.0_rk))
+      share = share + (1.0_rk - share)*min(1.0_rk, allowed/max(excess, tolerance))
+      rise = excess - before%excess(toughness)
+      where (segments%stays() .and. rise > 0.0_rk)
+         share = 1.0_rk - max(0.0_rk, min(1.0_rk, (excess - allowed)/rise))
+      end where
+   end function arrivals
 
    !> Move the tips on open segments to where their excess is predicted to vanish; other tips begin
    !! a segment if they exceed the toughness. Tips of one group take the largest of their excesses,
    !! and so advance equally.
-   subroutine judge_tips(segments, interaction, alone, is_at_ligament, is_arrested, kind, &
+   subroutine judge_tips(segments, interaction, alone, is_at_ligament, kind, &
                          search, moves, wants)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
       type(interaction_t), intent(in) :: interaction
       real(rk), intent(in) :: alone(:)  !< (tips) excess of K_eq over K_IC of each tip [-]
       logical, intent(in) :: is_at_ligament(:)  !< (tips) only a ligament is left ahead of the tip
-      logical, intent(in) :: is_arrested(:)
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       !> search for the positions of the tips on their segments
       type(advances_t), intent(inout) :: search
@@ -37,7 +95,7 @@ contains
       ! advance. Without the increment, equal tips would all wait.
       where (is_at_ligament) excess = excess + 2.0_rk*tolerance
       call move_groups(segments, interaction, kind, excess, search, moves)
-      wants = .not. (moves .or. excess <= tolerance .or. is_arrested)
+      wants = .not. (moves .or. excess <= tolerance)
       where (segments%is_open) wants = wants .and. segments%is_complete()
    end subroutine judge_tips
 

@@ -10,11 +10,11 @@ module twolevel_notes
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
-   use twolevel_excess, only: tolerance
    use scene_types, only: growth_t, scene_t
    use twolevel_errors, only: tip_excess_t
    use twolevel_jumps, only: jumps_t
    use twolevel_levels_state, only: levels_state_t
+   use twolevel_moves, only: tolerance
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
    use twolevel_problem, only: coarse_problem_t

@@ -55,8 +55,7 @@ contains
          end do
          do i = 1, fine%fracture%n_cells
             if (fine%fracture%cell_fracture(i) /= f) cycle
-            call match_face(fine%face_s(:2, i), ends, is_tip, middle, is_wet, map%cell(:, i), &
-                            map%weight(i), map%face(:, i), map%middle(:, i))
+            call match_face(fine%face_s(:2, i), ends, is_tip, middle, is_wet, i, map)
          end do
       end do
    end function match_pressure
@@ -120,45 +119,42 @@ contains
    end subroutine find_middles
 
    !> The two middles that the pressure on a face follows from.
-   pure subroutine match_face(s, ends, is_tip, middle, is_wet, cell, weight, face, d)
+   pure subroutine match_face(s, ends, is_tip, middle, is_wet, i, map)
       real(rk), intent(in) :: s(2)  !< its ends [m]
       real(rk), intent(in) :: ends(2)  !< of the fracture [m]
       logical, intent(in) :: is_tip(2)
       real(rk), intent(in) :: middle(:)  !< middles of the coarse cells [m]
       logical, intent(in) :: is_wet(:)
-      integer(ik), intent(out) :: cell(2)
-      real(rk), intent(out) :: weight  !< of the second [-]
-      real(rk), intent(out) :: face(2)  !< the ends' distances from the tip; 0: there is none [m]
-      real(rk), intent(out) :: d(2)  !< the middles' distances from the tip [m]
+      integer(ik), intent(in) :: i  !< number of the face
+      type(pressure_map_t), intent(inout) :: map  !< 0 for this face
       real(rk) :: at
       integer(ik) :: end
 
       at = 0.5_rk*sum(s)
-      cell = 0
-      weight = 0.0_rk
-      face = 0.0_rk
-      d = 0.0_rk
-      do end = 1, 2
-         if (.not. is_tip(end)) cycle
-         cell(1) = minloc(abs(middle - ends(end)), dim=1, mask=is_wet)
-         if (cell(1) == 0) return
-         cell(2) = minloc(abs(middle - ends(end)), dim=1, &
-                          mask=is_wet .and. abs(middle - middle(cell(1))) > 0.0_rk)
+      associate (cell => map%cell(:, i), weight => map%weight(i), face => map%face(:, i), &
+                 d => map%middle(:, i))
+         do end = 1, 2
+            if (.not. is_tip(end)) cycle
+            cell(1) = minloc(abs(middle - ends(end)), dim=1, mask=is_wet)
+            if (cell(1) == 0) return
+            cell(2) = minloc(abs(middle - ends(end)), dim=1, &
+                             mask=is_wet .and. abs(middle - middle(cell(1))) > 0.0_rk)
+            if (cell(2) == 0) cell(2) = cell(1)
+            d = abs(middle(cell) - ends(end))
+            if (abs(at - ends(end)) > d(2)) cycle
+            if (d(2) > d(1)) then
+               face = abs(s - ends(end))
+               weight = mean_logarithm(face/d(1))/log(d(2)/d(1))
+            end if
+            return
+         end do
+         cell(1) = maxloc(middle, dim=1, mask=is_wet .and. middle <= at)
+         cell(2) = minloc(middle, dim=1, mask=is_wet .and. middle > at)
+         if (cell(1) == 0) cell(1) = cell(2)
          if (cell(2) == 0) cell(2) = cell(1)
-         d = abs(middle(cell) - ends(end))
-         if (abs(at - ends(end)) > d(2)) cycle
-         if (d(2) > d(1)) then
-            face = abs(s - ends(end))
-            weight = mean_logarithm(face/d(1))/log(d(2)/d(1))
-         end if
-         return
-      end do
-      cell(1) = maxloc(middle, dim=1, mask=is_wet .and. middle <= at)
-      cell(2) = minloc(middle, dim=1, mask=is_wet .and. middle > at)
-      if (cell(1) == 0) cell(1) = cell(2)
-      if (cell(2) == 0) cell(2) = cell(1)
-      if (cell(1) == cell(2)) return
-      weight = (at - middle(cell(1)))/(middle(cell(2)) - middle(cell(1)))
+         if (cell(1) == cell(2)) return
+         weight = (at - middle(cell(1)))/(middle(cell(2)) - middle(cell(1)))
+      end associate
    end subroutine match_face
 
    !> Mean of ln d between two distances with the weight 1/sqrt(d).

@@ -12,32 +12,17 @@ module twolevel_problem
    use coarse_own_pressure, only: own_pressure
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
-   use contact_law, only: contact_law_t
    use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t
    use scene_types, only: scene_t
+   use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
    use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
                              rate
    implicit none(type, external)
    private
 
-   public :: cell_heights, coarse_problem_t, coarse_values_t, discard
-
-   !> Coarse values that windows use.
-   type :: coarse_values_t
-      !> unknowns from which the following values are computed [m], [m], [Pa]
-      real(rk), allocatable :: of(:, :)
-      real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
-      !> Displacement and gradient for an interpolation that is exact for quadratic fields
-      !! (nodal_fields)
-      real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]
-      real(rk), allocatable :: gradient(:, :, :)  !< (2, 2, n_nodes) [-]
-      type(contact_law_t), allocatable :: law(:)  !< (coarse fracture cells)
-      logical, allocatable :: is_grown(:)  !< (coarse fracture cells) that filled as they opened
-      !> (coarse fracture cells) of coarse_tip_layer where a tip lies in one, else 0 [1/m^(1/2)]
-      real(rk), allocatable :: viscous(:)
-   end type coarse_values_t
+   public :: cell_heights, coarse_problem_t, discard
 
    !> Coarse mesh, its model, and the wells on it.
    type :: coarse_problem_t
@@ -194,7 +179,7 @@ contains
    end subroutine ask
 
    !> Advance a state by one step; the state changes only if the step converges.
-   subroutine advance(self, scene, dt, state, timers, report, error, held, control)
+   subroutine advance(self, scene, dt, state, timers, report, error, control)
       class(coarse_problem_t), intent(inout) :: self
       type(scene_t), intent(inout) :: scene  !< the values of its sides change with time
       real(rk), intent(in) :: dt  !< [s]
@@ -202,8 +187,8 @@ contains
       type(timers_t), intent(inout) :: timers
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), intent(in), optional :: held  !< controlled well with another control
-      integer(ik), intent(in), optional :: control  !< its control, a constant of coarse_wells
+      !> (controlled wells) other controls, constants of coarse_wells; 0: that of the scene
+      integer(ik), intent(in), optional :: control(:)
 
       if (any(self%model%sides%changes())) then
          call follow_sides(scene, state%time + dt, state%time)
@@ -211,23 +196,28 @@ contains
          if (allocated(error)) return
       end if
       call self%ask(scene, state%time, dt)
-      if (present(held)) self%model%wells%control(held) = control
+      if (present(control)) then
+         where (control > 0) self%model%wells%control = control
+      end if
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
 
    !> Compute the values that windows use, unless they are those of this state already.
-   subroutine find_values(self, state)
+   subroutine find_values(self, state, undrained)
       class(coarse_problem_t), intent(inout) :: self
       type(state_t), intent(in) :: state
+      logical, intent(in) :: undrained  !< no fluid has moved since the load changed
 
       if (allocated(self%values%of)) then
          if (all(abs(self%values%of - state%unknowns) <= 0.0_rk)) then
+            self%values%undrained = undrained
             call take_viscous(self)
             return
          end if
       end if
       self%values = coarse_values_t(of=state%unknowns, law=self%model%cells%law, &
-                                    is_grown=self%model%cells%roughness > 0.0_rk)
+                                    is_grown=self%model%cells%roughness > 0.0_rk, &
+                                    undrained=undrained)
       call take_viscous(self)
       associate (values => self%values, model => self%model, mesh => self%mesh, &
                  n => self%mesh%n_nodes)

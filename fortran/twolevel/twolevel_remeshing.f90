@@ -8,9 +8,8 @@ submodule(twolevel_state) twolevel_remeshing
    use coarse_model, only: rest_fluid
    use mesh_builder, only: remesh
    use mesh_types, only: mesh_map_t
-   use twolevel_handover, only: hand_over
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
-   use twolevel_transfer, only: transfer_cells, transfer_state
+   use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
    use twolevel_wells, only: transfer_shares
    implicit none(type, external)
 

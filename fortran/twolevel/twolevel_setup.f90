@@ -1,5 +1,5 @@
-!> What a scene with a fluid prescribes: expected magnitudes of its results, parameters of growth, the
-!! coarse mesh, and the fracture cells at the start.
+!> What a scene with a fluid prescribes: expected magnitudes of its results, parameters of growth,
+!! the coarse mesh, and the fracture cells at the start.
 module twolevel_setup
    use base_kinds, only: ik, pi, rk
    use coarse_in_situ, only: find_in_situ, in_situ_state_t

@@ -9,11 +9,11 @@ submodule(twolevel_state) twolevel_simulation
    use mesh_builder, only: build_mesh
    use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
-   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_limits, only: watch_mesh, watch_windows
    use twolevel_notes, only: note_excess
    use twolevel_stepping, only: refinement_t
-   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_refinement, only: find_refinements, note_uncertain_tips, refine_windows
    use twolevel_schedule, only: follow_sides
    use twolevel_setup, only: coarse_spec, first_cells, keep_above_zero, &
                               pressure_scale, rest_joints, rules_of_scene

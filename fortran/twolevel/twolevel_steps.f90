@@ -12,13 +12,13 @@ submodule(twolevel_state) twolevel_steps
    use report_limits, only: limit_time_error
    use report_slip, only: slip_step_t
    use scene_types, only: scene_t
-   use twolevel_refinement, only: refine_windows
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
-   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_limits, only: watch_levels
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
+   use twolevel_refinement, only: refine_windows
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch

@@ -38,9 +38,9 @@ contains
          end if
          call carry_intensities(scene, problem, windows, active, tips, now)
          active = active .and. tips%is_loaded()
-         call problem%find_values(now%coarse)
-         call windows%evaluate(scene, front%network, tips, active, has_reference, problem, &
-                               now%coarse, now%undrained, now%windows, error)
+         call problem%find_values(now%coarse, now%undrained)
+         windows%is_beside_body = has_reference
+         call windows%evaluate(scene, front, active, problem, now%coarse, now%windows, error)
          do i = 1, size(tips, kind=ik)
             if (.not. tips(i)%is_shut) cycle
             call tips(i)%shut()

@@ -151,15 +151,18 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       type(state_t) :: held
+      integer(ik) :: control(self%problem%model%wells%n_all)
       type(step_report_t) :: report
 
       share = 0.0_rk
       if (.not. was_at_limit .and. is_beyond(self%problem%model%wells, self%before, w)) return
       held = self%now%coarse
+      control = 0
+      control(w) = merge(control_pressure, control_rate, was_at_limit)
       associate (before => self%before, problem => self%problem, wells => self%problem%model%wells)
          call go_back(held, before)
-         call problem%advance(self%scene, dt, held, timers, report, error, held=w, &
-                              control=merge(control_pressure, control_rate, was_at_limit))
+         call problem%advance(self%scene, dt, held, timers, report, error, &
+                              control=control)
          share = 0.5_rk
          if (.not. allocated(error) .and. report%converged) then
             if (was_at_limit) then

@@ -21,12 +21,11 @@ module twolevel_window
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use report_scene, only: place_rocks, regions_of_other_rock, shape_body
-   use fine_tip_intensity, only: probe_of_tip, tip_intensity, tip_probe_t
+   use fine_tip_intensity, only: probe_of_tip, tip_intensity
+   use fine_tip_interaction, only: tip_probe_t
    use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
-   use twolevel_faces, only: face_map_t, match_faces
-   use twolevel_problem, only: coarse_values_t
-   use twolevel_window_edges, only: clear_edges
-   use twolevel_window_map, only: window_map_t
+   use twolevel_faces, only: coarse_values_t, face_map_t, match_faces
+   use twolevel_window_map, only: clear_edges, window_map_t
    use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
    use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_sides, only: window_sides, window_sides_t

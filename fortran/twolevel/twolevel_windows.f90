@@ -18,6 +18,7 @@ module twolevel_windows
    use scene_types, only: scene_t
    use report_scene, only: has_other_toughness, relative_toughness
    use fine_tip_types, only: intensity_t
+   use growth_front, only: front_state_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
@@ -49,6 +50,7 @@ module twolevel_windows
       integer(ik), allocatable :: window_of(:)  !< (tips) number of the window
       !> (tips) K_IC of the rock at each tip over K_IC of the scene [-]
       real(rk), allocatable :: resistance(:)
+      logical :: is_beside_body = .false.  !< the windows are compared with the body as one window
    contains
       procedure :: begin
       procedure :: begin_step
@@ -148,37 +150,31 @@ contains
 
    !> Evaluate intensities, drive and rosette radius of the active tips in a state of the coarse
    !! level.
-   subroutine evaluate(self, scene, network, tips, active, is_beside_body, problem, state, &
-                       undrained, known, error)
+   subroutine evaluate(self, scene, front, active, problem, state, known, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network  !< of the fine level
-      type(tip_t), intent(inout) :: tips(:)
+      type(front_state_t), intent(inout) :: front
       logical, intent(in) :: active(:)  !< (tips) active tips
-      logical, intent(in) :: is_beside_body  !< the windows are compared with the body as one window
       type(coarse_problem_t), intent(in) :: problem  !< with the values of the state
       type(state_t), intent(in) :: state
-      logical, intent(in) :: undrained  !< no fluid has moved since the load changed
       type(windows_state_t), intent(inout) :: known
       type(error_t), allocatable, intent(out) :: error
       type(failure_t) :: failure(size(self%slot))
       integer(ik) :: i, w, largest_first(size(self%slot))
 
       if (has_other_toughness(scene)) then
-         self%resistance = [(relative_toughness(scene, network, tips(i)%fracture, tips(i)%end), &
-                             i=1, size(tips))]
+         self%resistance = [(relative_toughness(scene, front%network, front%tip(i)%fracture, &
+                                                front%tip(i)%end), i=1, size(front%tip))]
       end if
       largest_first = by_size(self%slot)
       !$omp parallel private(w)
       !$omp single
       do i = 1, size(self%slot, kind=ik)
          w = largest_first(i)
-         if (.not. self%is_active(w, tips)) cycle
+         if (.not. self%is_active(w, front%tip)) cycle
          if (.not. any(active(self%slot(w)%window%serves))) cycle
          !$omp task firstprivate(w) default(shared)
-         call evaluate_window(self%slot(w), scene, network, tips, is_beside_body, problem, state, &
-                              undrained, self%resistance, known%tip, known%history(w), &
-                              failure(w)%error)
+         call evaluate_window(self, w, scene, front, problem, state, known, failure(w)%error)
          !$omp end task
       end do
       !$omp end single
@@ -215,28 +211,25 @@ contains
       end do
    end subroutine first_failure
 
-   !> Evaluate the tips of one window. No other window or tip changes.
-   subroutine evaluate_window(slot, scene, network, tips, is_beside_body, problem, state, &
-                              undrained, resistance, seen, history, error)
-      type(slot_t), intent(inout) :: slot
+   !> Evaluate the tips of window w. No other window or tip changes: threads evaluate others.
+   subroutine evaluate_window(self, w, scene, front, problem, state, known, error)
+      type(windows_t), intent(inout) :: self
+      integer(ik), intent(in) :: w
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(tip_t), intent(inout) :: tips(:)
-      logical, intent(in) :: is_beside_body
+      type(front_state_t), intent(inout) :: front
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      logical, intent(in) :: undrained
-      real(rk), intent(in) :: resistance(:)  !< (tips) [-]
-      type(window_tip_t), intent(inout) :: seen(:)  !< (tips)
-      type(window_history_t), intent(inout) :: history
+      type(windows_state_t), intent(inout) :: known
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
 
-      if (has_to_be_meshed(slot%window, tips)) then
-         call renew(slot, scene, network, tips, is_beside_body, seen, history, error)
+      if (has_to_be_meshed(self%slot(w)%window, front%tip)) then
+         call renew(self%slot(w), scene, front%network, front%tip, self%is_beside_body, known%tip, &
+                    known%history(w), error)
          if (allocated(error)) return
       end if
-      associate (window => slot%window)
+      associate (window => self%slot(w)%window, undrained => problem%values%undrained, &
+                 seen => known%tip)
          if (.not. window%made%is_projected) then
             call window%project(problem%mesher, problem%mesh, problem%values, error)
             if (allocated(error)) return
@@ -245,17 +238,17 @@ contains
             call window%set_rock(scene, undrained, error)
             if (allocated(error)) return
          end if
-         call window%find_intensities(scene, problem%mesh, problem%values, state, seen, history, &
-                                      error)
+         call window%find_intensities(scene, problem%mesh, problem%values, state, seen, &
+                                      known%history(w), error)
          if (allocated(error)) return
          do i = 1, size(window%serves, kind=ik)
-            associate (t => window%serves(i), tip => tips(window%serves(i)))
+            associate (t => window%serves(i), tip => front%tip(window%serves(i)))
                if (.not. tip%is_free) cycle
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
                tip%rosette_radius = window%mesh%fracture%tip_radius(window%at(i))
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &
                                         window%crack_modulus(window%at(i)))
-               call tip%resist(resistance(t))
+               call tip%resist(self%resistance(t))
             end associate
          end do
       end associate

@@ -13,7 +13,8 @@ program test_fine_tip_plate
    use fine_mesh, only: tip_collapsed, tip_plain, tip_quarter
    use fine_model, only: fine_model_t
    use fine_recovery, only: recover_by_patches, recovery_t
-   use fine_tip_intensity, only: probe_of_tip, intensity_of_tip, tip_probe_t
+   use fine_tip_intensity, only: probe_of_tip, intensity_of_tip
+   use fine_tip_interaction, only: tip_probe_t
    use fine_tip_types, only: intensity_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t, network_t

@@ -45,10 +45,11 @@ contains
 
       advance = start
       matrix = reshape([-0.5_rk*fall(1), 0.0_rk, 0.0_rk, -1.5_rk*fall(2)], [2, 2])  ! poor estimate
+      control%tolerance = 5.0e-3_rk
       do try = 1, 15
          excess = offset - fall*advance
          excess = excess - maxval(excess)  ! the load is such that no tip exceeds its toughness
-         call control%improve(excess, matrix, [1.0_rk, 1.0_rk], room, [0.0_rk, 0.0_rk], 5.0e-3_rk, &
+         call control%improve(excess, matrix, [1.0_rk, 1.0_rk], room, [0.0_rk, 0.0_rk], &
                               advance, has_moved)
          if (.not. has_moved) exit
       end do

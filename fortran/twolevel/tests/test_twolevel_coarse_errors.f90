@@ -8,10 +8,9 @@ program test_twolevel_coarse_errors
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors, layer_at_tip, layer_t
    use twolevel_faces, only: coarse_jumps
    use twolevel_state, only: two_levels_t
-   use twolevel_thin_layers, only: layer_at_tip, layer_t
-   use twolevel_coarse_errors, only: estimate_coarse_errors
    implicit none(type, external)
 
    real(rk), parameter :: ends_x(2) = [0.8_rk, 1.2_rk], ends_y(2) = [0.9_rk, 1.1_rk]

@@ -12,8 +12,8 @@ program test_twolevel_handover
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
-   use twolevel_handover, only: hand_over
    use twolevel_state, only: two_levels_t
+   use twolevel_transfer, only: hand_over
    implicit none(type, external)
 
    real(rk), parameter :: increment = 0.03_rk  !< l_max [m]

@@ -14,11 +14,11 @@ program test_twolevel_refinement
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use report_rows, only: event_growth_uncertain
-   use twolevel_refinement, only: find_refinements, refine_windows, note_uncertain_tips
-   use twolevel_growth_errors, only: growth_error, growth_error_t, is_uncertain
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: refinement_t
-   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_refinement, only: find_refinements, growth_error, growth_error_t, is_uncertain, &
+                                  note_uncertain_tips, refine_windows
    implicit none(type, external)
 
    real(rk), parameter :: a = 0.05_rk  !< half-length [m]
@@ -202,7 +202,7 @@ contains
    !> A refinement that has not reduced the error is not repeated: neither smaller elements nor a
    !! larger window, until the error has become twice as large.
    subroutine test_no_effect()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       logical :: any_improved
       integer :: i
 
@@ -225,7 +225,7 @@ contains
 
    !> An error to which elements and edge contribute nearly equally.
    subroutine set_error(simulation, share)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: share  !< of the toughness [-]
 
       simulation%tip%intensity%k2_error = share*usual_toughness

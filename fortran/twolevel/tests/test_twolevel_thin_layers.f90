@@ -2,7 +2,7 @@
 program test_twolevel_thin_layers
    use base_kinds, only: rk
    use testing_checks, only: checks_t
-   use twolevel_thin_layers, only: layer_t, thin_layer_errors
+   use twolevel_coarse_errors, only: layer_t, thin_layer_errors
    implicit none(type, external)
 
    type(checks_t) :: checks

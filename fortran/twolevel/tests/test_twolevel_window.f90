@@ -14,8 +14,8 @@ program test_twolevel_window
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
-   use twolevel_state, only: two_levels_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_state, only: two_levels_t
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
