@@ -144,7 +144,7 @@ contains
          end do
       end if
       if (.not. scene%material%toughness > 0.0_rk) record = sheet%find("material")
-      if (record > 0) call refuse(error, sheet, record, "toughness", "is 0 but must be positive "// &
+     if (record > 0) call refuse(error, sheet, record, "toughness", "is 0 but must be positive "// &
                                   "in a scene without &fluid, whose fractures would grow under "// &
                                   "any load")
    end subroutine check_toughness
