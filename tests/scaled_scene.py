@@ -50,7 +50,7 @@ DIMENSIONS: dict[str, tuple[float, float, float]] = {
     "kg/m3": (-2.0, 1.0, 2.0),
 }
 
-# Defaults with a dimension, in groups that a scene need not have.
+# Defaults with a dimension, in groups that a scene with a fluid need not have.
 DEFAULTS = {
     "growth": {"new_aperture": 1.0e-5},
     "output": {
@@ -78,7 +78,7 @@ class Units:
 def in_units(text: str, units: Units) -> str:
     """Text of a scene in other units."""
     scene = namelist_groups(text)
-    for group, values in DEFAULTS.items():
+    for group, values in DEFAULTS.items() if "fluid" in scene else ():
         entry = scene.setdefault(group, f90nml.Namelist())
         for name, value in values.items():
             entry.setdefault(name, value)

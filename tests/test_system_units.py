@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from scaled_scene import Units, differences, in_units, table
-from system_scene import run
+from system_scene import TOP, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -65,3 +65,15 @@ def test_growth_in_other_units(tmp_path: Path, given: Path, units: Units, tolera
         found = differences(wanted, table(out / name, units), ROUNDING)
         assert len(found) > 15
         assert {column: error for column, error in found.items() if not error <= tolerance} == {}
+
+
+@pytest.mark.parametrize("scene", ["crossing", "l_panel"])
+def test_shipped_scenes_in_other_units(tmp_path: Path, scene: str) -> None:
+    """A network with flow, slip and joints, and a body without a fluid: no length is absolute."""
+    text = (TOP / f"inputs/examples/{scene}.nml").read_text()
+    units = Units(length=4.0, stress=0.25, time=16.0)
+    one = run(tmp_path, in_units(text, Units()), "one")
+    other = run(tmp_path, in_units(text, units), "other")
+    for name in ("history.csv", "tips.csv"):
+        found = differences(table(one / name), table(other / name, units), ROUNDING)
+        assert {column: error for column, error in found.items() if not error <= 1.0e-12} == {}

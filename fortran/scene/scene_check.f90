@@ -127,7 +127,7 @@ contains
       end associate
    end subroutine check_material
 
-   !> Without a fluid, loads grow until K_eq is K_IC: there is none of them where K_IC is 0.
+   !> Without a fluid, loads grow until K_eq is K_IC; with a K_IC of 0 no load would do.
    pure subroutine check_toughness(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -144,9 +144,9 @@ contains
          end do
       end if
       if (.not. scene%material%toughness > 0.0_rk) record = sheet%find("material")
-      if (record > 0) call refuse(error, sheet, record, "toughness", "is 0 but must be positive "// &
-                                  "in a scene without &fluid, whose fractures would grow under "// &
-                                  "any load")
+      if (record == 0) return
+      call refuse(error, sheet, record, "toughness", "is 0 but must be positive in a scene "// &
+                  "without &fluid, whose fractures would grow under any load")
    end subroutine check_toughness
 
    !> Fine level and growth are consistent with the fractures and the coarse level.

@@ -25,11 +25,12 @@ module twolevel_setup
 
 contains
 
-   !> Replace a toughness of 0 by one that changes nothing: K_eq over it is a finite number, and
-   !! viscosity has its limit without toughness (coarse_tip_layer).
+   !> Replace a toughness of 0, or next to it, by one that changes nothing that a run resolves: K_eq
+   !! over it is a finite number, viscosity has its limit without toughness (coarse_tip_layer), and
+   !! a tip that is shut lacks more of it than the tolerance of equilibrium.
    pure subroutine keep_above_zero(scene)
       type(scene_t), intent(inout) :: scene
-      real(rk), parameter :: negligible = 1.0e-6_rk  ! share of K at the pressure of the loads
+      real(rk), parameter :: negligible = 2.0e-4_rk  ! share of K at the pressure of the loads
       real(rk), parameter :: strain = 1.0e-10_rk  ! where there are none
       real(rk) :: least
       integer :: i
