@@ -55,8 +55,8 @@ class Profile:
         """Instructions that look for free memory: they depend on what libraries have left."""
         return sum(count for name, count in self.functions.items() if _ALLOCATOR.match(name))
 
-    def rooms(self) -> Counter[str]:
-        """Instructions by room: the first word of a module's name."""
+    def components(self) -> Counter[str]:
+        """Instructions by component: the first word of a module's name."""
         count: Counter[str] = Counter()
         for name, instructions in self.functions.items():
             if _procedure_of(name):

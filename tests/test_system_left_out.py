@@ -154,27 +154,32 @@ def test_what_is_left_out_is_not_called(profiles: dict[str, Profile], scene: str
 def test_what_is_left_out_saves(
     profiles: dict[str, Profile], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Each part of a scene costs; without it its rooms execute nothing, or less."""
-    rooms = ("mechanics", "coarse", "twolevel", "fine", "contact", "growth", "report")
+    """Each part of a scene costs; without it its components execute nothing, or less."""
+    components = ("mechanics", "coarse", "twolevel", "fine", "contact", "growth", "report")
     with capsys.disabled():
-        print("\nthousands of instructions" + "".join(f"{room:>10}" for room in rooms))
+        print(
+            "\nthousands of instructions" + "".join(f"{component:>10}" for component in components)
+        )
         for name, counts in profiles.items():
-            by_room = counts.rooms()
-            numbers = "".join(f"{by_room[room] / 1e3:>10.0f}" for room in rooms)
+            by_component = counts.components()
+            numbers = "".join(f"{by_component[component] / 1e3:>10.0f}" for component in components)
             print(f"{name:<25}{numbers}")
     chains = (
         ("plate", "open crack", "its intensities", "and VTU files"),
         ("porous body", "with a well", "two levels"),
     )
     for chain in chains:
-        totals = [sum(profiles[name].rooms()[room] for room in rooms) for name in chain]
+        totals = [
+            sum(profiles[name].components()[component] for component in components)
+            for name in chain
+        ]
         assert totals == sorted(totals)
         assert len(set(totals)) == len(totals)
 
 
 @pytest.mark.usefixtures("program")
 def test_mechanics_links_nothing_of_the_fluid() -> None:
-    """The room's own test program holds no symbol of the coarse level or of both levels in time."""
+    """The test program of the component has no symbol of the coarse level or of both levels."""
     names = shutil.which("nm")
     assert names is not None  # comes with the compiler
     build = TOP / "build" / "release" / "fortran"

@@ -92,11 +92,6 @@ def test_a_viscous_fluid_holds_them_together(tmp_path: Path) -> None:
     assert "bifurcation" not in [row["kind"] for row in rows(out / "events.csv")]
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="since windows take the rock's own pressure, K of windows and body differ by 14 % of "
-    "K_IC in the first microsecond, while layers are far thinner than cells: growth is not decided",
-)
 def test_none_goes_along_below_its_toughness(tmp_path: Path) -> None:
     """At the start all four tips grow alike; after that the well drives those of its fracture.
 

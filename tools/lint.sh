@@ -9,8 +9,8 @@ readonly python_folders=(post tests tools verification)
 readonly linters=(
     'shellcheck|check_shell'
     'fprettify|check_fortran_format'
-    'rooms|check_rooms'
-    'walks|check_walks'
+    'components|check_components'
+    'call sequences|check_call_sequences'
     'fortitude|check_fortran'
     'clang-format|format_cpp --dry-run -Werror'
     'clang-tidy|check_cpp'
@@ -60,8 +60,8 @@ check_fortran_format() {
     [[ -z $difference ]] && ((status == 0))
 }
 
-check_rooms() { "$venv_python" tools/rooms.py; }
-check_walks() { "$venv_python" tools/walks.py; }
+check_components() { "$venv_python" tools/components.py; }
+check_call_sequences() { "$venv_python" tools/call_sequences.py; }
 
 # Settings: fortitude.toml.
 check_fortran() {

@@ -1,6 +1,6 @@
 // Growth in a body with singular tips: graph, sizes and rosettes are those of a new mesh of the
 // whole body (create.cpp); what lies outside the patches, and the rosettes of tips that stay, are
-// those of the old one. Fracture cells within the patches are divided anew, so they grow again
+// those of the old one. Fracture cells within the patches are divided again, so they grow again
 // behind a tip that has moved on.
 #include "errors.hpp"
 #include "mesh.hpp"

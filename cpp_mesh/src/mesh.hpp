@@ -71,8 +71,9 @@ Mesh create_mesh_sized(const Specification& specification, const Network& networ
 Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2>& centres,
             double radius, double size);
 
-// A mesh of a body with singular tips after growth, made anew only around the tips that have moved;
-// the radii are those of all tips. Throws MeshError where that does not go: make a new mesh then.
+// A mesh of a body with singular tips after growth, made again only around the tips that have
+// moved; the radii are those of all tips. Throws MeshError where that does not go: make a new mesh
+// then.
 Mesh grow_mesh(const Mesh& old_mesh, const Network& network, const RosetteRadii& radii);
 
 // The cells of a mesh, whose nodes have moved along with tips that have gone on, or back, along the

@@ -1,4 +1,4 @@
-// The part of a mesh that is taken out and meshed anew.
+// The part of a mesh that is taken out and meshed again.
 #ifndef CPP_MESH_PATCH_HPP
 #define CPP_MESH_PATCH_HPP
 
@@ -27,7 +27,7 @@ struct PatchPart {
     std::vector<int> cells;
 };
 
-// The old cells that are made anew, and the old rosettes that are not.
+// The old cells that are made again, and the old rosettes that are not.
 struct Patch {
     std::vector<char> is_made_anew; // by cell
     std::vector<PatchPart> parts;
@@ -41,7 +41,7 @@ struct Patch {
         return std::all_of(edges.begin(node), edges.end(node),
                            [&](int c) { return is_made_anew[c] != 0; });
     }
-    // Cells on both sides of it are made anew.
+    // Cells on both sides of it are made again.
     bool holds(const EdgeTable& edges, const FractureCell& cell) const {
         return is_made_anew[edges.cell(cell.node[0], cell.node[1])] &&
                is_made_anew[edges.cell(cell.node[1], cell.node[0])];

@@ -103,7 +103,7 @@ private:
         }
     }
 
-    // A rosette with some cells in the patch is made anew as a whole.
+    // A rosette with some cells in the patch is made again as a whole.
     bool give_up_cut_rosettes() {
         bool has_changed = false;
         for (std::size_t k = 0; k < old_.rosettes.size(); ++k) {

@@ -1,4 +1,4 @@
-// Which old cells are made anew.
+// Which old cells are made again.
 #ifndef CPP_MESH_PATCH_CHOICE_HPP
 #define CPP_MESH_PATCH_CHOICE_HPP
 

@@ -1,4 +1,4 @@
-// The one mesher of patches: cells of an old mesh are taken out, and the hole is meshed anew.
+// The one mesher of patches: cells of an old mesh are taken out, and the hole is meshed again.
 #ifndef CPP_MESH_PATCH_MESHER_HPP
 #define CPP_MESH_PATCH_MESHER_HPP
 
@@ -9,7 +9,7 @@ namespace cpp_mesh {
 
 // What the two levels want differently.
 struct PatchStyle {
-    std::vector<FractureCell> kept_cells; // old cells on edges of the graph that are divided anew
+    std::vector<FractureCell> kept_cells; // old cells on edges of the graph that are divided again
     // Nodes on the rim inside the body are smoothed with those in the patch where nothing holds
     // them; else they stay where they are.
     bool smooths_rim = false;

@@ -1,5 +1,5 @@
 // Growth in bodies with rosettes: what a patch leaves alone, and how far the mesh is one that could
-// have been made anew.
+// have been made again.
 #include "api_mesh.hpp"
 #include "checks.hpp"
 
@@ -81,8 +81,8 @@ std::set<Point> ring_of(const ApiMesh& mesh, int fracture, int end) {
     return ring;
 }
 
-// The same body, split the same way, with the rosettes and the arc lengths of a mesh made anew, and
-// with cells of about its sizes and shapes.
+// The same body, split the same way, with the rosettes and the arc lengths of a mesh made again,
+// and with cells of about its sizes and shapes.
 void check_like_new(Checks& checks, const ApiMesh& grown, const ApiMesh& anew,
                     const std::string& name) {
     checks.is_true(grown.error.empty(), name + ": " + grown.error);

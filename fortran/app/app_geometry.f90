@@ -5,7 +5,7 @@ module app_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use base_plane, only: point_distance
+   use base_plane, only: norm2, point_distance
    use growth_network, only: end_pieces, network_of_scene
    use mesh_builder, only: check_mesh_input, joint_t
    use mesh_faults, only: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture, &

@@ -6,7 +6,7 @@ module app_size
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, pi, rk
    use base_number, only: brief_text
-   use base_plane, only: polygon_area
+   use base_plane, only: norm2, polygon_area
    use growth_network, only: network_of_scene, total_length
    use mechanics_results, only: touches
    use scene_outline, only: outline_of_scene, outline_t

@@ -9,10 +9,23 @@ module base_plane
    implicit none(type, external)
    private
 
-   public :: barycentric, cross, crosses, left_part, meeting, nearest_place, nearest_share
+   public :: barycentric, cross, crosses, left_part, meeting, nearest_place, nearest_share, norm2
    public :: point_distance, polygon_area, triangle_area, turned, turned_left
 
+   !> The intrinsic of gfortran rounds numbers above 1 and below it in different ways: lengths and
+   !! normals would depend on the unit of length.
+   interface norm2
+      module procedure magnitude
+   end interface norm2
+
 contains
+
+   !> The length of a vector; the same digits in units that differ by a power of 2.
+   pure real(rk) function magnitude(v)
+      real(rk), intent(in) :: v(:)  !< [any unit]
+
+      magnitude = sqrt(dot_product(v, v))
+   end function magnitude
 
    !> The component of u x v out of the plane: positive if v points to the left of u.
    pure real(rk) function cross(u, v)

@@ -15,6 +15,7 @@
 module coarse_condensed
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_coupling, only: coupling_t, find_coupling
    use coarse_factors, only: coarse_factors_t
    use coarse_layout, only: condensed_layout_t

@@ -205,7 +205,7 @@ contains
          behind = reach(3 - tip)
          length(tip) = reach(tip)*log(2.0_rk)
          length(3 - tip) = reach(tip)*log(1.0_rk + 0.5_rk*behind/reach(tip))
-         weight = 1.5_rk*eq%condensed%length(cells)*sqrt(reach(tip))/sum(reach)**1.5_rk
+         weight = 1.5_rk*eq%condensed%length(cells)*sqrt(reach(tip)/sum(reach))/sum(reach)
          associate (b => eq%cells%viscous(cells(tip)), d => reach(tip))
             if (b > 0.0_rk) then
                length(tip) = pressure_shape(b, d) - pressure_shape(b, 0.5_rk*d)

@@ -14,6 +14,7 @@
 !! without strain, sigma_0 = -alpha p_0 I, and the tractions of the scene are the total ones.
 module coarse_in_situ
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_layout, only: condensed_layout_t
    use mesh_types, only: fracture_mesh_t
    use scene_types, only: scene_t

@@ -18,6 +18,7 @@ module coarse_joints
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
+   use base_plane, only: norm2
    use coarse_slopes, only: slopes_t
    use mesh_types, only: fracture_mesh_t, mesh_t, point_boundary, point_interior, point_tip
    use scene_sides, only: boundary_side_t

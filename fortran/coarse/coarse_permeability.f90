@@ -19,7 +19,7 @@
 !! have left, so regions that share an outline leave nothing between them.
 module coarse_permeability
    use base_kinds, only: ik, rk
-   use base_plane, only: barycentric, left_part, polygon_area, triangle_area, turned_left
+   use base_plane, only: barycentric, left_part, norm2, polygon_area, triangle_area, turned_left
    use coarse_rock, only: any_differ, make_room, mean_mobility, new_rock, number_stiffnesses, &
                           resistivity_of, rock_t, set_solid, solid_t
    use mesh_geometry, only: cell_area

@@ -10,6 +10,7 @@ module coarse_regions
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use base_lists, only: inverted, lists_t
+   use base_plane, only: norm2
    use coarse_elimination, only: response_t
    use coarse_layout, only: block_count, end_block
    use mesh_geometry, only: corner_geometry, split_by_kind

@@ -21,6 +21,7 @@ module coarse_sparse_step
    use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_condensed, only: condensed_t
    use coarse_slopes, only: slopes_t
    use coarse_sparse_matrix, only: assemble_rock, assemble_rows

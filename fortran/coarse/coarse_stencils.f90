@@ -25,6 +25,7 @@
 module coarse_stencils
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t

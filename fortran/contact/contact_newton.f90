@@ -26,6 +26,7 @@
 !! guess.
 module contact_newton
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_tolerances, only: same_value
    use contact_law, only: contact_law_t
    implicit none(type, external)

@@ -20,6 +20,7 @@
 !! f_tau, as for a traction on side -; with sigma n as above, friction would then do positive work.)
 module contact_point
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_tolerances, only: round_off
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick, strength_t
    implicit none(type, external)

@@ -9,6 +9,7 @@ module fine_boundary
    use base_groups, only: groups_t, single_groups
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
+   use base_plane, only: norm2
    use fine_mesh, only: fine_mesh_t
    implicit none(type, external)
    private

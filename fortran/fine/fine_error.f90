@@ -13,7 +13,7 @@
 module fine_error
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_plane, only: triangle_area
+   use base_plane, only: norm2, triangle_area
    use fine_elasticity, only: elasticity_t
    use fine_element, only: tip_rule, tip_rule_size
    use fine_faces, only: face_loaded
@@ -166,26 +166,28 @@ contains
       real(rk), allocatable, intent(out) :: shrinkage(:)  !< (n_tips) new radius over the old [-]
       real(rk), parameter :: smooth_order = 2.0_rk  ! p of quadratic elements
       real(rk), parameter :: finest = 0.1_rk, coarsest = 4.0_rk  ! change of size at once
-      real(rk) :: share, here
+      real(rk) :: share, here, allowed
+      real(rk) :: element(fine%n_cells)  ! over the allowed error of all [-]
       integer(ik) :: tip_of_cell(fine%n_cells), cell, tip
 
       tip_of_cell = 0
       do tip = 1, fine%fracture%n_tips
         where (any(fine%cell_nodes(1:3, :) == fine%fracture%tip_node(tip), dim=1)) tip_of_cell = tip
       end do
-      share = share_of_element(sum(estimate%element**(2.0_rk/(smooth_order + 1.0_rk)), &
-                                   mask=tip_of_cell == 0), fine%fracture%n_tips, &
-                               relative*hypot(estimate%solution, estimate%total))
+      allowed = relative*hypot(estimate%solution, estimate%total)
+      element = estimate%element/max(tiny(allowed), allowed)
+      share = share_of_element(sum(element**(2.0_rk/(smooth_order + 1.0_rk)), &
+                                   mask=tip_of_cell == 0), fine%fracture%n_tips)
 
       allocate (sizes(fine%n_cells), shrinkage(fine%fracture%n_tips))
       do tip = 1, fine%fracture%n_tips
-         here = sum(estimate%element**2, mask=tip_of_cell == tip)
+         here = sum(element**2, mask=tip_of_cell == tip)
          shrinkage(tip) = within(tip_elements*share**2/max(tiny(share), here))
       end do
       do cell = 1, fine%n_cells
          sizes(cell) = size_of(cell)
          if (estimate%left_out(cell)) cycle
-         sizes(cell) = sizes(cell)*within((share/max(tiny(share), estimate%element(cell))) &
+         sizes(cell) = sizes(cell)*within((share/max(tiny(share), element(cell))) &
                                           **(1.0_rk/(smooth_order + 1.0_rk)))
       end do
       call spread_to_tips(fine, tip_of_cell > 0, sizes)
@@ -209,22 +211,20 @@ contains
 
    end subroutine wanted_sizes
 
-   !> The error s that each element may have: n(s) s**2 + 2 m s**2 (tips) is the square of what is
-   !! allowed, n(s) = sum s**(-2/3). The sum rises with s; by bisection.
-   pure real(rk) function share_of_element(sum_of_powers, n_tips, allowed) result(share)
-      real(rk), intent(in) :: sum_of_powers  !< of the errors**(2/3), tips left out [(J/m)^1/3]
+   !> The error s that each element may have, over what is allowed: n(s) s**2 + 2 m s**2 (tips) is 1,
+   !! n(s) = sum s**(-2/3). The sum rises with s; by bisection.
+   pure real(rk) function share_of_element(sum_of_powers, n_tips) result(share)
+      real(rk), intent(in) :: sum_of_powers  !< of the errors**(2/3), tips left out [-]
       integer(ik), intent(in) :: n_tips
-      real(rk), intent(in) :: allowed  !< [(J/m)^1/2]
       integer, parameter :: halvings = 60
       real(rk) :: low, middle
       integer :: k
 
       low = 0.0_rk
-      share = allowed
+      share = 1.0_rk
       do k = 1, halvings
          middle = 0.5_rk*(low + share)
-         if (sum_of_powers*middle**(4.0_rk/3.0_rk) + tip_elements*n_tips*middle**2 &
-             > allowed**2) then
+         if (sum_of_powers*middle**(4.0_rk/3.0_rk) + tip_elements*n_tips*middle**2 > 1.0_rk) then
             share = middle
          else
             low = middle
@@ -237,15 +237,16 @@ contains
       type(fine_mesh_t), intent(in) :: fine
       logical, intent(in) :: at_tip(:)  !< (n_cells)
       real(rk), intent(inout) :: sizes(:)  !< (n_cells) [m]
-      real(rk) :: total(fine%n_vertices)
+      real(rk) :: largest, total(fine%n_vertices)
       integer(ik) :: n_around(fine%n_vertices), cell
 
+      largest = maxval(sizes)
       total = 0.0_rk
       n_around = 0
       do cell = 1, fine%n_cells
          if (at_tip(cell)) cycle
          associate (corners => fine%cell_nodes(1:3, cell))
-            total(corners) = total(corners) + log(sizes(cell))
+            total(corners) = total(corners) + log(sizes(cell)/largest)
             n_around(corners) = n_around(corners) + 1
          end associate
       end do
@@ -253,7 +254,7 @@ contains
          if (.not. at_tip(cell)) cycle
          associate (corners => fine%cell_nodes(1:3, cell))
             if (.not. any(n_around(corners) > 0)) cycle
-            sizes(cell) = exp(sum(total(corners))/sum(n_around(corners)))
+            sizes(cell) = largest*exp(sum(total(corners))/sum(n_around(corners)))
          end associate
       end do
    end subroutine spread_to_tips

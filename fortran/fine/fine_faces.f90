@@ -14,7 +14,7 @@
 module fine_faces
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_plane, only: turned_left
+   use base_plane, only: norm2, turned_left
    use contact_law, only: contact_law_t, is_valid
    use fine_boundary, only: fine_boundary_t
    use fine_element, only: line_resultants

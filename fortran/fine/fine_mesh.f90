@@ -2,7 +2,7 @@
 module fine_mesh
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_plane, only: cross
+   use base_plane, only: cross, norm2
    use base_tolerances, only: same_place
    use fine_element, only: evaluate_element, node_within
    use mesh_types, only: fracture_mesh_t, mesh_t

@@ -11,6 +11,7 @@
 module fine_recovery
    use algebra_lapack, only: dpotrf, dpotrs
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_elasticity, only: elasticity_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -222,7 +223,7 @@ contains
       field%kolosov = rock%kolosov()
       field%shear_modulus = rock%shear_modulus()
       ! The unit of the intensities that makes all columns of one size.
-      unit = sum(samples%area(samples%around%of(node)))**0.25_rk
+      unit = sqrt(sqrt(sum(samples%area(samples%around%of(node)))))
       normal = 0.0_rk
       right = 0.0_rk
       do i = 1, samples%around%length(node)

@@ -5,7 +5,7 @@
 !! The traction on the fracture faces, for the interaction integral.
 module fine_tip_domain
    use base_kinds, only: ik, rk
-   use base_plane, only: point_distance
+   use base_plane, only: norm2, point_distance
    use base_tolerances, only: same_direction, same_place
    use fine_elasticity, only: is_same, rocks_t
    use fine_element, only: line_resultants, tip_rule, tip_rule_size

@@ -6,6 +6,7 @@
 !! Derivatives along the crack have Phi', Omega' and Phi'' in the place of Phi, Omega and Phi'.
 module fine_tip_field
    use base_kinds, only: ik, pi, rk
+   use base_plane, only: norm2
    implicit none(type, external)
    private
 

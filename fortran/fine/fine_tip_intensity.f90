@@ -2,7 +2,7 @@
 module fine_tip_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, pi, rk
-   use base_plane, only: turned_left
+   use base_plane, only: norm2, turned_left
    use base_tolerances, only: round_off, same_value
    use fine_faces, only: face_contact
    use fine_loads, only: fine_loads_t

@@ -21,6 +21,7 @@
 !! that of the initial stress is the symmetric part of hat u,1 (x) q', and q hat e,1.
 module fine_tip_interaction
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_element, only: gauss_rule, line_shapes, tip_rule_size
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t

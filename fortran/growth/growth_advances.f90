@@ -16,6 +16,7 @@
 !! where other tips have grown past it.
 module growth_advances
    use base_kinds, only: rk
+   use base_plane, only: norm2
    use growth_competition, only: complementary_advances, broyden_update
    implicit none(type, external)
    private
@@ -40,7 +41,8 @@ module growth_advances
       real(rk), allocatable, private :: length(:)  !< distance between the bounds [m]
       !> distance from the upper bound within which a tip is put onto the bound [m]
       real(rk), allocatable, private :: sliver(:)
-      real(rk), allocatable, private :: scale(:)  !< scale of the natural residual [1/m]
+      !> (tips) scale of the natural residual, and slope of the excess as estimated first [1/m]
+      real(rk), allocatable, private :: scale(:)
       real(rk), allocatable, private :: best(:)  !< position with the least residual so far [m]
       real(rk), allocatable, private :: excess(:)  !< value at `best` [-]
       real(rk), private :: residual = huge(1.0_rk)  !< value at `best` [-]
@@ -105,9 +107,15 @@ contains
          end if
          has_moved = .true.
          self%is_monotone = .true.
-         self%place = self%lower
          self%near = self%lower
          self%far = spread(huge(1.0_rk), 1, size(self%lower))
+         if (any(self%place > self%lower)) then
+            self%place = self%lower
+            return
+         end if
+         self%best = self%place
+         self%excess = excess
+         call self%advance(tolerance, has_moved)
       else
          self%best = self%place
          self%excess = excess
@@ -159,6 +167,8 @@ contains
       real(rk) :: scaled(size(excess), size(excess))
       integer :: j
 
+      ! The excess at nearly the same position shows nothing but the error of the mesh.
+      if (.not. any(abs(self%place - self%best) > 0.5_rk*resolution*self%length)) return
       associate (length => self%length)
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
@@ -186,6 +196,7 @@ contains
       has_moved = .false.
       if (is_stuck) return
       to = max(self%lower, self%best + change)
+      where (to < self%lower + resolution*self%length) to = self%lower
       where (to > self%upper - self%sliver) to = self%upper
       has_moved = any(abs(to - self%place) > resolution*self%length)
       self%place = to
@@ -217,7 +228,10 @@ contains
                to = far
                if (far - near > 2.0_rk*resolution*length) to = 0.5_rk*(near + far)
             else
-               step = max(0.9_rk*excess/max(-self%matrix(i, i), 2.0_rk*flat/length), &
+               ! Positions far ahead, where the excess may be flat, may have spoilt the matrix: the
+               ! first steps are no longer than by the slope as estimated first.
+               step = max(0.9_rk*excess/max(-self%matrix(i, i), 2.0_rk*flat/length, &
+                                            self%scale(i)*0.25_rk**(self%monotone_steps - 1)), &
                           2.0_rk*resolution*length*growth**self%monotone_steps)
                to = min(self%upper(i), place + step)
             end if

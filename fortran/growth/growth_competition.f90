@@ -22,6 +22,7 @@ module growth_competition
    use, intrinsic :: ieee_arithmetic, only: ieee_quiet_nan, ieee_value
    use algebra_lapack, only: dgesv, dsyev
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    implicit none(type, external)
    private
 

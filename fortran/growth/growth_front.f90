@@ -7,6 +7,7 @@
 module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_timers, only: timers_t
    use base_tolerances, only: same_place, same_value
    use growth_law, only: advances, carry_over, in_grains, new_tip

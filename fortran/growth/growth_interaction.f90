@@ -76,6 +76,7 @@ module growth_interaction
    contains
       procedure :: find_groups
       procedure :: remove_tip
+      procedure :: differ_by_chance
       procedure :: accept
    end type tip_groups_t
 
@@ -104,33 +105,42 @@ contains
                       - self%known_at(group) > holds_for*segment(group)%length))
    end function columns_to_measure
 
-   !> Store the measurement of a column: one tip has been moved, the other tips have not.
-   pure subroutine store_column(self, tip, moved, before, after, segment)
+   !> Store the measurement of a column: one tip has been moved, the other tips have not. Rows of
+   !! tips that have not been evaluated keep their values.
+   pure subroutine store_column(self, tip, moved, before, after, is_evaluated, segment)
       class(interaction_t), intent(inout) :: self
       integer(ik), intent(in) :: tip
       real(rk), intent(in) :: moved  !< displacement of the tip [m]
       real(rk), intent(in) :: before(:), after(:)  !< (tips) excess of K_eq over K_IC [-]
+      logical, intent(in) :: is_evaluated(:)  !< (tips)
       type(segment_t), intent(in) :: segment  !< path segment of the tip
+      real(rk) :: share
 
-      self%matrix(:, tip) = (after - before)/moved
-      associate (share => merge(fresh, 1.0_rk, self%is_known(tip)))
+      share = merge(fresh, 1.0_rk, self%is_known(tip))
+      where (is_evaluated)
+         self%matrix(:, tip) = (after - before)/moved
          self%measured(:, tip) = share*self%matrix(:, tip) + (1.0_rk - share)*self%measured(:, tip)
-      end associate
+      end where
       self%is_known(tip) = .true.
       self%known_at(tip) = segment%gain
    end subroutine store_column
 
-   !> Broyden update from a try in which tips have been moved.
-   pure subroutine update(self, moved, outcome)
+   !> Broyden update from a try in which tips have been moved. Rows of tips that have not been
+   !! evaluated keep their values.
+   pure subroutine update(self, moved, change, is_evaluated)
       class(interaction_t), intent(inout) :: self
       real(rk), intent(in) :: moved(:)  !< (tips) displacements [m]
-      real(rk), intent(in) :: outcome(:)  !< (tips) change of K_eq over K_IC [-]
+      real(rk), intent(in) :: change(:)  !< (tips) change of K_eq over K_IC [-]
+      logical, intent(in) :: is_evaluated(:)  !< (tips)
       real(rk), allocatable :: matrix(:, :)
+      real(rk) :: outcome(size(change))
       integer(ik), allocatable :: known(:)
       integer(ik) :: i
 
       if (any(abs(moved) > 0.0_rk .and. .not. self%is_known)) return
-      if (.not. any(abs(outcome - matmul(self%matrix, moved)) > noticeable)) return
+      outcome = matmul(self%matrix, moved)
+      if (.not. any(is_evaluated .and. abs(change - outcome) > noticeable)) return
+      where (is_evaluated) outcome = change
       known = pack([(i, i=1, size(moved, kind=ik))], self%is_known)
       matrix = self%matrix(known, known)
       call broyden_update(matrix, moved(known), outcome(known))
@@ -166,7 +176,8 @@ contains
       end do
    end function matrix_for
 
-   !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally.
+   !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally,
+   !! by equal shares of their segments: their increments are equal.
    subroutine find_groups(self, drive, off, gain, is_arrested, increment, interaction, kind)
       class(tip_groups_t), intent(inout) :: self
       real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
@@ -194,6 +205,7 @@ contains
             end if
             alike(i, j) = apart <= max(least, hypot(off(i), off(j))) .and. &
                           abs(gain(i) - gain(j)) <= same_gain*shorter .and. &
+                          abs(increment(i) - increment(j)) <= same_gain*shorter .and. &
                           .not. (is_arrested(i) .or. is_arrested(j)) .and. &
                           .not. any(self%is_alone([i, j]))
          end do
@@ -232,6 +244,20 @@ contains
 
       self%is_alone(tip) = .true.
    end subroutine remove_tip
+
+   !> Whether K_eq of two tips of one group that have just separated are equal within their errors,
+   !! so that only these have separated them.
+   pure logical function differ_by_chance(self, i, j, drive, off)
+      class(tip_groups_t), intent(in) :: self
+      integer(ik), intent(in) :: i, j
+      real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
+      real(rk), intent(in) :: off(:)  !< estimated error of the excess [-]
+
+      associate (both => hypot(off(i), off(j)))
+         differ_by_chance = abs(drive(i) - drive(j)) <= max(by_chance, both) .and. &
+                            abs(self%usual(i) - self%usual(j)) <= max(same_mean, both)
+      end associate
+   end function differ_by_chance
 
    !> Update the mean excess after an accepted step.
    subroutine accept(self, drive, advance, increment)

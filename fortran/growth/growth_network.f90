@@ -1,6 +1,7 @@
 !> The growing fracture network: polylines that gain vertices at their ends.
 module growth_network
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use mesh_types, only: network_t
    use scene_types, only: scene_t
    implicit none(type, external)

@@ -1,6 +1,7 @@
 !> The last straight segment of the path of a tip, and the position of the tip along it.
 module growth_segment
    use base_kinds, only: rk
+   use base_plane, only: norm2
    implicit none(type, external)
    private
 
@@ -31,6 +32,8 @@ module growth_segment
       procedure :: is_complete
       procedure :: restart
       procedure :: set_out
+      procedure :: set_out_to
+      procedure :: beyond_end
       procedure :: keep_pace
       procedure :: pace
       procedure :: falling_slope
@@ -148,6 +151,24 @@ contains
       if (.not. (self%is_open .and. self%slope < 0.0_rk)) return
       self%reached = self%within(-excess/self%slope)
    end subroutine set_out
+
+   !> Distance beyond the end of the segment to which the speed of the tip in the last step would
+   !! take it in a step of length dt [m].
+   elemental real(rk) function beyond_end(self, dt)
+      class(segment_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+
+      beyond_end = self%speed*dt
+      if (self%is_open) beyond_end = beyond_end + self%lowest() - self%length
+   end function beyond_end
+
+   !> Put the tip at a distance from the start of the segment, within the admissible range.
+   elemental subroutine set_out_to(self, distance)
+      class(segment_t), intent(inout) :: self
+      real(rk), intent(in) :: distance  !< [m]
+
+      if (self%is_open) self%reached = self%within(distance)
+   end subroutine set_out_to
 
    !> Put the tip where its speed in the last step would take it.
    elemental subroutine keep_pace(self, dt)

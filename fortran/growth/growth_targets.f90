@@ -1,7 +1,7 @@
 !> Targets of a growing tip: points where its path meets another fracture or the outer boundary.
 module growth_targets
    use base_kinds, only: ik, pi, rk
-   use base_plane, only: crosses, meeting, nearest_place, nearest_share, point_distance
+   use base_plane, only: crosses, meeting, nearest_place, nearest_share, norm2, point_distance
    use base_tolerances, only: same_place
    use mesh_types, only: network_t
    implicit none(type, external)

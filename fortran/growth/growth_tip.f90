@@ -10,6 +10,7 @@
 !! holds at the end of the step (backward Euler for the path; local symmetry).
 module growth_tip
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_tip_types, only: intensity_t
    use growth_law, only: growth_drive_t, in_grains, new_tip
    use growth_targets, only: target_none
@@ -125,12 +126,12 @@ contains
       self%drive = growth_drive_t()
    end subroutine deactivate
 
-   !> Scale of the excess over the toughness [Pa m^1/2].
+   !> Scale of the excess over the toughness, over the resistance as K_eq [Pa m^1/2].
    elemental real(rk) function scale_of(self, toughness)
       class(tip_t), intent(in) :: self
-      real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+      real(rk), intent(in) :: toughness  !< K_IC of the scene's rock [Pa m^1/2]
 
-      scale_of = max(toughness, self%least_scale)
+      scale_of = max(toughness, self%least_scale/self%drive%resistance)
    end function scale_of
 
    !> K_eq minus K_IC, over the scale [-].

@@ -2,6 +2,7 @@
 module mechanics_body
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_timers, only: phase_assemble, phase_factorize, phase_mesh, phase_remesh, phase_solve, &
                           phase_tips, phase_transfer, timers_t
    use fine_boundary, only: add_side_springs

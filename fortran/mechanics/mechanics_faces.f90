@@ -7,6 +7,7 @@
 !! the fracture is held closed. A pressure on the faces acts on all of them.
 module mechanics_faces
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_tolerances, only: same_place
    use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, fine_boundary_t, &
                             free_boundary, hold_side, nearest_node, stand_on_springs

@@ -4,6 +4,7 @@
 module mechanics_tries
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use growth_competition, only: likes

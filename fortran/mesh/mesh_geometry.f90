@@ -1,7 +1,7 @@
 !> Lengths, areas and centres of the cells and faces of a mesh, and the corners of its cells.
 module mesh_geometry
    use base_kinds, only: ik, rk
-   use base_plane, only: triangle_area
+   use base_plane, only: norm2, triangle_area
    use mesh_types, only: fracture_mesh_t, mesh_t
    implicit none(type, external)
    private

@@ -325,6 +325,10 @@ module report_columns
       column_t("meshes", "-", with_growth, "Number of meshes"), &
       column_t("meshes.whole", "-", with_growth, "Meshes of the whole body"), &
       column_t("meshes.patched", "-", with_growth, "Meshes of patches around growing tips"), &
+      column_t("growth_jumps", "-", with_fluid_and_growth, &
+      "Number of steps in which tips grew without equilibrium until they arrested"), &
+      column_t("longest_growth_jump_m", "m", with_fluid_and_growth, &
+         "Longest advance of a tip in one of these steps"), &
       column_t("warnings", "-", always, "Warnings, each once")]
 
    type(column_t), parameter :: network_keys(*) = [ &
@@ -406,6 +410,10 @@ module report_columns
     word_t("well", &
          "a stage of a well begins, it is shut in, or it reaches or leaves its pressure limit; "// &
          "see `detail`"), &
+      word_t("growth_jump", &
+        "with a fluid, a tip has grown without equilibrium in a step too short to matter, from "// &
+         "the given position; `detail` has its length, the well pressure before and after, and "// &
+         "the error of the time"), &
       word_t("growth_uncertain", &
          "a tip grows or may grow, but the error of its K makes the pressure or the position "// &
          "uncertain; see `detail`"), &

@@ -3,6 +3,7 @@
 module report_network
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_texts, only: text_t
    use base_tolerances, only: same_place
    use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner

@@ -84,6 +84,10 @@ contains
          call json%add("patched", self%meshes_patched)
          call json%end_object()
       end if
+      if (self%growth_jumps >= 0) then
+         call json%add("growth_jumps", self%growth_jumps)
+         call json%add("longest_growth_jump_m", self%longest_jump)
+      end if
       call add_list(json, "warnings", self%warnings)
       call json%end_object()
       call write_text_file(path, json%text(), error)
@@ -187,6 +191,10 @@ contains
          if (gain > 0.0_rk) line = line//", of which "//brief_text(gain, 4)//" m have grown"
          if (.not. gain > 0.0_rk) line = line//"; nothing has grown"
          call add_text(lines, line)
+      end if
+      if (record%growth_jumps > 0) then
+         call add_text(lines, "grows by "//counted(record%growth_jumps, "jump")//" of up to "// &
+                       brief_text(record%longest_jump, 3)//" m")
       end if
       if (record%keq_over_kic > 0.0_rk) then
          call add_text(lines, "largest K_eq/K_IC "//brief_text(record%keq_over_kic, 4))

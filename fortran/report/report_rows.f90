@@ -8,7 +8,7 @@ module report_rows
    private
 
    public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
-   public :: event_growth_uncertain
+   public :: event_growth_jump, event_growth_uncertain
    public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
    public :: event_step_cut, event_unstable, event_well, event_window, fracture_fields_t
    public :: history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, slip_event_t
@@ -181,6 +181,9 @@ module report_rows
       integer(ik) :: newton_total = 0  !< iterations in all steps
       integer(ik) :: newton_max = 0  !< largest number of iterations in one step
       integer(ik) :: step_cuts = 0
+      !> steps in which tips grew without equilibrium; -1: omitted, with the longest
+      integer(ik) :: growth_jumps = -1
+      real(rk) :: longest_jump = 0.0_rk  !< longest advance of a tip in one of them [m]
       logical :: has_growth = .false.  !< the three following numbers are set
       integer(ik) :: increments = 0  !< increments of growth, of any number of tips at once
       integer(ik) :: meshes_whole = 0  !< meshes of the whole body
@@ -209,6 +212,7 @@ module report_rows
    character(len=*), parameter :: event_step_cut = "step_cut"
    character(len=*), parameter :: event_unstable = "unstable_growth"
    character(len=*), parameter :: event_bifurcation = "bifurcation"
+   character(len=*), parameter :: event_growth_jump = "growth_jump"
    character(len=*), parameter :: event_growth_uncertain = "growth_uncertain"
    character(len=*), parameter :: event_remesh = "remesh"
    character(len=*), parameter :: event_window = "window"

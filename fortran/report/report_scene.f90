@@ -7,6 +7,7 @@
 module report_scene
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use contact_law, only: contact_law_t
    use fine_elasticity, only: elasticity_t, is_same, rocks_t
    use mesh_builder, only: mesh_spec_t

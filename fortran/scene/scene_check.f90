@@ -127,6 +127,28 @@ contains
       end associate
    end subroutine check_material
 
+   !> Without a fluid, loads grow until K_eq is K_IC: there is none of them where K_IC is 0.
+   pure subroutine check_toughness(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, record
+
+      record = 0
+      do i = 1, size(scene%fractures)
+         if (.not. scene%fractures(i)%toughness > 0.0_rk) record = sheet%find("fracture", i)
+      end do
+      if (allocated(scene%regions)) then
+         do i = 1, size(scene%regions)
+            if (.not. scene%regions(i)%material%toughness > 0.0_rk) record = sheet%find("region", i)
+         end do
+      end if
+      if (.not. scene%material%toughness > 0.0_rk) record = sheet%find("material")
+      if (record > 0) call refuse(error, sheet, record, "toughness", "is 0 but must be positive "// &
+                                  "in a scene without &fluid, whose fractures would grow under "// &
+                                  "any load")
+   end subroutine check_toughness
+
    !> Fine level and growth are consistent with the fractures and the coarse level.
    pure subroutine check_levels(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
@@ -143,7 +165,10 @@ contains
                      "is .true. but must be .false., since the scene has no fracture")
          return
       end if
-      if (.not. scene%has_fluid()) return
+      if (.not. scene%has_fluid()) then
+         if (scene%growth%enabled) call check_toughness(sheet, scene, error)
+         return
+      end if
       if (scene%material%radiation_damping > 0.0_rk) then
          call refuse(error, sheet, sheet%find("material"), "radiation_damping", "is "// &
                      real_text(scene%material%radiation_damping)//" but must be omitted with "// &

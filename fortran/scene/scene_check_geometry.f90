@@ -4,7 +4,7 @@ module scene_check_geometry
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use base_plane, only: meeting, nearest_share, point_distance
+   use base_plane, only: meeting, nearest_share, norm2, point_distance
    use base_tolerances, only: same_place
    use scene_region_outline, only: is_inside
    use scene_sheet, only: refuse, sheet_t

@@ -3,7 +3,7 @@ module scene_check_regions
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
-   use base_plane, only: cross, crosses, polygon_area
+   use base_plane, only: cross, crosses, norm2, polygon_area
    use base_tolerances, only: round_off, same_place
    use scene_check_permeability, only: check_tensor
    use scene_fluid_law, only: least_compressibility, skempton, storage

@@ -1,7 +1,7 @@
 !> The outer boundary of the body as a closed polygon.
 module scene_outline
    use base_kinds, only: ik, pi, rk
-   use base_plane, only: polygon_area
+   use base_plane, only: norm2, polygon_area
    use scene_sides, only: boundary_side_t
    use scene_types, only: boundary_part_t, domain_t, scene_t
    implicit none(type, external)

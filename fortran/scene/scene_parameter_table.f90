@@ -120,7 +120,8 @@ module scene_parameter_table
          meaning="Radiation damping: shear traction per slip rate, G/(2 c_s), with the shear "// &
                  "wave velocity c_s; gives unstable slip a duration. Not with intensities"), &
       parameter_t("material", "toughness", unit="Pa m^1/2", need=need_growth, absent="unlimited", &
-         range=positive, meaning="Fracture toughness K_IC"), &
+         range=at_least_zero, meaning="Fracture toughness K_IC; 0: fractures grow without it, "// &
+                 "only with a fluid"), &
       parameter_t("material", "plane", kind_choice, default="'strain'", choices="strain|stress", &
          meaning="Plane strain or plane stress"), &
       parameter_t("material", "storage", kind_choice, default="'thesis'", &
@@ -205,7 +206,7 @@ module scene_parameter_table
          absent="that of &material", derived=.true., &
          meaning="Density of the rock including the pore fluid; the body settles under it. Not "// &
                  "with a stress in situ that varies with y, nor with windows"), &
-      parameter_t("region", "toughness", unit="Pa m^1/2", range=positive, &
+      parameter_t("region", "toughness", unit="Pa m^1/2", range=at_least_zero, &
          absent="that of &material", derived=.true., &
          meaning="Fracture toughness K_IC of tips in the region")]
 
@@ -260,7 +261,7 @@ module scene_parameter_table
          with="tensile_strength", absent="no bond", &
          meaning="Opening that breaks the bond, with the energy tensile_strength "// &
                  "opening_weakening/2"), &
-      parameter_t("fracture", "toughness", unit="Pa m^1/2", range=positive, &
+      parameter_t("fracture", "toughness", unit="Pa m^1/2", range=at_least_zero, &
          absent="that of the rock", &
          meaning="K_IC of its tips and those of its wings, in any rock"), &
       parameter_t("fracture", "skin", unit="Pa s/m", scenes=in_fluid, range=positive, &

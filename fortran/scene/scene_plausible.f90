@@ -3,7 +3,7 @@
 !! something or just pass it. Scenes that cannot be simulated are refused (scene_check).
 module scene_plausible
    use base_kinds, only: degrees, ik, pi, rk
-   use base_plane, only: polygon_area
+   use base_plane, only: norm2, polygon_area
    use base_texts, only: add_text, text_t
    use base_tolerances, only: round_off, same_time
    use scene_check_geometry, only: near_end_t, near_ends

@@ -1,6 +1,7 @@
 !> A scene: the problem stated by the user, in SI units, after reading and checking.
 module scene_types
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private

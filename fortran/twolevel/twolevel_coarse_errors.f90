@@ -36,6 +36,7 @@
 module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use base_timers, only: phase_tips, timers_t
    use coarse_rock, only: rock_t
    use coarse_state, only: state_t
@@ -167,6 +168,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%is_loaded()) cycle
+         self%now%windows%tip(i)%is_compared = .true.
          self%tip(i)%intensity = self%windows%intensity_of(i, self%now%windows%tip(i))
       end do
    end subroutine estimate

@@ -6,6 +6,7 @@
 module twolevel_correction
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_fields, only: corner_tractions
    use coarse_nodes, only: nodal_fields
    use coarse_layout, only: block_count, end_block

@@ -24,10 +24,10 @@ module twolevel_equilibrium
    use twolevel_segments, only: are_at_ligaments, begin_segments, can_join, join_targets, &
                                 shared_excesses
    use twolevel_places, only: advances, place_tips
-   use twolevel_probe, only: previous_try_t, measure_interaction
+   use twolevel_probe, only: evaluated, measure_interaction, previous_try_t
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
-   use twolevel_tip_layers, only: find_tip_layers
+   use twolevel_tip_layers, only: close_tips, find_tip_layers, is_viscous
    use twolevel_moves, only: arrivals, at_joints, first_onset, is_in_play, judge_tips, &
                              keep_together, onset, separate_tips, tolerance
    use twolevel_refinement, only: find_refinements, is_uncertain
@@ -50,9 +50,13 @@ module twolevel_equilibrium
    !! largest step in which a tip may jump, over the time since the wells were switched last [-].
    real(rk), parameter :: punctual = 5.0e-3_rk
 
-   !> A tip whose excess in the first try of a step is below the negative of this is evaluated again
-   !! in the last try only [-].
-   real(rk), parameter :: lack_of_far = 0.3_rk
+   !> A tip whose excess in the first try of a step is below the negative of this, error included,
+   !! is evaluated again in the last try only [-].
+   real(rk), parameter :: lack_of_far = 0.1_rk
+
+   !> Position from which the search on a new segment starts, over the length of the segment: the
+   !! mesh of its full length can be moved there, but not much farther back [-].
+   real(rk), parameter :: first_place = 0.4_rk
 
    !> State of the tries of a step.
    type :: search_t
@@ -159,6 +163,7 @@ contains
       end if
       call self%evaluate(timers, error)
       if (allocated(error)) return
+      call close_tips(self)
       call self%now%stated_errors%see_try(total_length(self%network), &
                                           self%problem%well_pressure(self%scene, self%now%coarse))
       if (.not. is_first) return
@@ -168,8 +173,10 @@ contains
                                    self%rules%toughness)
       end if
       search%is_over = trial%onset < 1.0_rk
-      if (.not. search%is_over) self%now%active = active_tips(self%tip, self%now%segment, &
-                                                              self%rules%toughness)
+      if (.not. search%is_over) then
+         self%now%active = active_tips(self%tip, self%now%segment, self%rules%toughness, &
+                                       search%kind)
+      end if
    end subroutine find_state
 
    !> Move the tips to where their excess is predicted to vanish.
@@ -184,7 +191,8 @@ contains
 
       in_play = is_in_play(self%now%segment, self%tip%excess(self%rules%toughness))
       call search%previous_try%update_interaction(self%now%segment, self%tip, &
-                                                  self%rules%toughness, self%now%interaction)
+                                                  self%rules%toughness, evaluated(self), &
+                                                  self%now%interaction)
       call measure_interaction(self, in_play, search%dt, timers, any_moves, error)
       if (allocated(error)) return
       call search%previous_try%begin(self%now%segment, self%tip, self%rules%toughness)
@@ -294,9 +302,10 @@ contains
       type(timers_t), intent(inout) :: timers
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: excess(size(self%tip))
+      real(rk) :: beyond(size(self%tip)), excess(size(self%tip))
       integer(ik) :: i
 
+      beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
                  before => self%last%front%tip%excess(self%rules%toughness))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
@@ -305,8 +314,11 @@ contains
             search%is_over = size(trial%refinements) > 0
             if (search%is_over) return
          end if
+         ! A tip that stays at the end of its segment for a part of the step is slower than it will
+         ! be: where viscosity decides, its excess says little.
          if (any(wants .and. (search%has_begun .or. &
-                              self%tip%excess(toughness) > excess_max))) then
+                              (self%tip%excess(toughness) > excess_max .and. &
+                               .not. is_viscous(self%tip))))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! jumps have no rates
          end if
@@ -323,17 +335,38 @@ contains
       excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
       call begin_segments(self, wants, timers, error)
       if (allocated(error)) return
-      if (.not. search%may_jump) then
-         do i = 1, size(wants)
-            if (wants(i)) call self%now%segment(i)%set_out(excess(i))
-         end do
-         call keep_together(self%now%segment, search%kind)
-      end if
+      do i = 1, size(wants)
+         if (.not. wants(i)) cycle
+         if (is_viscous(self%tip(i)) .and. .not. search%may_jump) then
+            call self%now%segment(i)%set_out_to(beyond(i))
+         else
+            call set_out(self%now%segment(i), excess(i), search%may_jump, &
+                         self%tip(i)%path_target == target_none)
+         end if
+      end do
+      if (.not. search%may_jump) call keep_together(self%now%segment, search%kind)
       ! Without the tips whose whole segment is a ligament.
       search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
       search%previous_try = previous_try_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted
+
+   !> Put a tip on its new segment where the search is to start: at the end where tips may jump, as
+   !! they mostly do by more than a segment; else where its excess is predicted to vanish, but not
+   !! so near the start that the mesh of the whole segment cannot be moved there.
+   pure subroutine set_out(segment, excess, may_jump, is_whole)
+      type(segment_t), intent(inout) :: segment
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the segment [-]
+      logical, intent(in) :: may_jump
+      logical, intent(in) :: is_whole  !< the segment does not end before a target
+      logical :: has_moved
+
+      if (.not. segment%is_open) return
+      if (.not. may_jump) call segment%set_out(excess)
+      if (.not. is_whole) return
+      call segment%go_to(merge(segment%length, max(segment%reached, first_place*segment%length), &
+                               may_jump), has_moved)
+   end subroutine set_out
 
    !> End the tries: no tip is to advance. If the tips that have not been evaluated do not exceed
    !! the toughness either, and all intensities are accurate enough, the state is an equilibrium.
@@ -360,16 +393,20 @@ contains
       call find_refinements(self, self%before%time, trial%refinements)
    end subroutine conclude
 
-   !> Tips that may grow in a step, according to its first try: tips on open segments, and tips that
-   !! are near their toughness within the error of their intensities.
-   pure function active_tips(tips, segments, toughness) result(active)
+   !> Tips that may grow in a step, according to its first try: tips that have been placed ahead of
+   !! their last accepted position, tips that are near their toughness within the error of their
+   !! intensities, and the other tips of their groups.
+   pure function active_tips(tips, segments, toughness, kind) result(active)
       type(tip_t), intent(in) :: tips(:)
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       logical :: active(size(tips))
+      integer(ik) :: i
 
-      active = segments%is_open .or. &
+      active = (segments%is_open .and. segments%reached > segments%lowest()) .or. &
                tips%excess(toughness) + tips%relative_error(toughness) > -lack_of_far
+      active = [(any(active .and. kind == kind(i)), i=1, size(kind))]
    end function active_tips
 
    !> Evaluate the tips that the tries of a step have left out. All tips are evaluated from now on.

@@ -43,6 +43,7 @@ module twolevel_errors
       real(rk) :: error = 0.0_rk  !< error of K_eq, over K_IC [-]
       real(rk) :: slope = -1.0_rk  !< derivative of K_eq/K_IC along the path, < 0 [1/m]
       real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
+      real(rk) :: jump = 0.0_rk  !< length of a jump that is uncertain in time (twolevel_jumps) [m]
    end type tip_excess_t
 
    !> Estimated errors, and the data of the last tries and of the last step.
@@ -117,7 +118,7 @@ contains
 
       if (.not. allocated(self%tip)) allocate (self%tip(size(tips)), source=0.0_rk)
       where (tips%grows) self%tip = tips%error/abs(tips%slope) + share*tips%cell*(1.0_rk + leaked)
-      self%length = sum(self%tip)
+      self%length = sum(self%tip) + sum(tips%jump)
       call self%time_error%follow(step, pressure)
       if (any(tips%grows)) self%time_error%error = 0.0_rk
       self%pressure = abs(self%slope)*self%length + abs(self%time_error%error)

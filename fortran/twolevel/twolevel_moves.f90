@@ -182,8 +182,8 @@ contains
 
    !> Remove tips from their group that have advanced with the group in the step, or are to begin a
    !! segment with it, but are below their toughness by more than the group's first tip: each is
-   !! alone from now on, and returns to its position at the start of the step. Tips that were at
-   !! their toughness on an open segment before the step stay: a single mesh may reduce their K_eq.
+   !! alone from now on, and returns to its position at the start of the step. Tips that grew at
+   !! their toughness in the last step stay: a single mesh may reduce their K_eq.
    !! So do tips that are no farther below their toughness than the first of their group: a first
    !! segment, which kinks, may reduce K_eq of all of them.
    subroutine separate_tips(segments, groups, tips, before, toughness, wants, kind, any_parted)
@@ -201,7 +201,8 @@ contains
 
       first = [(min(0.0_rk, maxval(tips%excess(toughness), mask=kind == kind(i))), i=1, size(kind))]
       lags = (wants .or. (segments%is_open .and. segments%reached > segments%lowest())) .and. &
-             lacks(tips, first) .and. (lacks(before, 0.0_rk) .or. .not. segments%gain > 0.0_rk)
+             lacks(tips, first) .and. (lacks(before, 0.0_rk) .or. &
+                                       .not. (segments%gain > 0.0_rk .and. before%advance > 0.0_rk))
       any_parted = .false.
       do i = 1, size(kind, kind=ik)
          if (.not. lags(i) .or. count(kind == kind(i)) == 1) cycle

@@ -3,14 +3,16 @@
 module twolevel_notes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
+   use base_plane, only: norm2
    use growth_interaction, only: could_separate, interaction_t
    use growth_front, only: front_state_t
    use growth_network, only: total_length
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
-   use scene_types, only: scene_t
+   use scene_types, only: growth_t, scene_t
    use twolevel_errors, only: tip_excess_t
+   use twolevel_jumps, only: jumps_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_moves, only: tolerance
    use twolevel_onset, only: approach_t
@@ -19,7 +21,7 @@ module twolevel_notes
    implicit none(type, external)
    private
 
-   public :: note_stated_errors, note_excess, notes_t
+   public :: note_stated_errors, note_excess, notes_t, states_errors
 
    !> Events written so far, and the data for those to come.
    type :: notes_t
@@ -28,16 +30,21 @@ module twolevel_notes
       !> (tips) considerable errors of growth have been stated
       logical, allocatable :: is_uncertain(:)
       logical, private :: was_bifurcation = .false.  !< tips competed in the last step with growth
-      !> (tips, tips) the two tips have grown as members of one group
-      logical, allocatable, private :: grew_together(:, :)
+      !> (tips, tips) whether the two tips have grown as members of one group, and have separated
+      integer, allocatable, private :: relation(:, :)
       !> (tips) the tip has separated from a tip of its group
       logical, allocatable, private :: has_separated(:)
+      type(jumps_t) :: jumps  !< growth without equilibrium
    contains
       procedure :: begin
       procedure :: note_onsets
       procedure :: note_competition
       procedure :: note_separation
    end type notes_t
+
+   ! Tips have not grown as members of one group, or have separated with another K_eq; they are
+   ! members of one group; they have separated by chance.
+   integer, parameter :: apart = 0, together = 1, separated = 2
 
 contains
 
@@ -48,7 +55,8 @@ contains
 
       allocate (self%approach(n))
       allocate (self%is_uncertain(n), self%has_separated(n), source=.false.)
-      allocate (self%grew_together(n, n), source=.false.)
+      allocate (self%relation(n, n), source=apart)
+      call self%jumps%begin(n)
    end subroutine begin
 
    !> Report the onset of growth: the time at which the tip reached K_IC, once the tip has advanced
@@ -129,12 +137,14 @@ contains
       self%was_bifurcation = is_bifurcation
    end subroutine note_competition
 
-   !> Tips that have grown in one group, but whose gains differ by more than their errors: only
-   !! errors have separated them, and it is chance which one is ahead.
-   subroutine note_separation(self, tips, now, increment, chronicle)
+   !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ
+   !! by more than their errors: only errors have separated them, and it is chance which is ahead.
+   !! Tips that have ended on a target have another reason to stay behind.
+   subroutine note_separation(self, tips, now, toughness, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       type(levels_state_t), intent(in) :: now
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
       type(chronicle_t), intent(inout) :: chronicle
       real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the shorter increment
@@ -144,10 +154,19 @@ contains
       if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
          do i = 1, j - 1
-            associate (gain => now%segment([i, j])%gain, kind => now%groups%kind, &
+            associate (gain => now%segment([i, j])%gain, groups => now%groups, &
                        error => now%stated_errors%tip, shorter => minval(increment([i, j])))
-               if (kind(i) == kind(j) .and. all(gain > 0.0_rk)) self%grew_together(i, j) = .true.
-               if (.not. self%grew_together(i, j) .or. all(self%has_separated([i, j]))) cycle
+               if (any(tips([i, j])%arrested)) then
+                  self%relation(i, j) = apart
+               else if (groups%kind(i) == groups%kind(j) .and. all(gain > 0.0_rk)) then
+                  self%relation(i, j) = together
+               else if (self%relation(i, j) == together) then
+                  self%relation(i, j) = &
+                     merge(separated, apart, &
+                           groups%differ_by_chance(i, j, tips%excess(toughness), &
+                                                   tips%relative_error(toughness)))
+               end if
+               if (self%relation(i, j) /= separated .or. all(self%has_separated([i, j]))) cycle
                if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
@@ -164,13 +183,21 @@ contains
       end do
    end subroutine note_separation
 
+   !> Whether errors of length and pressure are estimated: not with increments of prescribed length.
+   pure logical function states_errors(growth)
+      type(growth_t), intent(in) :: growth
+
+      states_errors = growth%in_equilibrium() .or. .not. growth%enabled
+   end function states_errors
+
    !> Update the estimated errors of length and pressure after a step of length dt.
-   subroutine note_stated_errors(scene, front, problem, dt, now)
+   subroutine note_stated_errors(scene, front, problem, dt, now, jumps)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: dt  !< [s]
       type(levels_state_t), intent(inout) :: now
+      type(jumps_t), intent(inout) :: jumps
       type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked
 
@@ -184,6 +211,7 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
+         call jumps%follow(tip, toughness, dt, now%coarse%time, tips%jump)
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                      total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate

@@ -5,6 +5,7 @@
 module twolevel_places
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
+   use base_plane, only: norm2
    use base_tolerances, only: same_place
    use growth_front, only: front_state_t
    use growth_network, only: end_gain, end_place, fracture_length, move_end

@@ -144,7 +144,7 @@ contains
             if (abs(at - ends(end)) > d(2)) cycle
             if (d(2) > d(1)) then
                face = abs(s - ends(end))
-               weight = (mean_logarithm(face) - log(d(1)))/log(d(2)/d(1))
+               weight = mean_logarithm(face/d(1))/log(d(2)/d(1))
             end if
             return
          end do
@@ -159,7 +159,7 @@ contains
 
    !> Mean of ln d between two distances with the weight 1/sqrt(d).
    pure real(rk) function mean_logarithm(d)
-      real(rk), intent(in) :: d(2)  !< [m]
+      real(rk), intent(in) :: d(2)  !< over a length [-]
       real(rk) :: lower, upper
 
       lower = minval(d)

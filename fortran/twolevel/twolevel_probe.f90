@@ -18,7 +18,7 @@ module twolevel_probe
    implicit none(type, external)
    private
 
-   public :: previous_try_t, measure_interaction
+   public :: evaluated, previous_try_t, measure_interaction
 
    !> Distance by which a tip is set back, over the length of its segment: the intensities of new
    !! meshes differ by some tenths of a per cent [-].
@@ -73,7 +73,8 @@ contains
                if (allocated(error)) return
                call self%now%interaction%store_column(columns(k), shift, &
                                                       tip%excess(self%rules%toughness), &
-                                                     self%tip%excess(self%rules%toughness), segment)
+                                                      self%tip%excess(self%rules%toughness), &
+                                                      evaluated(self), segment)
             end if
             segment%reached = segment%reached - shift
          end associate
@@ -82,6 +83,15 @@ contains
       self%tip = tip
       call go_back(self%now%coarse, state)
    end subroutine measure_interaction
+
+   !> Tips that are evaluated in the tries of a step.
+   pure function evaluated(self)
+      class(two_levels_t), intent(in) :: self
+      logical :: evaluated(size(self%tip))
+
+      evaluated = .true.
+      if (allocated(self%now%active)) evaluated = self%now%active
+   end function evaluated
 
    !> Store a try.
    subroutine begin(self, segments, tips, toughness)
@@ -95,16 +105,17 @@ contains
    end subroutine begin
 
    !> Broyden update of the tip interaction matrix with the changes since the last try.
-   subroutine update_interaction(self, segments, tips, toughness, interaction)
+   subroutine update_interaction(self, segments, tips, toughness, is_evaluated, interaction)
       class(previous_try_t), intent(in) :: self
       type(segment_t), intent(in) :: segments(:)  !< (tips)
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      logical, intent(in) :: is_evaluated(:)  !< (tips)
       type(interaction_t), intent(inout) :: interaction
 
       if (.not. allocated(self%reached)) return
       call interaction%update(segments%reached - self%reached, &
-                              tips%excess(toughness) - self%excess)
+                              tips%excess(toughness) - self%excess, is_evaluated)
    end subroutine update_interaction
 
 end module twolevel_probe

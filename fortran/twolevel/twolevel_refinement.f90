@@ -5,7 +5,9 @@
 !! The larger part of the error estimate determines the refinement. The error of the window itself
 !! requires smaller elements. The error of the coarse level, which enters through the displacement
 !! on the edge, requires a larger window, and finally the body as one window for all tips. A window
-!! keeps its refined size and elements, and moves with its tip.
+!! keeps its refined size and elements, and moves with its tip. A refinement that has not reduced the
+!! error is not followed by another one of its kind: the two levels then differ by something else,
+!! such as the history of slip on faces of a new kink.
 !!
 !! An error of K_eq is an error of the pressure at which the tip reaches its toughness, and of the
 !! equilibrium position of a growing tip (model.md, section 5). Both are compared with the scales of
@@ -24,7 +26,7 @@ module twolevel_refinement
    use scene_types, only: domain_t
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, refinement_t
-   use twolevel_window_tip, only: window_tip_t
+   use twolevel_window_tip, only: of_edge, of_elements, window_tip_t
    implicit none(type, external)
    private
 
@@ -100,7 +102,8 @@ contains
             if (.not. is_uncertain(tip, self%now%segment(i), self%network, toughness, &
                                    self%load_pressure)) cycle
             refinement%tip = i
-            call choose(self, i, refinement%kind, what)
+            refinement%error = error_of_k(tip)
+            call choose(self, i, refinement%error, refinement%kind, what)
             if (.not. allocated(what)) cycle
             refinements = [refinements, refinement]
             call self%chronicle%add_event(time, event_window, what//": K known to "// &
@@ -142,9 +145,10 @@ contains
 
    !> Choose smaller elements or a larger window for a tip; `what` describes the refinement, and is
    !! unallocated if none is possible.
-   subroutine choose(self, tip, kind, what)
+   subroutine choose(self, tip, error, kind, what)
       class(two_levels_t), intent(in) :: self
       integer(ik), intent(in) :: tip  !< number of the uncertain tip
+      real(rk), intent(in) :: error  !< of its intensities [Pa m^1/2]
       integer, intent(out) :: kind
       character(len=:), allocatable, intent(out) :: what
       !> share of the larger part of the error for which the smaller one is reduced [-]
@@ -154,28 +158,30 @@ contains
       !! other part.
       real(rk), parameter :: far_off = 25.0_rk
       type(window_tip_t) :: seen
-      logical :: is_finer
+      logical :: can_be_finer, can_be_larger, is_finer
 
       kind = improve_edge
       seen = self%now%windows%tip(tip)
       associate (window => self%windows%slot(self%windows%window_of(tip))%window)
          ! If one refinement is impossible, the other one is taken where it reduces the error
          ! noticeably. A window that contains the body differs from it by the elements alone.
+         can_be_finer = seen%can_be_finer() .and. .not. seen%is_futile(of_elements, error)
+         can_be_larger = window%can_be_larger() .and. .not. seen%is_futile(of_edge, error)
          is_finer = seen%of_elements >= seen%of_edge
-         if (is_finer .and. .not. seen%can_be_finer()) then
+         if (is_finer .and. .not. can_be_finer) then
             is_finer = .not. seen%of_edge > worth_it*seen%of_elements
-         else if (.not. window%can_be_larger()) then
+         else if (.not. can_be_larger) then
             is_finer = .true.
          end if
          if (is_finer) then
             kind = improve_elements
-            if (.not. seen%can_be_finer()) return
+            if (.not. can_be_finer) return
             seen%times_finer = seen%times_finer + 1
             what = "smaller elements at the tip"
             if (seen%times_finer > 1) then
                what = "elements of "//brief_text(seen%element_size(self%scene), 3)//" m"
             end if
-         else if (window%can_be_larger()) then
+         else if (can_be_larger) then
             what = "a window of "//brief_text(2.0_rk*window%edge_length(), 3)//" m"
             if (self%problem%mesh%fracture%n_cells > self%reference_most .or. .not. &
                 costs_as_body(self%scene%domain, 2.0_rk*window%edge_length())) return
@@ -195,6 +201,8 @@ contains
       do k = 1, size(refinements)
          associate (i => refinements(k)%tip, windows => self%windows, &
                     seen => self%now%windows%tip(refinements(k)%tip))
+            seen%refined_at(merge(of_elements, of_edge, refinements(k)%kind == improve_elements)) &
+               = refinements(k)%error
             select case (refinements(k)%kind)
             case (improve_elements)
                seen%times_finer = seen%times_finer + 1

@@ -2,6 +2,7 @@
 !! state to the new mesh.
 submodule(twolevel_state) twolevel_remeshing
    use base_kinds, only: ik
+   use base_plane, only: norm2
    use base_timers, only: phase_remesh, phase_transfer
    use base_tolerances, only: same_place
    use coarse_model, only: rest_fluid

@@ -13,7 +13,7 @@
 module twolevel_segments
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_plane, only: point_distance, turned
+   use base_plane, only: norm2, point_distance, turned
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use coarse_state, only: go_back
@@ -48,6 +48,7 @@ contains
       real(rk) :: ahead(2, size(self%tip))
       type(tip_t) :: tip(size(self%tip))
       logical, dimension(size(self%tip)) :: is_new, is_near
+      logical, allocatable :: active(:)
       logical :: any_grew
       integer(ik) :: i
 
@@ -61,9 +62,14 @@ contains
                                      self%tip(i)%xy, ahead(:, i))
       end do
       tip = self%tip
+      ! Only the directions of these tips are to be found.
+      if (allocated(self%now%active)) active = self%now%active
+      self%now%active = is_new
       call self%grow_by(merge(self%increments(), 0.0_rk, is_new .and. .not. is_near), any_grew, &
                         timers, error)
       if (allocated(error)) return
+      deallocate (self%now%active)
+      if (allocated(active)) call move_alloc(active, self%now%active)
       do i = 1, size(self%tip, kind=ik)
          if (.not. is_new(i)) cycle
          if (is_near(i)) then

@@ -13,7 +13,7 @@ module twolevel_setup
    implicit none(type, external)
    private
 
-   public :: coarse_spec, first_cells, pressure_scale, rest_joints, rules_of_scene
+   public :: coarse_spec, first_cells, keep_above_zero, pressure_scale, rest_joints, rules_of_scene
 
    !> Relative deficit of K_eq within which tips grow along with the first: the two methods for the
    !! intensities differ by about as much [-].
@@ -24,6 +24,27 @@ module twolevel_setup
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
 contains
+
+   !> Replace a toughness of 0 by one that changes nothing: K_eq over it is a finite number, and
+   !! viscosity has its limit without toughness (coarse_tip_layer).
+   pure subroutine keep_above_zero(scene)
+      type(scene_t), intent(inout) :: scene
+      real(rk), parameter :: negligible = 1.0e-6_rk  ! share of K at the pressure of the loads
+      real(rk), parameter :: strain = 1.0e-10_rk  ! where there are none
+      real(rk) :: least
+      integer :: i
+
+      least = negligible*max(pressure_scale(scene), strain*scene%material%young) &
+              *sqrt(0.5_rk*pi*longest_fracture(scene))
+      scene%material%toughness = max(least, scene%material%toughness)
+      do i = 1, size(scene%fractures)
+         scene%fractures(i)%toughness = max(least, scene%fractures(i)%toughness)
+      end do
+      if (.not. allocated(scene%regions)) return
+      do i = 1, size(scene%regions)
+         scene%regions(i)%material%toughness = max(least, scene%regions(i)%material%toughness)
+      end do
+   end subroutine keep_above_zero
 
    !> Largest pressure expected in a scene [Pa]: that of its loads or of its initial state, stress
    !! in situ included, and with growth the pressure at which the longest fracture reaches its
@@ -52,14 +73,22 @@ contains
                         maxval(abs(in_situ%stress_at(y(1)))), maxval(abs(in_situ%stress_at(y(2)))))
          end associate
       end if
-      longest = 0.0_rk
-      do i = 1, size(scene%fractures)
-         longest = max(longest, scene%fractures(i)%length())
-      end do
+      longest = longest_fracture(scene)
       if (scene%growth%enabled .and. longest > 0.0_rk) then
          scale = max(scale, scene%material%toughness/sqrt(half_pi*longest))
       end if
    end function pressure_scale
+
+   !> Length of the longest fracture [m].
+   pure real(rk) function longest_fracture(scene) result(longest)
+      type(scene_t), intent(in) :: scene
+      integer :: i
+
+      longest = 0.0_rk
+      do i = 1, size(scene%fractures)
+         longest = max(longest, scene%fractures(i)%length())
+      end do
+   end function longest_fracture
 
    !> Parameters of growth: with increments of prescribed length tips join targets at once, in
    !! equilibrium once the ligament breaks.

@@ -11,11 +11,12 @@ submodule(twolevel_state) twolevel_simulation
    use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_limits, only: watch_mesh, watch_windows
-   use twolevel_notes, only: note_stated_errors, note_excess
+   use twolevel_notes, only: note_excess
    use twolevel_stepping, only: refinement_t
    use twolevel_refinement, only: find_refinements, note_uncertain_tips, refine_windows
    use twolevel_schedule, only: follow_sides
-   use twolevel_setup, only: coarse_spec, first_cells, pressure_scale, rest_joints, rules_of_scene
+   use twolevel_setup, only: coarse_spec, first_cells, keep_above_zero, &
+                              pressure_scale, rest_joints, rules_of_scene
    use twolevel_wells, only: share_wells
    implicit none(type, external)
 
@@ -34,6 +35,7 @@ contains
       call self%catalogue%begin(scene%output%out_of_plane_length, &
                                 scene%output%stimulated_jump, scene%output%seismic_slip_rate)
       call self%notes%begin(size(self%tip))
+      if (self%scene%growth%enabled) self%summary%growth_jumps = 0
       call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
       if (.not. allocated(error)) call note_features(self)
    end subroutine begin
@@ -46,11 +48,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call self%set_scene(scene)
+      call keep_above_zero(self%scene)
       call follow_sides(self%scene, 0.0_rk, 0.0_rk)
       self%start = network_of_scene(scene)
       self%network = self%start
       self%now%coarse_network = self%start
-      self%rules = rules_of_scene(scene)
+      self%rules = rules_of_scene(self%scene)
       allocate (self%problem)
       associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
          call timers%start(phase_mesh)
@@ -168,13 +171,9 @@ contains
          call self%heed_limits(error)
          if (allocated(error)) return
       end if
-      ! Not with increments of prescribed length.
-      if (self%scene%growth%in_equilibrium() .or. .not. self%scene%growth%enabled) then
-         call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
-                                 self%now)
-      end if
       if (may_grow .and. self%scene%growth%in_equilibrium()) then
-         call self%notes%note_separation(self%tip, self%now, self%increments(), self%chronicle)
+         call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
+                                         self%increments(), self%chronicle)
       end if
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
          if (.not. allocated(self%ending)) self%ending = "the scene's end time"

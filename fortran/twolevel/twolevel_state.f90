@@ -12,7 +12,7 @@ module twolevel_state
    use report_rows, only: history_row_t, probe_row_t
    use report_simulation, only: simulation_t, snapshot_t
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
-   use twolevel_notes, only: notes_t
+   use twolevel_notes, only: notes_t, states_errors
    use twolevel_places, only: end_at_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
@@ -416,9 +416,7 @@ contains
                                      self%now%coarse, row)
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
-      associate (growth => self%scene%growth)
-         if (growth%enabled .and. .not. growth%in_equilibrium()) return
-      end associate
+      if (.not. states_errors(self%scene%growth)) return
       row%length_error = self%now%stated_errors%length
       row%well_pressure_error = self%now%stated_errors%pressure
    end function history

@@ -17,6 +17,10 @@
 !! step is, leads to the same share repeatedly: after three such cuts of a step each cut squares the
 !! share, and the sixth leads to a negligible share.
 !!
+!! The end of a step in which tips grew too far is remembered until they have passed it: steps
+!! before it that bring little growth halve the time that is left, and do not cross it, since growth
+!! that is about to become unstable gives no other notice.
+!!
 !! No step is cut to less than a 64th of the shortest step; a step of this length is accepted with
 !! any time error. A run ends if hundreds of steps in succession are cut to nearly this length.
 !!
@@ -49,6 +53,7 @@ module twolevel_stepping
    type :: refinement_t
       integer(ik) :: tip = 0
       integer :: kind = improve_elements
+      real(rk) :: error = 0.0_rk  !< error of K_I and K_II before [Pa m^1/2]
    end type refinement_t
 
    !> Result of a tried step.
@@ -95,6 +100,9 @@ module twolevel_stepping
       real(rk) :: shortest = 0.0_rk  !< shorter steps are too short [s]
       real(rk) :: after_growth = 0.0_rk  !< step after an increment of growth [s]
       real(rk) :: tolerance = 0.0_rk  !< tolerance of the time error of a step; 0: not checked [-]
+      !> time left to the end of the last step in which tips advanced too far [s]
+      real(rk) :: left_in_vain = huge(1.0_rk)
+      integer :: halvings = 0  !< number of steps that have halved it
       integer :: in_vain = 0  !< cuts of the present step after which tips still advanced too far
       integer :: onset_cuts = 0  !< cuts of the present step to an onset of growth
       integer :: arrival_cuts = 0  !< cuts of the present step to the arrival at a target
@@ -160,6 +168,10 @@ contains
       real(rk) :: share, least
 
       self%was_cut = .true.
+      if (trial%converged .and. trial%goes_too_far) then
+         self%left_in_vain = dt
+         self%halvings = 0
+      end if
       least = min(dt, floor_share*self%shortest)
       if (trial%converged .and. trial%onset < 1.0_rk) then
          call cut_to(max(0.01_rk, trial%onset), 0.5_rk*self%shortest, self%onset_cuts, dt)
@@ -229,6 +241,7 @@ contains
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
+         call approach(self, trial, dt)
       else
          power = 1
          if (trial%advance > 0.0_rk) power = max(-1, min(1, powers(self, trial)))
@@ -242,6 +255,28 @@ contains
       end if
       self%was_cut = .false.
    end subroutine step_done
+
+   !> Limit the next step where a step in which tips advanced too far has been cut to this one: to
+   !! half of the time that is left, and after several such steps to all of it. With noticeable
+   !! growth it is the length of a segment that limits steps (powers), and a jump is over.
+   pure subroutine approach(self, trial, dt)
+      class(stepper_t), intent(inout) :: self
+      type(trial_t), intent(in) :: trial
+      real(rk), intent(in) :: dt  !< [s]
+      integer, parameter :: most_halvings = 4
+      real(rk), parameter :: noticeable = 0.25_rk  ! advance, over the length of a segment [-]
+
+      if (.not. self%left_in_vain < huge(1.0_rk)) return
+      self%left_in_vain = self%left_in_vain - dt
+      if (trial%jumps .or. trial%has_joined .or. trial%advance > noticeable .or. &
+          self%left_in_vain <= same_value*dt) then
+         self%left_in_vain = huge(1.0_rk)
+         return
+      end if
+      self%halvings = self%halvings + 1
+      self%next = min(self%next, merge(0.5_rk, 1.0_rk, self%halvings <= most_halvings) &
+                      *self%left_in_vain)
+   end subroutine approach
 
    !> Whether steps have remained too short for progress in time.
    pure logical function is_stuck(self)

@@ -15,6 +15,7 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
    use twolevel_limits, only: watch_levels
+   use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
    use twolevel_refinement, only: refine_windows
    use twolevel_results, only: cell_states, slip_potency
@@ -73,6 +74,10 @@ contains
             pressure = self%problem%fracture_pressure(self%now%coarse)
             call self%stepper%settle(pressure(self%now%grown))
          end if
+      end if
+      if (states_errors(self%scene%growth)) then
+         call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
+                                 self%now, self%notes%jumps)
       end if
       call note_well_rows(self)
       call note_state(self, row%mass_error_relative)
@@ -234,9 +239,27 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       if (.not. self%step%is_unstable) return
       call self%chronicle%add_event(self%now%coarse%time, event_unstable, "unstable growth of " &
                                     //brief_text(sum(self%tip%advance), 4)//" m in all")
+      call note_jumps(self)
       ! The rates of unstable growth do not apply to the next step.
       call self%follow_trend(at_rest=.false.)
    end subroutine accept_step
+
+   !> Report the tips that have advanced without equilibrium.
+   subroutine note_jumps(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk) :: error(size(self%tip)), from(2, size(self%tip)), pressure(2)
+      integer :: i
+
+      do i = 1, size(self%tip)
+         from(:, i) = self%last%front%tip(i)%xy
+      end do
+      pressure = [self%problem%well_pressure(self%scene, self%before), &
+                  self%problem%well_pressure(self%scene, self%now%coarse)]
+      error = 0.0_rk
+      if (allocated(self%now%stated_errors%tip)) error = self%now%stated_errors%tip
+      call self%notes%jumps%note(self%tip, from, error, self%rules%toughness, pressure, &
+                                 self%now%coarse%time, self%chronicle, self%summary)
+   end subroutine note_jumps
 
    !> Add the last step to the stimulation, the slip catalogue and the seismic moment; the slip of
    !! the initial state is no event.

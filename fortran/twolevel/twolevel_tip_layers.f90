@@ -5,6 +5,7 @@ module twolevel_tip_layers
    use base_kinds, only: ik, rk
    use coarse_rock, only: mean_solid, rock_t, solid_t
    use coarse_tip_layer, only: apparent_toughness, leaking_parameter, viscous_parameter
+   use growth_tip, only: tip_t
    use mesh_types, only: mesh_t
    use scene_regime, only: carter_coefficient
    use twolevel_places, only: advances, end_cell
@@ -12,7 +13,7 @@ module twolevel_tip_layers
    implicit none(type, external)
    private
 
-   public :: find_tip_layers
+   public :: close_tips, find_tip_layers, is_viscous
 
    !> b sqrt(d), with d the length of the tip's coarse cell, below which viscosity is neglected [-].
    !! The opening there is then 3 % larger than without it.
@@ -20,7 +21,8 @@ module twolevel_tip_layers
 
 contains
 
-   !> For the tips where they are placed. Growth that jumps has no speed.
+   !> For the tips where they are placed. Growth that jumps has no speed, but where viscosity has
+   !! decided before it does not jump.
    subroutine find_tip_layers(self, dt, may_jump)
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< of the step [s]
@@ -37,7 +39,8 @@ contains
       gain = advances(self%front_state_t, self%start, self%now%segment, self%increments())
       pressure = self%problem%fracture_pressure(self%before) - self%scene%initial%pressure
       do i = 1, size(self%tip, kind=ik)
-         if (may_jump .or. .not. (self%tip(i)%is_free .and. gain(i) > 0.0_rk)) cycle
+         if (.not. (self%tip(i)%is_free .and. gain(i) > 0.0_rk)) cycle
+         if (may_jump .and. .not. is_viscous(self%last%front%tip(i))) cycle
          cell = end_cell(self%problem%mesh%fracture, self%tip(i))
          length = abs(self%problem%mesh%fracture%cell_s(2, cell) &
                       - self%problem%mesh%fracture%cell_s(1, cell))
@@ -60,6 +63,28 @@ contains
          if (any(viscous > 0.0_rk)) ends%viscous = viscous(free)
       end associate
    end subroutine find_tip_layers
+
+   !> Set the driving force to zero at tips that were open before the step and that the suction of
+   !! the viscous fluid closes: such a tip is too far ahead, whatever its faces slip.
+   subroutine close_tips(self)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i), before => self%last%front%tip(i)%intensity)
+            if (.not. (is_viscous(tip) .and. before%k1 > abs(before%k2))) cycle
+            if (.not. tip%intensity%k1 > 0.0_rk) tip%drive%intensity = 0.0_rk
+         end associate
+      end do
+   end subroutine close_tips
+
+   !> Whether viscosity decides on the growth of a tip.
+   elemental logical function is_viscous(tip)
+      type(tip_t), intent(in) :: tip
+      real(rk), parameter :: considerable = 1.2_rk
+
+      is_viscous = tip%viscous_rise > considerable
+   end function is_viscous
 
    !> The rock on both sides of a fracture cell.
    pure function beside(rock, mesh, cell) result(solid)

@@ -4,7 +4,6 @@ module twolevel_tips
    use base_kinds, only: ik, rk
    use growth_front, only: front_state_t
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t
    use scene_types, only: scene_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_places, only: end_cell, shut_tips
@@ -37,7 +36,7 @@ contains
          if (fracture%n_cells > 0) then
             tips%is_shut = shut_tips(tips, now%segment, fracture, now%coarse%jump)
          end if
-         call carry_intensities(scene, fracture, windows, tips, now)
+         call carry_intensities(scene, problem, windows, active, tips, now)
          active = active .and. tips%is_loaded()
          call problem%find_values(now%coarse, now%undrained)
          windows%is_beside_body = has_reference
@@ -47,54 +46,68 @@ contains
             call tips(i)%shut()
             now%windows%tip(i)%found = tips(i)%intensity
             call now%windows%tip(i)%forget_coarse_error()
+            call now%windows%tip(i)%forget_jump()
          end do
          do i = 1, size(tips, kind=ik)
-            if (.not. active(i)) cycle
-            now%windows%tip(i)%jump_then = tip_jump(now, fracture, tips(i))
-            now%windows%tip(i)%place_then = tips(i)%xy
+            if (.not. tips(i)%is_loaded()) cycle
+            if (.not. any(active(windows%served_with(i)))) cycle
+            call now%windows%tip(i)%note_jump(tip_jump(problem, now, tips(i)), tips(i)%xy)
          end do
       end associate
    end subroutine find_tip_intensities
 
-   !> In a network, tips far below their toughness keep their intensities as long as the jump of the
-   !! coarse cell behind them is nearly constant: K is proportional to the jump. The change of the
-   !! jump since the last evaluation is part of their error.
-   subroutine carry_intensities(scene, fracture, windows, tips, now)
+   !> In a network, tips far below their toughness keep their intensities as long as the jump behind
+   !! them is nearly constant: K is proportional to the jump. The change of the jump since the last
+   !! evaluation is part of their error. Tips of one window are evaluated together, and tips whose
+   !! errors by the coarse level have not been estimated since are evaluated again; so are all
+   !! after the undrained response, where K is larger for the same jump.
+   subroutine carry_intensities(scene, problem, windows, active, tips, now)
       type(scene_t), intent(in) :: scene
-      type(fracture_mesh_t), intent(in) :: fracture
+      type(coarse_problem_t), intent(in) :: problem
       type(windows_t), intent(in) :: windows
+      logical, intent(in) :: active(:)  !< (tips) active tips
       type(tip_t), intent(inout) :: tips(:)
       type(levels_state_t), intent(in) :: now
       integer, parameter :: few = 8  ! tips are all evaluated
-      real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
       real(rk), parameter :: far = 0.5_rk  ! lack of toughness, error included [-]
-      real(rk) :: change
+      logical :: can_be(size(tips))
       integer(ik) :: i
 
       if (.not. scene%growth%enabled .or. count(tips%is_loaded()) <= few) return
-      associate (toughness => scene%material%toughness)
+      associate (toughness => scene%material%toughness, known => now%windows%tip)
          do i = 1, size(tips, kind=ik)
-            associate (tip => tips(i), seen => now%windows%tip(i))
-               if (.not. tip%is_loaded() .or. norm2(tip%xy - seen%place_then) > 0.0_rk) cycle
-               if (.not. windows%has_mesh(i)) cycle
-               if (tip%excess(toughness) + tip%relative_error(toughness) > -far) cycle
-               change = norm2(tip_jump(now, fracture, tip) - seen%jump_then)
-               if (change > constant*norm2(seen%jump_then)) cycle
-               change = change/max(norm2(seen%jump_then), tiny(1.0_rk))
-               call tip%carry(windows%intensity_of(i, seen), change)
+            associate (tip => tips(i))
+               can_be(i) = tip%is_loaded() .and. windows%has_mesh(i, now%undrained) .and. &
+                           known(i)%has_same_jump(tip_jump(problem, now, tip), tip%xy) .and. &
+                           tip%excess(toughness) + tip%relative_error(toughness) <= -far
             end associate
+         end do
+         do i = 1, size(tips, kind=ik)
+            if (.not. can_be(i)) cycle
+            associate (neighbours => windows%served_with(i))
+               if (any(active(neighbours) .and. tips(neighbours)%is_loaded() &
+                       .and. .not. can_be(neighbours))) cycle
+            end associate
+            call tips(i)%carry(windows%intensity_of(i, known(i)), &
+                               known(i)%change_of_jump(tip_jump(problem, now, tips(i))))
          end do
       end associate
    end subroutine carry_intensities
 
-   !> Mean opening and slip of the coarse cell behind a tip [m].
-   pure function tip_jump(now, fracture, tip) result(jump)
+   !> Mean opening and slip of the coarse cell behind a tip, over the root of its length: as K, it
+   !! does not depend on the cell [m^1/2].
+   pure function tip_jump(problem, now, tip) result(jump)
+      type(coarse_problem_t), intent(in) :: problem
       type(levels_state_t), intent(in) :: now
-      type(fracture_mesh_t), intent(in) :: fracture
       type(tip_t), intent(in) :: tip
       real(rk) :: jump(2)
 
-      jump = 0.5_rk*sum(now%coarse%jump(:, :, end_cell(fracture, tip)), dim=2)
+      jump = 0.0_rk
+      if (.not. tip%is_free .or. problem%mesh%fracture%n_cells == 0) return
+      associate (cell => end_cell(problem%mesh%fracture, tip))
+         jump = 0.5_rk*sum(now%coarse%jump(:, :, cell), dim=2) &
+                /sqrt(problem%model%condensed%length(cell))
+      end associate
    end function tip_jump
 
 end module twolevel_tips

@@ -2,7 +2,7 @@
 !! at which these change.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_plane, only: nearest_place
+   use base_plane, only: nearest_place, norm2
    use base_tolerances, only: same_place, same_value
    use coarse_joints, only: joints_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t

@@ -6,7 +6,7 @@
 !! along the fractures keep their arc lengths, which the coarse level uses.
 module twolevel_window_path
    use base_kinds, only: ik, rk
-   use base_plane, only: crosses, point_distance
+   use base_plane, only: crosses, norm2, point_distance
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: fracture_mesh_t, network_t
    implicit none(type, external)

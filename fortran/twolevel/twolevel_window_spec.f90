@@ -3,6 +3,7 @@
 module twolevel_window_spec
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_rock, only: new_rock, rock_t
    use fine_elasticity, only: elasticity_t
    use growth_network, only: end_pieces

@@ -1,12 +1,21 @@
 !> A tip in a window: its intensities and their error estimates.
 module twolevel_window_tip
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use fine_tip_types, only: complete_errors, intensity_t
    use scene_types, only: scene_t
    implicit none(type, external)
    private
 
-   public :: window_tip_t
+   public :: of_edge, of_elements, window_tip_t
+
+   ! Parts of the error that a refinement reduces.
+   integer, parameter :: of_elements = 1  !< by smaller elements
+   integer, parameter :: of_edge = 2  !< by a larger window, or by the body as window
+
+   !> A refinement has had no effect if the error is still more than this share of the error before
+   !! [-], until the error has become so many times as large [-].
+   real(rk), parameter :: no_effect = 0.95_rk, other_state = 2.0_rk
 
    !> Largest number of refinements. Each halves the rosette; from the second on each also halves
    !! the other elements.
@@ -16,6 +25,8 @@ module twolevel_window_tip
    type :: window_tip_t
       integer(ik) :: fracture = 0, end = 0  !< in the network
       integer :: times_finer = 0  !< number of refinements
+      !> (of_elements, of_edge) error of the intensities before the last refinement [Pa m^1/2]
+      real(rk) :: refined_at(2) = huge(1.0_rk)
       !> intensities of the last solution, without the error by the coarse level
       type(intensity_t) :: found
       !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), by
@@ -25,15 +36,22 @@ module twolevel_window_tip
       real(rk) :: compared_at(2) = 0.0_rk  !< where the tip was then [m]
       real(rk) :: of_elements = 0.0_rk  !< the part that smaller elements would mend [Pa m^1/2]
       real(rk) :: of_edge = 0.0_rk  !< the part that a larger window would mend [Pa m^1/2]
-      !> At the last evaluation: mean opening and slip of the coarse cell behind the tip [m], and
-      !! the position of the tip [m]
+      !> At the last evaluation: opening and slip behind the tip, proportional to K [m^1/2], and the
+      !! position of the tip [m]
       real(rk) :: jump_then(2) = 0.0_rk, place_then(2) = huge(1.0_rk)
+      !> the errors by the coarse level have been estimated for the last evaluation
+      logical :: is_compared = .false.
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
    contains
       procedure :: element_size
       procedure :: rosette_radius
       procedure :: can_be_finer
+      procedure :: is_futile
       procedure :: forget_coarse_error
+      procedure :: note_jump
+      procedure :: forget_jump
+      procedure :: has_same_jump
+      procedure :: change_of_jump
       procedure :: with_coarse_error
    end type window_tip_t
 
@@ -71,6 +89,19 @@ contains
       can_be_finer = self%times_finer < finer_most
    end function can_be_finer
 
+   !> Whether the last refinement of one kind has not reduced the error, so that the next would not
+   !! either.
+   elemental logical function is_futile(self, part, error)
+      class(window_tip_t), intent(in) :: self
+      integer, intent(in) :: part  !< of_elements or of_edge
+      real(rk), intent(in) :: error  !< of the intensities now [Pa m^1/2]
+
+      associate (before => self%refined_at(part))
+         is_futile = before < huge(1.0_rk) .and. error > no_effect*before .and. &
+                     error < other_state*before
+      end associate
+   end function is_futile
+
    !> Reset the contribution of the coarse level.
    elemental subroutine forget_coarse_error(self)
       class(window_tip_t), intent(inout) :: self
@@ -81,6 +112,45 @@ contains
       self%of_edge = 0.0_rk
       self%passing = 0.0_rk
    end subroutine forget_coarse_error
+
+   !> Store the jump behind the tip at an evaluation.
+   pure subroutine note_jump(self, jump, place)
+      class(window_tip_t), intent(inout) :: self
+      real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
+      real(rk), intent(in) :: place(2)  !< position of the tip [m]
+
+      self%jump_then = jump
+      self%place_then = place
+      self%is_compared = .false.
+   end subroutine note_jump
+
+   !> The next evaluation is due: no jump is known.
+   elemental subroutine forget_jump(self)
+      class(window_tip_t), intent(inout) :: self
+
+      self%place_then = huge(1.0_rk)
+      self%is_compared = .false.
+   end subroutine forget_jump
+
+   !> Whether the tip is where it was at the last evaluation, with nearly the same jump behind it,
+   !! and the errors of this evaluation are known.
+   pure logical function has_same_jump(self, jump, place)
+      class(window_tip_t), intent(in) :: self
+      real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
+      real(rk), intent(in) :: place(2)  !< position of the tip [m]
+      real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
+
+      has_same_jump = self%is_compared .and. .not. norm2(place - self%place_then) > 0.0_rk .and. &
+                      norm2(jump - self%jump_then) <= constant*norm2(self%jump_then)
+   end function has_same_jump
+
+   !> Change of the jump since the last evaluation, relative [-].
+   pure real(rk) function change_of_jump(self, jump) result(change)
+      class(window_tip_t), intent(in) :: self
+      real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
+
+      change = norm2(jump - self%jump_then)/max(norm2(self%jump_then), tiny(1.0_rk))
+   end function change_of_jump
 
    !> Intensities of the last solution, with the last estimate of the errors by the coarse level.
    pure function with_coarse_error(self, crack_modulus) result(intensity)

@@ -8,6 +8,8 @@
 module twolevel_windows
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
+   use base_tolerances, only: same_place
    use coarse_state, only: state_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
@@ -58,6 +60,7 @@ module twolevel_windows
       procedure :: coarse_changed
       procedure :: intensity_of
       procedure :: is_active
+      procedure :: served_with
       procedure :: has_mesh
       procedure :: has_to_mesh
       procedure :: mesh_again
@@ -325,12 +328,25 @@ contains
       end associate
    end function intensity_of
 
-   !> The window of a tip has been meshed, and is not to be meshed again from the beginning.
-   pure logical function has_mesh(self, tip)
+   !> Numbers of the tips that are evaluated in the same window as a tip, this tip included.
+   pure function served_with(self, tip) result(numbers)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: tip
+      integer(ik), allocatable :: numbers(:)
 
-      has_mesh = allocated(self%slot(self%window_of(tip))%window%made)
+      numbers = self%slot(self%window_of(tip))%window%serves
+   end function served_with
+
+   !> The window of a tip has been meshed, is not to be meshed again from the beginning, and its
+   !! last solution is that of undrained rock, or is not.
+   pure logical function has_mesh(self, tip, undrained)
+      class(windows_t), intent(in) :: self
+      integer(ik), intent(in) :: tip
+      logical, intent(in) :: undrained
+
+      associate (window => self%slot(self%window_of(tip))%window)
+         has_mesh = allocated(window%made) .and. (window%undrained .eqv. undrained)
+      end associate
    end function has_mesh
 
    !> A window serves a tip with intensities to be evaluated.
@@ -379,7 +395,7 @@ contains
 
       associate (tip => tips(i), before => window%made%place(:, i))
          moved = norm2(tip%xy - before)
-         has_moved = moved > 0.0_rk
+         has_moved = moved > same_place*norm2(tip%xy - tip%origin)
          if (has_moved) has_moved = overlaps(window, tip%origin, before) .or. &
                                     overlaps(window, tip%origin, tip%xy)
          if (.not. has_moved) return

@@ -90,7 +90,7 @@ class _Network:
             self.ways[kind] = self._cut_out
 
     def round(self, faults: Sequence[Fault]) -> list[Repair]:
-        """Repair faults of one kind, each fracture once; the rest comes when all is seen anew."""
+        """Repair faults of one kind, each fracture once; the rest comes when all is examined."""
         made: list[Repair] = []
         touched: set[int] = set()
         self.after = {}

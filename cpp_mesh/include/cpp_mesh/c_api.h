@@ -167,9 +167,9 @@ int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_cent
    `old_mesh` only in patches around the ends that have grown: `network` is the old one with
    vertices added there. Sizes, and rosettes at the ends that have grown, are those of a new mesh
    (end_radius as in cm_spec); rosettes of other tips stay, unless their radius changes or the patch
-   reaches them. Fracture cells in the patches are divided anew, those outside stay. Fails where the
-   patch would hold most of the body, cells would get angles below 22 degrees and below those
-   of the cells that they replace, or anything does not fit: make a new mesh then. */
+   reaches them. Fracture cells in the patches are divided again, those outside stay. Fails where
+   the patch would hold most of the body, cells would get angles below 22 degrees and below those of
+   the cells that they replace, or anything does not fit: make a new mesh then. */
 int cm_grow(const cm_mesh* old_mesh, const cm_network* network,
             const double* end_radius /* [n_fractures][2], or NULL */, cm_mesh** new_mesh);
 

@@ -78,7 +78,7 @@ contains
       close (unit)
    end subroutine read_times
 
-   !> Steps end where a well starts or ends, and begin anew from there.
+   !> Steps end where a well starts or ends, and start again from there.
    subroutine test_switches()
       type(scene_t) :: scene
       type(error_t), allocatable :: error

@@ -1,5 +1,5 @@
 !> Springs, tractions along and across the sides, inflow, points that are held and loaded; other
-!! values on the sides are those of a matrix that is made anew.
+!! values on the sides are those of a matrix that is made again.
 program test_coarse_sides
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -32,7 +32,7 @@ end module one_start
 !!
 !! The bodies are far worse than elastic ones: their stiffness is any positive definite matrix,
 !! opening and slip are coupled as strongly as that allows. Reference: the law as it is stated
-!! (docs/theory.md), written out here anew.
+!! (docs/theory.md), written out here independently.
 program test_contact_newton
    use base_kinds, only: ik, rk
    use contact_law, only: contact_law_t
@@ -231,7 +231,7 @@ contains
          if (report%outcome == outcome_converged) worst = max(worst, departure(pairs, x(:2*n)))
       end do
       print "(a,t36,i0,a,f5.1,a,i0,a,i0,a,es8.1)", name, n_bodies, " solved, iterations ", &
-         real(total, rk)/n_bodies, ", most ", most, ", started anew ", n_restarted, &
+         real(total, rk)/n_bodies, ", most ", most, ", restarted ", n_restarted, &
          ", departure ", worst
       call checks%is_true(n_failed == 0, name//": every iteration converges")
       call checks%is_close(worst, 0.0_rk, 1.0e-8_rk, name//": the law is fulfilled")
@@ -275,7 +275,7 @@ contains
          if (report%outcome == outcome_converged) worst = max(worst, departure(pairs, x(:2*n)))
       end do
       print "(a,t36,i0,a,f5.1,a,i0,a,i0,a,es8.1)", name, n_bodies, " solved, iterations ", &
-         real(total, rk)/n_bodies, ", most ", most, ", started anew ", n_restarted, &
+         real(total, rk)/n_bodies, ", most ", most, ", restarted ", n_restarted, &
          ", departure ", worst
       call checks%is_true(n_failed == 0, name//": every iteration converges")
       call checks%is_close(worst, 0.0_rk, 1.0e-8_rk, name//": the law is fulfilled")
@@ -320,7 +320,7 @@ contains
          if (report%outcome == outcome_converged) worst = max(worst, pairs%law_residual(x(:2*n)))
       end do
       print "(a,t36,i0,a,f5.1,a,i0,a,i0,a,es8.1)", name, n_bodies, " solved, iterations ", &
-         real(total, rk)/n_bodies, ", most ", most, ", started anew ", n_restarted, &
+         real(total, rk)/n_bodies, ", most ", most, ", restarted ", n_restarted, &
          ", departure ", worst
       print "(a,t36,i0)", name//", given up", n_failed
       call checks%is_true(n_failed == 0 .or. kind == any_body, name//": every one is solved")
@@ -425,7 +425,7 @@ contains
          if (report%was_restarted) n_restarted = n_restarted + 1
          worst = max(worst, pairs%law_residual(x))
       end do
-      print "(a,t36,i0,a,i0)", "held closed", n_bodies, " solved, started anew ", n_restarted
+      print "(a,t36,i0,a,i0)", "held closed", n_bodies, " solved, restarted ", n_restarted
       call checks%is_true(n_failed == 0, "held closed: every iteration converges")
       call checks%is_close(worst, 0.0_rk, 1.0e-8_rk, "held closed: the law is fulfilled")
    end subroutine held_closed

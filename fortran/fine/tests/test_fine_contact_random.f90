@@ -1,5 +1,5 @@
 !> Contact on random networks of fractures under random loads that follow each other: no solution
-!! may fail, and each fulfils the law of contact, written out here anew, to 1e-8 of the largest
+!! may fail, and each fulfils the law of contact, written out here again, to 1e-8 of the largest
 !! traction. Friction from none to 2, with dilation and without, T and X joints, kinks, fractures
 !! that end on the boundary.
 program test_fine_contact_random
@@ -41,7 +41,7 @@ program test_fine_contact_random
    end do
    print "(i0,a,i0,a,f5.1,a,i0,a,i0,a,es8.1)", n_solved, " solved, ", n_failed, &
       " failed, iterations ", real(n_iterations, rk)/n_solved, ", most ", n_most, &
-      ", started anew ", n_restarted, ", departure ", worst
+      ", restarted ", n_restarted, ", departure ", worst
    print "(a,i0,a,3(1x,i0))", "at most ", n_pairs_most, " pairs; stick, slip, open:", seen
    call checks%is_true(n_solved == n_bodies*n_laws*n_loads, "all were tried")
    call checks%is_true(n_failed == 0, "none failed")

@@ -31,10 +31,13 @@ program test_growth_advances
    call test_parallel()
    call test_unstable()
    call test_drop()
+   call test_suction()
    call test_shapes()
    call test_moving()
    call test_random_problems()
    call test_order()
+   call test_retreat()
+   call test_steep_guess()
    call checks%finish()
 
 contains
@@ -52,6 +55,38 @@ contains
          if (.not. has_moved .or. advances%evaluations > 100) exit
       end do
    end subroutine solve
+
+   !> A tip whose excess is negative everywhere ends exactly at its lower bound, whatever the digits
+   !! of the bound are.
+   subroutine test_retreat()
+      real(rk), parameter :: lower(3) = [0.025_rk, 1.0_rk/3.0_rk, 0.7_rk/11.0_rk]
+      type(advances_t) :: advances
+      logical :: has_moved
+      integer :: i
+
+      do i = 1, size(lower)
+         call advances%begin(lower(i:i), [0.5_rk], [0.4_rk], reshape([-0.2_rk], [1, 1]))
+         do
+            call advances%improve([-0.6_rk - advances%place(1)], tolerance, has_moved)
+            if (.not. has_moved .or. advances%evaluations > 20) exit
+         end do
+         call checks%is_close(advances%place(1), lower(i), 0.0_rk, "at the lower bound")
+         call checks%is_true(advances%evaluations == 2, "in two evaluations")
+      end do
+   end subroutine test_retreat
+
+   !> With a guess of the slope that is far too steep the tip still leaves its lower bound.
+   subroutine test_steep_guess()
+      type(advances_t) :: advances
+      logical :: has_moved
+
+      call advances%begin([0.0_rk], [1.0_rk], [0.0_rk], reshape([-1.0e6_rk], [1, 1]))
+      do
+         call advances%improve([0.2_rk - advances%place(1)], tolerance, has_moved)
+         if (.not. has_moved .or. advances%evaluations > 50) exit
+      end do
+      call checks%is_close(advances%place(1), 0.2_rk, tolerance, "in equilibrium")
+   end subroutine test_steep_guess
 
    !> Double cantilever beam of 1 m at a given opening: K falls as the length to the power of -2.
    subroutine test_cantilever()
@@ -128,6 +163,31 @@ contains
          ratio = ratio - 0.5_rk*power*c**2
       end do
    end function second_over_first
+
+   !> K_eq of a tip that viscous fluid follows falls steeply with its position, and vanishes where
+   !! suction closes its faces; ahead of that, slip of the closed faces brings it back. The search
+   !! begins in the closed part, and does not end there, nor at the far end of the segment.
+   subroutine test_suction()
+      type(advances_t) :: advances
+      real(rk), parameter :: upper(1) = [0.042_rk]
+      logical :: has_moved
+
+      call advances%begin([0.0_rk], upper, [0.0103_rk], reshape([-450.0_rk], [1, 1]))
+      do
+         call advances%improve(with_suction(advances%place), tolerance, has_moved)
+         if (.not. has_moved .or. advances%evaluations > 100) exit
+      end do
+      call checks%is_close(advances%place(1), 0.0075_rk, 2.0e-5_rk, "suction: where it is open")
+      call checks%is_true(advances%evaluations <= 20, "suction: number of evaluations")
+   end subroutine test_suction
+
+   pure function with_suction(place) result(excess)
+      real(rk), intent(in) :: place(:)  !< [m]
+      real(rk) :: excess(size(place))
+
+      excess = max(-1.0_rk, 3.3_rk - 440.0_rk*place)
+      where (place > 0.0102_rk) excess = min(0.96_rk, 0.4_rk + 900.0_rk*(place - 0.0103_rk))
+   end function with_suction
 
    !> Parallel cracks of 1 and .98 m, 1 m apart, each of which shields the other as it becomes
    !! longer: the longer crack grows, the other stays.

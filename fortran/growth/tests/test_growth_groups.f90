@@ -18,6 +18,8 @@ program test_growth_groups
    call test_rivals()
    call test_lag()
    call test_parting()
+   call test_increments()
+   call test_separated()
    call checks%finish()
 
 contains
@@ -106,6 +108,41 @@ contains
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
 
+   !> Tips of one group advance by equal shares of their segments: tips with other increments are
+   !! not equal.
+   subroutine test_increments()
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
+      integer(ik) :: kind(4)
+      real(rk) :: same(4)
+
+      call interaction%begin(4)
+      same = 1.0_rk
+      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
+                              increment*[1.0_rk, 2.0_rk, 1.0_rk, 1.01_rk], interaction, kind)
+      call checks%is_true(all(kind == [1, 2, 1, 1]), "other increments")
+   end subroutine test_increments
+
+   !> Tips that have separated by chance, and with a reason: K_eq of one has fallen, or was smaller
+   !! over the last increments.
+   subroutine test_separated()
+      type(tip_groups_t) :: groups
+      real(rk), parameter :: small(2) = 0.01_rk
+
+      groups%usual = [0.0_rk, -0.02_rk]
+      call checks%is_true(groups%differ_by_chance(1_ik, 2_ik, [0.0_rk, -0.08_rk], small), &
+                          "errors of meshes")
+      call checks%is_true(.not. groups%differ_by_chance(2_ik, 1_ik, [0.0_rk, -0.3_rk], small), &
+                          "K_eq has fallen")
+      call checks%is_true(groups%differ_by_chance(2_ik, 1_ik, [0.0_rk, -0.3_rk], 25.0_rk*small), &
+                          "within its error")
+      groups%usual = [-0.04_rk, 0.0_rk]
+      call checks%is_true(.not. groups%differ_by_chance(1_ik, 2_ik, [0.0_rk, 0.0_rk], small), &
+                          "smaller than that of the other one")
+      call checks%is_true(groups%differ_by_chance(1_ik, 2_ik, [0.0_rk, 0.0_rk], 4.0_rk*small), &
+                          "within the errors")
+   end subroutine test_separated
+
    !> Whether two tips that have not grown yet, or have grown by `gain`, are one group.
    logical function are_one(one, other, off, gain)
       real(rk), intent(in) :: one, other, off  !< [-]
@@ -137,8 +174,10 @@ contains
 
       call interaction%begin(2)
       if (present(lead)) then
-         call interaction%store_column(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], segment)
-         call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], segment)
+         call interaction%store_column(1_ik, 1.0_rk, [0.0_rk, 0.0_rk], [0.0_rk, -lead], &
+                                       [.true., .true.], segment)
+         call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], &
+                                       [.true., .true.], segment)
       end if
       drive = 1.0_rk
       gain = 0.0_rk

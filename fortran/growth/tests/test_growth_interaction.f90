@@ -7,12 +7,14 @@ program test_growth_interaction
    implicit none(type, external)
 
    integer, parameter :: n = 4
+   logical, parameter :: all_evaluated(n) = .true.
    integer(ik), parameter :: all_tips(n) = [1_ik, 2_ik, 3_ik, 4_ik]
    real(rk), parameter :: own = -0.6_rk, shadow = -0.9_rk  !< per length of a segment
    type(checks_t) :: checks
 
    call test_measure()
    call test_learning()
+   call test_not_evaluated()
    call test_matrix()
    call checks%finish()
 
@@ -56,7 +58,8 @@ contains
       matrix = truth()
       before = [0.1_rk, 0.2_rk, 0.3_rk, 0.4_rk]
       do j = 1, n
-         call interaction%store_column(j, -0.4_rk, before, before - 0.4_rk*matrix(:, j), segment(j))
+         call interaction%store_column(j, -0.4_rk, before, before - 0.4_rk*matrix(:, j), &
+                                       all_evaluated, segment(j))
       end do
    end subroutine measure
 
@@ -95,17 +98,44 @@ contains
       call measure(interaction, segment)
       other = 2.0_rk*truth()
       moved = [0.01_rk, 0.0_rk, -0.01_rk, 0.0_rk]
-      call interaction%update(moved, matmul(other, moved))
+      call interaction%update(moved, matmul(other, moved), all_evaluated)
       call checks%is_close(maxval(abs(interaction%matrix - truth())), 0.0_rk, 1.0e-15_rk, &
                            "too little")
       moved = [0.3_rk, 0.1_rk, -0.2_rk, 0.0_rk]
-      call interaction%update(moved, matmul(other, moved))
+      call interaction%update(moved, matmul(other, moved), all_evaluated)
       call checks%is_close(maxval(abs(matmul(interaction%matrix - other, moved))), 0.0_rk, &
                            1.0e-14_rk, &
                            "learnt")
       call checks%is_close(maxval(abs(interaction%measured - truth())), 0.0_rk, 1.0e-15_rk, &
                            "measured")
    end subroutine test_learning
+
+   !> Rows of tips that are not evaluated keep what was measured, whatever their stale excess says.
+   subroutine test_not_evaluated()
+      type(interaction_t) :: interaction
+      type(segment_t) :: segment(n)
+      real(rk) :: before(n), moved(n), matrix(n, n)
+      logical, parameter :: evaluated(n) = [.true., .true., .false., .true.]
+
+      segment = pieces()
+      call measure(interaction, segment)
+      matrix = truth()
+      before = 0.0_rk
+      call interaction%store_column(1_ik, -0.4_rk, before, -0.8_rk*merge(matrix(:, 1), 0.0_rk, &
+                                                                         evaluated), evaluated, &
+                                    segment(1))
+      call checks%is_close(maxval(abs(interaction%matrix(:, 1) &
+                                      - merge(2.0_rk, 1.0_rk, evaluated)*matrix(:, 1))), 0.0_rk, &
+                           1.0e-14_rk, "the row of the third tip stays in a measurement")
+      call measure(interaction, segment)
+      moved = [0.3_rk, 0.1_rk, 0.0_rk, 0.0_rk]
+      call interaction%update(moved, merge(2.0_rk*matmul(matrix, moved), 0.0_rk, evaluated), &
+                              evaluated)
+      call checks%is_close(maxval(abs(interaction%matrix(3, :) - matrix(3, :))), 0.0_rk, &
+                           1.0e-14_rk, "and in an update")
+      call checks%is_close(maxval(abs(matmul(interaction%matrix - 2.0_rk*matrix, moved)), &
+                                  mask=evaluated), 0.0_rk, 1.0e-14_rk, "the others are updated")
+   end subroutine test_not_evaluated
 
    !> Interaction of groups: the sum over their tips, or the slope of a segment where a tip has not
    !! been measured.

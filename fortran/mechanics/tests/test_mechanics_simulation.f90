@@ -150,7 +150,7 @@ contains
       call checks%is_close(simulation%factor, factor, 0.0_rk, "without more load")
    end subroutine check_growth
 
-   !> A central crack in tension grows straight on through meshes that are made anew around its tips
+   !> A central crack in tension grows straight on through meshes that are made around its tips
    !! only: K_I stays that of Tada's formula for a strip (1973; within 0.1 %), within its own
    !! estimated error.
    subroutine check_patched_meshes()

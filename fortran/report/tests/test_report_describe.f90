@@ -7,7 +7,7 @@ program test_report_describe
    use report_describe, only: description
    use report_record, only: status_failed, status_finished, status_stopped
    use report_rows, only: event_arrest, event_bifurcation, event_growth, event_growth_onset, &
-                          event_growth_uncertain, &
+                          event_growth_jump, event_growth_uncertain, &
                           event_joint, event_opening, event_remesh, event_slip_onset, &
                           event_step_cut, event_unstable, event_well, event_window
    use testing_checks, only: checks_t
@@ -32,7 +32,8 @@ program test_report_describe
                                                 event_arrest, event_step_cut, &
                                                 event_unstable, event_bifurcation, &
                                                 event_remesh, event_well, &
-                                                event_growth_uncertain, event_window]), &
+                                                event_growth_jump, event_growth_uncertain, &
+                                                event_window]), &
                        "the kinds of events")
    call checks%is_true(all(status_words%word == [character(len=10) :: status_finished, &
                                                  status_stopped, status_failed]), "how runs end")

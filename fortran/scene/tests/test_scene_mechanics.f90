@@ -72,6 +72,10 @@ program test_scene_mechanics
    call accept("adaptive", 7, "&adaptive enabled=.true. /")
    call refuse(9, "&fe size_fracture=0.1 size_boundary=1.2 /", ":9: &fe: size_boundary is 1.2")
    call refuse(2, "&material young=1e9 poisson=0.2 /", "toughness [Pa m^1/2], which growth needs")
+   call refuse(2, "&material young=1e9 poisson=0.2 toughness=0 /", ":2: &material: toughness is "// &
+               "0 but must be positive in a scene without &fluid")
+   call refuse(3, "&fracture name='f' x=0.5 1 y=2*0.5 law='open' toughness=0 /", ":3: &fracture: "// &
+               "toughness is 0 but must be positive")
    call refuse(6, "", "", accepted=.true., and_1="&domain shape='disc' x_centre=1 y_centre=0.5 "// &
                "radius=2 /")
    call refuse(6, "", "radius [m], which the shape 'disc' needs", and_1="&domain shape='disc' "// &

@@ -5,7 +5,8 @@ program test_twolevel_event_log
    use growth_network, only: network_of_scene
    use growth_targets, only: target_boundary
    use mesh_types, only: fracture_mesh_t
-   use report_rows, only: event_arrest, event_growth, event_joint, event_opening, event_slip_onset
+   use report_rows, only: event_arrest, event_bifurcation, event_growth, event_joint, &
+                          event_opening, event_slip_onset
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
@@ -13,11 +14,13 @@ program test_twolevel_event_log
    implicit none(type, external)
 
    type(checks_t) :: checks
+   real(rk), parameter :: toughness = 1.0e6_rk  !< [Pa m^1/2]
 
    call test_rows_of_tips()
    call test_growth()
    call test_contact()
    call test_gain()
+   call test_separation()
    call checks%finish()
 
 contains
@@ -144,5 +147,83 @@ contains
       simulation%owes_state = .true.
       call checks%is_true(.not. simulation%is_over(), "but for one more state")
    end subroutine test_gain
+
+   !> Two tips have grown in one group and separate. An event tells it if their K_eq were equal,
+   !! once the difference of their gains exceeds the sum of their errors and a tenth of the shorter
+   !! increment; none tells a difference with a reason.
+   subroutine test_separation()
+      real(rk), parameter :: equal(2) = [0.0_rk, -0.02_rk], other(2) = [0.0_rk, -0.3_rk]
+
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.029_rk) == 1, "by chance")
+      call checks%is_true(n_separations(equal, [0.05_rk, 0.11_rk], 0.029_rk) == 1, "the other one")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.031_rk) == 0, "within errors")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.107_rk], 0.0_rk) == 0, "hardly")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.107_rk], 0.0_rk, increments= &
+                                        [0.02_rk, 0.04_rk]) == 1, "of the shorter increment")
+      call checks%is_true(n_separations(other, [0.11_rk, 0.05_rk], 0.0_rk) == 0, "with a reason")
+      call checks%is_true(n_separations(other, [0.11_rk, 0.05_rk], 0.0_rk, off=0.3_rk) == 1, &
+                          "K_eq known to 30 %")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.0_rk, arrested=.true.) == 0, &
+                          "one has met a target")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.0_rk, first=2_ik) == 0, &
+                          "never one group")
+   end subroutine test_separation
+
+   !> Number of events of two tips that have grown by 0.02 m, in one group unless `first` says
+   !! another one, and then by different gains.
+   integer function n_separations(excess, gain, error, off, increments, arrested, first) result(n)
+      real(rk), intent(in) :: excess(2)  !< of K_eq over K_IC when they separate [-]
+      real(rk), intent(in) :: gain(2)  !< [m]
+      real(rk), intent(in) :: error  !< of the position of each [m]
+      real(rk), intent(in), optional :: off  !< error of K_eq over K_IC [-]
+      real(rk), intent(in), optional :: increments(2)  !< [m]
+      logical, intent(in), optional :: arrested  !< the tip behind is
+      integer(ik), intent(in), optional :: first  !< group of the second tip at first
+      type(two_levels_t) :: simulation
+      real(rk) :: increment(2)
+      integer :: k
+
+      increment = 0.05_rk
+      if (present(increments)) increment = increments
+      call start(simulation)
+      call simulation%notes%begin(2)
+      simulation%tip%drive%intensity = toughness*(1.0_rk + excess)
+      if (present(off)) simulation%tip%intensity%k1_error = off*toughness
+      allocate (simulation%now%segment(2))
+      simulation%now%segment%gain = 0.02_rk
+      associate (groups => simulation%now%groups)
+         groups%kind = [1_ik, 1_ik]
+         if (present(first)) groups%kind(2) = first
+         groups%usual = [0.0_rk, 0.0_rk]
+      end associate
+      simulation%now%stated_errors%tip = [error, error]
+      call note(simulation, increment)
+      simulation%now%groups%kind = [1_ik, 2_ik]
+      call note(simulation, increment)
+      ! What they are later does not matter.
+      simulation%tip%drive%intensity = toughness
+      simulation%now%segment%gain = gain
+      if (present(arrested)) simulation%tip(minloc(gain, dim=1))%arrested = arrested
+      do k = 1, 2
+         call note(simulation, increment)
+      end do
+      n = size(simulation%chronicle%events)
+      if (n > 0) then
+         associate (tip => simulation%tip(maxloc(gain, dim=1)))
+            call checks%is_close(norm2(simulation%chronicle%events(1)%xy - tip%xy), 0.0_rk, &
+                                 0.0_rk, "the one ahead")
+         end associate
+         call checks%is_true(simulation%chronicle%events(1)%kind == event_bifurcation, "event")
+      end if
+   end function n_separations
+
+   !> Note the separation of tips in the present state.
+   subroutine note(simulation, increment)
+      type(two_levels_t), intent(inout) :: simulation
+      real(rk), intent(in) :: increment(:)  !< (tips) [m]
+
+      call simulation%notes%note_separation(simulation%tip, simulation%now, toughness, increment, &
+                                            simulation%chronicle)
+   end subroutine note
 
 end program test_twolevel_event_log

@@ -36,6 +36,7 @@ program test_twolevel_refinement
    call test_small_window(.false.)
    call test_good_window()
    call test_poor_elements()
+   call test_no_effect()
    call test_body()
    call checks%finish()
 
@@ -167,13 +168,15 @@ contains
       type(two_levels_t) :: simulation
       type(growth_error_t) :: growth
       logical :: any_improved, is_noted(2)
+      real(rk) :: off  !< [Pa m^1/2]
       integer :: n
 
       call start(0.3_rk, 0.5_rk, simulation, usual_toughness)
       do n = 1, 5
-         simulation%now%windows%tip%found%k2_error = 0.1_rk*usual_toughness
-         simulation%now%windows%tip%of_elements = 0.1_rk*usual_toughness
-         simulation%tip%intensity%k2_error = 0.1_rk*usual_toughness
+         off = 0.1_rk*0.9_rk**(n - 5)*usual_toughness
+         simulation%now%windows%tip%found%k2_error = off
+         simulation%now%windows%tip%of_elements = off
+         simulation%tip%intensity%k2_error = off
          call improve(simulation, any_improved)
          if (.not. any_improved) exit
          call checks%is_true(all(simulation%now%windows%tip%times_finer == n), "finer and finer")
@@ -195,6 +198,40 @@ contains
       call note_uncertain_tips(simulation, is_noted)
       call checks%is_true(size(simulation%chronicle%events) == n, "once")
    end subroutine test_poor_elements
+
+   !> A refinement that has not reduced the error is not repeated: neither smaller elements nor a
+   !! larger window, until the error has become twice as large.
+   subroutine test_no_effect()
+      type(twolevel_simulation_t) :: simulation
+      logical :: any_improved
+      integer :: i
+
+      call start(0.1_rk, 0.5_rk, simulation, usual_toughness)
+      call set_error(simulation, 0.1_rk)
+      call improve(simulation, any_improved)
+      call checks%is_true(all(simulation%now%windows%tip%times_finer == 1), "smaller elements")
+      call set_error(simulation, 0.098_rk)
+      call improve(simulation, any_improved)
+      call checks%is_true(all(simulation%now%windows%tip%times_finer == 1), "once")
+      call checks%is_true(all([(simulation%windows%slot(i)%window%times_larger == 1, i=1, 2)]), &
+                          "a larger window then")
+      call set_error(simulation, 0.097_rk)
+      call improve(simulation, any_improved)
+      call checks%is_true(.not. any_improved, "and no more of either")
+      call set_error(simulation, 0.21_rk)
+      call improve(simulation, any_improved)
+      call checks%is_true(all(simulation%now%windows%tip%times_finer == 2), "another state")
+   end subroutine test_no_effect
+
+   !> An error to which elements and edge contribute nearly equally.
+   subroutine set_error(simulation, share)
+      type(twolevel_simulation_t), intent(inout) :: simulation
+      real(rk), intent(in) :: share  !< of the toughness [-]
+
+      simulation%tip%intensity%k2_error = share*usual_toughness
+      simulation%now%windows%tip%of_elements = share*usual_toughness
+      simulation%now%windows%tip%of_edge = 0.9_rk*share*usual_toughness
+   end subroutine set_error
 
    !> A window that would have to be nearly as large as the body is replaced by the body, which both
    !! tips share; then no error enters over an edge.

@@ -22,6 +22,7 @@ program test_twolevel_stepping
    call test_advance()
    call test_onset()
    call test_too_far()
+   call test_approach()
    call test_sudden()
    call test_headway()
    call test_limits_of_wells()
@@ -264,6 +265,39 @@ contains
       call checks%is_true(is_too_short, "at once where no time is needed to go too far")
       call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
+
+   !> Steps after one in which tips grew too far do not cross its end unless they halve the time that
+   !! is left four times; then the rest is taken in one step. Noticeable growth, or a jump, ends this.
+   subroutine test_approach()
+      type(stepper_t) :: stepper
+      type(trial_t) :: too_far, little
+      real(rk) :: dt, time
+      logical :: is_too_short
+      integer :: k
+
+      too_far = trial_t(converged=.true., goes_too_far=.true.)
+      little = trial_t(converged=.true., advance=0.01_rk)
+      call stepper%begin(chosen)
+      dt = 64.0_rk
+      time = 0.0_rk
+      call stepper%cut(too_far, dt, is_too_short)
+      do k = 1, 6
+         time = time + dt
+         call stepper%step_done(little, dt)
+         call checks%is_close(time, merge(64.0_rk, 64.0_rk - 32.0_rk*0.5_rk**(k - 1), k == 6), &
+                              1.0e-12_rk, "half of what is left")
+         dt = stepper%step_to(1.0e6_rk)
+      end do
+      call checks%is_close(dt, 8.0_rk, 1.0e-12_rk, "as usual beyond")
+      dt = 64.0_rk
+      call stepper%cut(too_far, dt, is_too_short)
+      call stepper%step_done(trial_t(converged=.true., advance=0.3_rk), dt)
+      call checks%is_close(stepper%next, 64.0_rk, 1.0e-12_rk, "growth limits steps by itself")
+      dt = 64.0_rk
+      call stepper%cut(too_far, dt, is_too_short)
+      call stepper%step_done(trial_t(converged=.true., jumps=.true.), dt)
+      call checks%is_close(stepper%next, 128.0_rk, 1.0e-12_rk, "the jump is over")
+   end subroutine test_approach
 
    !> Whatever the time errors, no step is shorter than a 64th of the shortest step, except up to a
    !! switch. Three hundred steps cut to this length count as no progress in time; a longer step, or

@@ -60,7 +60,7 @@ contains
                              "it follows, if not too far")
          call simulation%windows%network_changed()
          call move(simulation, place, gains(k))
-         call checks%is_true(.not. simulation%windows%slot(1)%window%has_moved, "made anew")
+         call checks%is_true(.not. simulation%windows%slot(1)%window%has_moved, "made again")
          call checks%is_close(followed/simulation%tip(1)%intensity%k2, 1.0_rk, 2.0e-3_rk, &
                               "the intensity of a tip whose window has followed it")
          ! Moved from the first mesh again.

@@ -75,7 +75,7 @@ def test_a_new_quantity_is_read_without_a_run(study: SmallStudy) -> None:
 def test_another_solver_runs_all(study: SmallStudy) -> None:
     assert study.call().returncode == 0
     solver = study.folder / "build" / "fortran" / "app" / "wingcrack-solver"
-    solver.write_text(solver.read_text() + "# built anew\n")
+    solver.write_text(solver.read_text() + "# rebuilt\n")
     assert study.call().returncode == 0
     assert len(study.calls) == 6
 

@@ -8,7 +8,7 @@ from wingcrack_docs.tables import pages
 
 def test_the_pages_are_up_to_date() -> None:
     for page, text in pages().items():
-        assert page.read_text(encoding="utf-8") == text, f"{page}: ./wingcrack docs writes it anew"
+        assert page.read_text(encoding="utf-8") == text, f"{page}: ./wingcrack docs writes it again"
 
 
 def test_every_name_is_on_its_page() -> None:

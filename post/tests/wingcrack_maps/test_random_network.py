@@ -59,7 +59,7 @@ def test_lognormal_and_exponential_lengths() -> None:
     assert is_within(float(logarithms.mean()), math.log(5.0), 0.6 / math.sqrt(COUNT))
     assert is_within(float(logarithms.std()), 0.6, 0.6 / math.sqrt(2 * COUNT))
     assert is_within(float(drawn("exponential", 4.0).mean()), 4.0, 4.0 / math.sqrt(COUNT))
-    # an exponential law beyond a bound begins anew there
+    # an exponential law beyond a bound starts again there
     beyond = drawn("exponential", 4.0, 3.0, 1e9)
     assert beyond.min() >= 3.0
     assert is_within(float(beyond.mean()), 7.0, 4.0 / math.sqrt(COUNT))

@@ -157,7 +157,7 @@ k-th set.
   --orientation  uniform, uniform:FROM,TO, constant:ANGLE or vonmises:MEAN,KAPPA, in degrees from
                  the x axis counter-clockwise; KAPPA is that of the doubled angle, as usual for axes
 Lengths and angles are drawn once; where a fracture comes nearer to another one than --distance,
-its place is drawn anew, so that the laws hold and only the places are no longer independent.
+its place is drawn again, so that the laws hold and only the places are no longer independent.
 """,
     example="""\
 ./wingcrack network --box 0,0,100,80 --density p21=0.08 --length power:2.5,5,40 \\

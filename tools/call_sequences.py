@@ -1,15 +1,15 @@
-"""Hold the walks of docs/architecture.md against the code.
+"""Check the call sequences of docs/architecture.md against the code.
 
-A step of a walk is a list item "- `module: procedure`". The procedure has to stand in that module,
-the module of the step that it is indented under has to name it, and no step may lie in a room above
-that of the step before it: a walk never goes back up. A walk of a number is a heading that ends in
-`NAME`; its steps are items "- `module`", each of which has to hold that name.
+A step is a list item "- `module: procedure`". The procedure must be defined in that module, the
+module of the step under which it is indented must name it, and no step may be in a component above
+that of the step before. The sequence of a number is a heading that ends in `NAME`; its steps are
+items "- `module`", each of which must contain that name.
 """
 
 import re
 import sys
 
-from rooms import ROOT, order_of_rooms
+from components import ROOT, order_of_components
 
 HEADING = re.compile(r"^### (.*?)(?:`(\w+)`)?$")
 STEP = re.compile(r"^( *)- `(\w+)(?:: (\w+))?`")
@@ -41,17 +41,17 @@ def defines(procedure: str, text: str) -> bool:
     return re.search(rf"\b(?:subroutine|function)\s+{procedure}\b", text) is not None
 
 
-def rank(module: str, rooms: list[str]) -> int:
-    """The place of a module's room; the program stands above all."""
-    room = module.split("_")[0]
-    return rooms.index(room) if room in rooms else len(rooms)
+def rank(module: str, components: list[str]) -> int:
+    """The place of a module's component; the program stands above all."""
+    component = module.split("_")[0]
+    return components.index(component) if component in components else len(components)
 
 
-class Walks:
+class CallSequences:
     """The faults found so far, and the steps that lead to the present one."""
 
     def __init__(self) -> None:
-        self.rooms = order_of_rooms()
+        self.components = order_of_components()
         self.faults: list[str] = []
         self.steps = 0
         self.above: list[tuple[int, str]] = []  # indentation and module
@@ -75,26 +75,26 @@ class Walks:
             caller = self.above[-1][1]
             if not is_named(procedure, module, caller):
                 self.faults.append(f"{caller} does not name {procedure} of {module}")
-            if rank(module, self.rooms) > rank(caller, self.rooms):
-                self.faults.append(f"from {caller} to {module} the walk goes up")
+            if rank(module, self.components) > rank(caller, self.components):
+                self.faults.append(f"from {caller} to {module} the call sequence goes up")
         self.above.append((indent, module))
 
 
 def main() -> int:
-    """Print the faults of all walks; 1 if there are any."""
-    walks = Walks()
+    """Print the faults of all call sequences; 1 if there are any."""
+    sequences = CallSequences()
     number: str | None = None
     for line in (ROOT / "docs" / "architecture.md").read_text().splitlines():
         if heading := HEADING.match(line):
             number = heading.group(2)
-            walks.above.clear()
+            sequences.above.clear()
         elif step := STEP.match(line):
-            walks.step(len(step.group(1)), step.group(2), step.group(3), number)
-    if walks.steps < 20:
-        walks.faults.append("docs/architecture.md has lost its walks")
-    for fault in walks.faults:
-        print(f"walks: {fault}", file=sys.stderr)
-    return 1 if walks.faults else 0
+            sequences.step(len(step.group(1)), step.group(2), step.group(3), number)
+    if sequences.steps < 20:
+        sequences.faults.append("docs/architecture.md has lost its call sequences")
+    for fault in sequences.faults:
+        print(f"call sequences: {fault}", file=sys.stderr)
+    return 1 if sequences.faults else 0
 
 
 if __name__ == "__main__":

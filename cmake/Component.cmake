@@ -1,49 +1,48 @@
-# A room is a library whose modules can be used only by those that name it: the module files of each
-# room lie in a folder of their own, and USES is not handed on, so a `use` that USES does not list
-# fails to compile. tools/rooms.py also finds what is listed in vain.
+# A component is a library whose modules can be used only by those that name it: the module files of
+# each component are in a folder of their own, and USES is not transitive, so a `use` that USES does
+# not list fails to compile. tools/components.py finds entries that are not used.
 #
-#   add_room(coarse USES mesh)              every .f90 file of the calling folder
-#   add_room(coarse THREADS USES mesh)      whose loops run on OMP_NUM_THREADS threads
-#   add_room_samples(coarse sample_bodies USES coarse)   tests/sample_bodies.f90, for several tests
-#   add_room_test(test_x USES coarse)       test_x.f90 of the room's tests/ folder, run by CTest
-function(add_room name)
+#   add_component(coarse USES mesh)              every .f90 file of the calling folder
+#   add_component(coarse THREADS USES mesh)      whose loops run on OMP_NUM_THREADS threads
+#   add_component_samples(coarse sample_bodies USES coarse)   tests/sample_bodies.f90, for several tests
+#   add_component_test(test_x USES coarse)       test_x.f90 of the component's tests/ folder, run by CTest
+function(add_component name)
   cmake_parse_arguments(ARG "THREADS" "" "USES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.f90)
   add_library(${name} STATIC ${sources})
-  room_modules(${name} mod)
+  component_modules(${name} mod)
   target_link_libraries(${name} PRIVATE ${ARG_USES})
-  room_compile_options(${name})
+  component_compile_options(${name})
   if(ARG_THREADS)
-    room_threads(${name})
+    component_threads(${name})
   endif()
 endfunction()
 
-# Loops marked `!$omp parallel do` run on threads. What they compute must not depend on how many:
-# each turn writes what is its own, and sums are taken outside. Rooms without this take the marks
-# for comments.
-function(room_threads name)
+# Loops marked `!$omp parallel do` run on threads. Results must not depend on their number: each
+# iteration writes its own values, and sums are taken outside. Without this the marks are comments.
+function(component_threads name)
   target_compile_options(${name} PRIVATE ${OpenMP_Fortran_FLAGS})
   target_link_libraries(${name} PRIVATE OpenMP::OpenMP_Fortran)
 endfunction()
 
 # A library of small bodies, meshes or closed solutions that tests share: NAME_samples.
-function(add_room_samples name)
+function(add_component_samples name)
   cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
   list(TRANSFORM ARG_UNPARSED_ARGUMENTS REPLACE "(.+)" "tests/\\1.f90" OUTPUT_VARIABLE sources)
   add_library(${name}_samples STATIC ${sources})
-  room_modules(${name}_samples mod_samples)
+  component_modules(${name}_samples mod_samples)
   target_link_libraries(${name}_samples PRIVATE ${ARG_USES})
-  room_compile_options(${name}_samples)
+  component_compile_options(${name}_samples)
 endfunction()
 
-function(add_room_test name)
+function(add_component_test name)
   cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
   add_executable(${name} ${CMAKE_CURRENT_SOURCE_DIR}/tests/${name}.f90)
   set_target_properties(
     ${name} PROPERTIES Fortran_MODULE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/mod_tests/${name}
   )
   target_link_libraries(${name} PRIVATE ${ARG_USES})
-  room_compile_options(${name})
+  component_compile_options(${name})
   soon_built(${name})
   add_test(NAME ${name} COMMAND ${name})
 endfunction()
@@ -59,7 +58,7 @@ function(soon_built name)
   endif()
 endfunction()
 
-function(room_modules name folder)
+function(component_modules name folder)
   set(mod_dir ${CMAKE_CURRENT_BINARY_DIR}/${folder})
   set_target_properties(${name} PROPERTIES Fortran_MODULE_DIRECTORY ${mod_dir})
   target_include_directories(${name} PUBLIC ${mod_dir})
@@ -71,7 +70,7 @@ endfunction()
 # gfortran 12 takes the descriptors of allocatable arrays (their `offset` and `dim` before the first
 # allocation) for uninitialized, in procedures without that check and where it optimizes: hence
 # neither -Wuninitialized nor -Wmaybe-uninitialized. The debug build has signalling NaNs instead.
-function(room_compile_options name)
+function(component_compile_options name)
   target_compile_options(
     ${name}
     PRIVATE

@@ -1,0 +1,108 @@
+!> Growth by jumps: tips that advance without equilibrium until they arrest.
+!!
+!! The time of a jump has an error: that of K_eq over the rate of K_eq where the tip was at rest, that
+!! of its position over its speed where it grew in equilibrium. Until this time has passed after a
+!! jump, it may not yet have happened; and a tip at rest that has jumped before may jump again as
+!! soon as K_eq equals K_IC within its error. In both cases the length of the jump is part of the
+!! error of the tip's position.
+module twolevel_jumps
+   use base_kinds, only: ik, rk
+   use base_number, only: brief_text
+   use growth_tip, only: tip_t
+   use report_rows, only: chronicle_t, event_growth_jump, summary_t
+   use twolevel_moves, only: tolerance
+   use twolevel_onset, only: approach_t
+   implicit none(type, external)
+   private
+
+   public :: jumps_t
+
+   !> Last jump of each tip, and the present rest.
+   type :: jumps_t
+      real(rk), allocatable, private :: length(:)  !< (tips) of the last jump, 0: none [m]
+      real(rk), allocatable, private :: remaining(:)  !< (tips) error of its time that is left [s]
+      type(approach_t), allocatable, private :: rest(:)  !< (tips) K_eq since the last growth
+      real(rk), allocatable, private :: speed(:)  !< (tips) in equilibrium in the last step [m/s]
+      logical, allocatable, private :: jumps(:)  !< (tips) the tip has jumped in this step
+   contains
+      procedure :: begin
+      procedure :: note
+      procedure :: follow
+   end type jumps_t
+
+contains
+
+   !> Start before any growth.
+   subroutine begin(self, n)
+      class(jumps_t), intent(out) :: self
+      integer, intent(in) :: n  !< tips
+
+      allocate (self%length(n), self%remaining(n), self%speed(n), source=0.0_rk)
+      allocate (self%jumps(n), source=.false.)
+      allocate (self%rest(n))
+   end subroutine begin
+
+   !> Report a step without equilibrium: the tips that have advanced in it, from where, how far, and
+   !! the change of the well pressure.
+   subroutine note(self, tips, from, position_error, toughness, pressure, time, chronicle, summary)
+      class(jumps_t), intent(inout) :: self
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: from(:, :)  !< (2, tips) positions before the step [m]
+      real(rk), intent(in) :: position_error(:)  !< (tips) errors of these positions [m]
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: pressure(2)  !< well pressure before and after the step [Pa]
+      real(rk), intent(in) :: time  !< [s]
+      type(chronicle_t), intent(inout) :: chronicle
+      type(summary_t), intent(inout) :: summary
+      character(len=:), allocatable :: certainty
+      real(rk) :: error
+      integer(ik) :: i
+
+      if (.not. any(tips%advance > 0.0_rk)) return
+      summary%growth_jumps = summary%growth_jumps + 1
+      summary%longest_jump = max(summary%longest_jump, maxval(tips%advance))
+      do i = 1, size(tips, kind=ik)
+         associate (tip => tips(i))
+            if (.not. tip%advance > 0.0_rk) cycle
+            error = self%rest(i)%uncertainty(tolerance*tip%scale_of(toughness))
+            if (self%speed(i) > 0.0_rk) error = position_error(i)/self%speed(i)
+            certainty = "time known to "//brief_text(error, 3)//" s"
+           if (.not. error < huge(1.0_rk)) certainty = "time error unknown: K_eq was not increasing"
+            call chronicle%add_event(time, event_growth_jump, "grows by "// &
+                                     brief_text(tip%advance, 4)//" m at once; well pressure "// &
+                                     brief_text(pressure(1), 5)//" Pa before, "// &
+                                     brief_text(pressure(2), 5)//" Pa after; "//certainty, &
+                                     tip%fracture, from(:, i))
+            self%jumps(i) = .true.
+            self%length(i) = tip%advance
+            self%remaining(i) = merge(error, 0.0_rk, error < huge(1.0_rk))
+         end associate
+      end do
+   end subroutine note
+
+   !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps
+   !! [m].
+   pure subroutine follow(self, tips, toughness, dt, time, error)
+      class(jumps_t), intent(inout) :: self
+      type(tip_t), intent(in) :: tips(:)
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: dt, time  !< [s]
+      real(rk), intent(out) :: error(:)  !< (tips) [m]
+      real(rk) :: uncertainty(size(tips))
+      logical :: rests(size(tips))
+
+      rests = .not. tips%advance > 0.0_rk
+      uncertainty = hypot(tips%intensity%k1_error, tips%intensity%k2_error)/tips%drive%resistance
+      where (rests) self%remaining = max(0.0_rk, self%remaining - dt)
+      where (.not. rests) self%rest = approach_t()
+      self%speed = 0.0_rk
+      if (dt > 0.0_rk) where (.not. (rests .or. self%jumps)) self%speed = tips%advance/dt
+      self%jumps = .false.
+      call self%rest%follow(time, tips%drive%intensity, uncertainty, toughness)
+      error = 0.0_rk
+      where (self%remaining > 0.0_rk .or. &
+             (rests .and. .not. tips%arrested .and. &
+              tips%drive%intensity + uncertainty >= toughness)) error = self%length
+   end subroutine follow
+
+end module twolevel_jumps
