@@ -4,7 +4,6 @@
 !! Each increment is one step of the growth law (growth_law). The tips first advance straight ahead
 !! to predicted positions (growth_tip) and are evaluated there; their last segments are then rotated
 !! until the direction criterion holds at the end of the increment.
-!!
 module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

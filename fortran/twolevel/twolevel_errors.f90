@@ -13,13 +13,26 @@
 !! pressure rise. Where all fluid leaks off, a crack in equilibrium grows until the injected fluid
 !! leaks off over the true length, so the tip positions have the same error again. Layers of viscous
 !! flow at a tip need finer cells; their error is not included.
+!!
+!! Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
+!! their signs.
 module twolevel_errors
    use base_kinds, only: rk
-   use twolevel_time_error, only: accumulated_error_t
    implicit none(type, external)
    private
 
-   public :: stated_errors_t, tip_excess_t
+   public :: accumulated_error_t, stated_errors_t, tip_excess_t
+
+   !> Last value of the scalar, its rate, and the accumulated error.
+   type :: accumulated_error_t
+      logical :: is_followed = .false.  !< a last value exists
+      real(rk) :: value = 0.0_rk
+      real(rk) :: rate = 0.0_rk  !< rate in the last step [1/s]
+      real(rk) :: error = 0.0_rk  !< accumulated error of all steps, with its sign
+      real(rk) :: step = 0.0_rk  !< length of the last step [s]
+   contains
+      procedure :: follow
+   end type accumulated_error_t
 
    !> error of a tip position, over the length of the coarse cell at the tip [-]
    real(rk), parameter :: share = 0.1_rk
@@ -49,6 +62,26 @@ module twolevel_errors
    end type stated_errors_t
 
 contains
+
+   !> Add the error of a step. A step h after one of length h_b has the error h/(h + h_b) (change -
+   !! h (rate before)); the first step has no error estimate. A step of length 0 sets the value at a
+   !! new start.
+   elemental subroutine follow(self, step, value)
+      class(accumulated_error_t), intent(inout) :: self
+      real(rk), intent(in) :: step  !< [s]
+      real(rk), intent(in) :: value
+
+      if (self%is_followed .and. step > 0.0_rk) then
+         if (self%step > 0.0_rk) then
+            self%error = self%error + step/(step + self%step) &
+                         *(value - self%value - step*self%rate)
+         end if
+         self%rate = (value - self%value)/step
+         self%step = step
+      end if
+      self%is_followed = .true.
+      self%value = value
+   end subroutine follow
 
    !> Begin the tries of a new step.
    elemental subroutine begin_step(self)

@@ -2,7 +2,7 @@
 !! follows from the rate.
 module twolevel_onset
    use base_kinds, only: rk
-   use twolevel_time_error, only: accumulated_error_t
+   use twolevel_errors, only: accumulated_error_t
    implicit none(type, external)
    private
 

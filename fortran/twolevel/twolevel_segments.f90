@@ -194,9 +194,7 @@ contains
             front%tip(i)%path_target = target(i)
             call begin_segment(front, start, rules, i, to(:, i), now%segment(i))
          end if
-         associate (tip => front%tip(i))
-            call extend(now%coarse_network, tip%fracture, tip%end, to(:, i))
-         end associate
+         call extend(now%coarse_network, front%tip(i)%fracture, front%tip(i)%end, to(:, i))
          centres = reshape([centres, to(:, i)], [2, size(centres, 2) + 1])
       end do
    end subroutine end_segments

@@ -11,7 +11,6 @@ submodule(twolevel_state) twolevel_steps
    use report_rows, only: event_step_cut, event_unstable, history_row_t, well_row_t
    use report_limits, only: limit_time_error
    use report_slip, only: slip_step_t
-   use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
@@ -119,7 +118,9 @@ contains
             if (allocated(error)) return
             cycle
          end if
-         if (self%stepper%takes(trial) .or. (is_last .and. solves(trial))) exit
+         ! The last try is accepted with any time error.
+         if (self%stepper%takes(trial) .or. (is_last .and. trial%converged .and. &
+                                             .not. trial%goes_too_far)) exit
          if (is_last .or. (is_too_short .and. .not. trial%converged)) then
             call raise_error(error, "", trial%why_cut()//", even with a time step of " &
                              //brief_text(self%step%dt, 4)//" s"//way_out(trial))
@@ -129,8 +130,10 @@ contains
          is_last = is_too_short
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
-         may_jump = is_last .or. (trial%goes_too_far .and. &
-                                  is_moment(self%scene, self%before%time, self%step%dt))
+         ! In a step so short that the time of a jump within it does not matter.
+         may_jump = is_last .or. &
+                    (trial%goes_too_far .and. self%step%dt <= &
+                     punctual*(self%before%time - last_switch(self%scene, self%before%time)))
       end do
       is_unstable = is_unstable .or. trial%jumps
       if (self%now%trend%is_known() .and. .not. (self%step%is_after_switch .or. is_unstable)) then
@@ -148,22 +151,6 @@ contains
       if (.not. trial%converged) words = &
          ": fluid or sides may act faster; &time smallest_factor allows shorter steps"
    end function way_out
-
-   !> Whether the present step is so short that the time of a jump within it does not matter.
-   pure logical function is_moment(scene, since, dt)
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: since  !< start of the step [s]
-      real(rk), intent(in) :: dt  !< [s]
-
-      is_moment = dt <= punctual*(since - last_switch(scene, since))
-   end function is_moment
-
-   !> Whether the equations are solved with the tips in equilibrium, whatever the time error.
-   pure logical function solves(trial)
-      type(trial_t), intent(in) :: trial
-
-      solves = trial%converged .and. .not. trial%goes_too_far
-   end function solves
 
    !> Refine windows and evaluate the tips again in the state at the start of the step, from which
    !! onsets are interpolated; before the first step this state has no tractions.

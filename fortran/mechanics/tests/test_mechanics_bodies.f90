@@ -4,7 +4,7 @@ program test_mechanics_bodies
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
-   use mechanics_results, only: cell_stress
+   use mechanics_fields, only: cell_stress
    use mechanics_simulation, only: mechanics_simulation_t
    use scene_namelist, only: resolve_defaults
    use scene_outline, only: outline_of_scene, outline_t
