@@ -146,6 +146,7 @@ contains
       real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the shorter increment
       character(len=:), allocatable :: what
       integer(ik) :: ahead, behind, i, j
+      logical :: is_chance
 
       if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
@@ -157,10 +158,14 @@ contains
                else if (groups%kind(i) == groups%kind(j) .and. all(gain > 0.0_rk)) then
                   self%company(i, j) = together
                else if (self%company(i, j) == together) then
-                  self%company(i, j) = &
-                     merge(separated, apart, &
-                           groups%differ_by_chance(i, j, tips%excess(toughness), &
-                                                   tips%relative_error(toughness)))
+                  ! A tip of another fracture that has fallen behind has other fluid.
+                  is_chance = tips(i)%fracture == tips(j)%fracture .or. &
+                              .not. any(groups%is_alone([i, j]))
+                  if (is_chance) then
+                     is_chance = groups%differ_by_chance(i, j, tips%excess(toughness), &
+                                                         tips%relative_error(toughness))
+                  end if
+                  self%company(i, j) = merge(separated, apart, is_chance)
                end if
                if (self%company(i, j) /= separated .or. all(self%has_separated([i, j]))) cycle
                if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle

@@ -456,7 +456,7 @@ contains
          do i = 1, size(self%tip, kind=ik)
             if (.not. self%tip(i)%is_loaded()) cycle
             if (.not. any(active(self%windows%served_with(i)))) cycle
-            call now%windows%tip(i)%note_jump(tip_jump(self, i), self%tip(i)%xy)
+            call now%windows%tip(i)%note_jump(tip_jump(self, i), self%tip(i)%xy, now%undrained)
          end do
       end associate
    end subroutine evaluate
@@ -478,9 +478,9 @@ contains
       associate (toughness => self%rules%toughness, known => self%now%windows%tip)
          do i = 1, size(self%tip, kind=ik)
             associate (tip => self%tip(i))
-               can_be(i) = tip%is_loaded() .and. &
-                           self%windows%has_mesh(i, self%now%undrained) .and. &
-                           known(i)%has_same_jump(tip_jump(self, i), tip%xy) .and. &
+               can_be(i) = tip%is_loaded() .and. self%windows%has_mesh(i) .and. &
+                           known(i)%has_same_jump(tip_jump(self, i), tip%xy, &
+                                                  self%now%undrained) .and. &
                            tip%excess(toughness) + tip%relative_error(toughness) <= -far
             end associate
          end do
