@@ -50,9 +50,7 @@ class Leaking:
         self.lengths: list[float] = [0.0]  # half-lengths [m] at
         self.passed: list[float] = [0.0]  # these times [s]
 
-    def leaked(
-        self, x: FloatArray, time: float, half: float
-    ) -> tuple[FloatArray, FloatArray]:
+    def leaked(self, x: FloatArray, time: float, half: float) -> tuple[FloatArray, FloatArray]:
         """Give 2 C' sqrt(t - tau) [m] and its integral from x to l [m2]; tau is linear between the steps."""
         length, passed = np.append(self.lengths, half), np.append(self.passed, time)
         age = np.maximum(time - passed, 0.0)
@@ -95,7 +93,9 @@ class Leaking:
         slope = np.maximum(self.thick * flow * half * s / opening**3, 1e-300)
         ratio = np.log(slope[1:] / slope[:-1])
         mean = np.where(
-            np.abs(ratio) > 1e-6, (slope[1:] - slope[:-1]) / np.where(ratio == 0.0, 1.0, ratio), slope[1:]
+            np.abs(ratio) > 1e-6,
+            (slope[1:] - slope[:-1]) / np.where(ratio == 0.0, 1.0, ratio),
+            slope[1:],
         )
         rise = mean * steps
         return np.concatenate(
@@ -192,7 +192,9 @@ def main() -> None:
     for time, row in zip(TIMES, without, strict=True):
         size = (MODULUS * RATE**3 * time**4 / (12.0 * 2.6385724906858806e-2)) ** (1.0 / 6.0)
         thin = (12.0 * 2.6385724906858806e-2 / (MODULUS * time)) ** (1.0 / 3.0)
-        print("no leak-off:", row[0] / (gamma * size) - 1.0, row[2] / (pi[-1] * thin * MODULUS) - 1.0)
+        print(
+            "no leak-off:", row[0] / (gamma * size) - 1.0, row[2] / (pi[-1] * thin * MODULUS) - 1.0
+        )
     thin = extrapolated(1.0e-6, carter)
     print("no viscosity:", thin[0, 0] / np.interp(TIMES[0], *grow(1000)) - 1.0)
     with (Path(__file__).parent / "leaking.csv").open("w", newline="") as file:

@@ -274,7 +274,9 @@ def main() -> int:
                 "length": ratios(stated.length_error, stated.length, truth.length),
                 "pressure": ratios(stated.pressure_error, stated.pressure, truth.pressure),
                 "onset": ratios(
-                    np.array([stated.onset_error]), np.array([stated.onset]), np.array([truth.onset])
+                    np.array([stated.onset_error]),
+                    np.array([stated.onset]),
+                    np.array([truth.onset]),
                 )[: 0 if math.isnan(truth.onset) else 1],
             }
             print(f"{case.name:28s}" + "".join(f"{summary(now[key]):>34s}" for key in now))
