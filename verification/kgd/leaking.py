@@ -2,29 +2,40 @@
 
     .venv/bin/python verification/kgd/leaking.py
 
-Opening and K follow from the pressures at the nodes of self_similar.py, whose places x/l are fixed. With
-S(x, t) = int_x^l (w + 2 C' sqrt(t - tau)) dx, what lies beyond x and what leaked off there since the tip
-passed at the time tau, the flow through each place is dS/dt at a fixed x: with the rate at a fixed xi = x/l by
-backward Euler
+Opening and K follow from the pressures at the nodes of self_similar.py, whose places xi = x/l are
+fixed. With S(x, t) = int_x^l (w + 2 C' sqrt(t - tau)) dx, what lies beyond x and what leaked off
+there since the tip passed at the time tau, the flow through each place is dS/dt at a fixed x: with
+the rate at a fixed xi by backward Euler
 
     -w^3/mu' dp/dx = dS(xi, t)/dt + xi dl/dt (w + 2 C' sqrt(t - tau)),   Q/2 = dS(0, t)/dt
 
-and K_I = K_IC gives the half-length l. It begins with the self-similar solution at a time when hardly any
-fluid has leaked off. Carter's coefficient is that of the rock for a constant difference of the pressures, that
-of the confinement (make_reference.py). The values of two step sizes are extrapolated. Without leak-off the
-result is the self-similar solution, without viscosity that of make_reference.py: both are printed.
+and K_I = K_IC gives the half-length l. It begins with the self-similar solution at a time when
+hardly any fluid has leaked off. Carter's coefficient is that of the rock for a constant difference
+of the pressures, that of the confinement (make_reference.py). The values of two step sizes are
+extrapolated. Without leak-off the result is the self-similar solution, without viscosity that of
+make_reference.py: both are printed.
 """
 
 from __future__ import annotations
 
 import csv
 import math
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from make_reference import MODULUS, RATE, TOUGHNESS, grow, leak_off_coefficient
-from self_similar import Crack, FloatArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+from verification.kgd.make_reference import (
+    MODULUS,
+    RATE,
+    TOUGHNESS,
+    grow,
+    leak_off_coefficient,
+)
+from verification.kgd.self_similar import Crack, FloatArray
 
 STIFF = math.sqrt(32.0 / math.pi) * TOUGHNESS  # K' [Pa m^1/2]
 TIMES = [20.0, 30.0, 40.0]  # [s]
@@ -32,7 +43,7 @@ TIMES = [20.0, 30.0, 40.0]  # [s]
 
 @dataclass
 class State:
-    """Pressures at the nodes [Pa], half-length [m], and what lies beyond each place of `path` [m2]."""
+    """Pressures at the nodes [Pa], half-length [m], openings [m], S at the nodes [m2]."""
 
     time: float
     pressure: FloatArray
@@ -51,7 +62,7 @@ class Leaking:
         self.passed: list[float] = [0.0]  # these times [s]
 
     def leaked(self, x: FloatArray, time: float, half: float) -> tuple[FloatArray, FloatArray]:
-        """Give 2 C' sqrt(t - tau) [m] and its integral from x to l [m2]; tau is linear between the steps."""
+        """Give 2 C' sqrt(t - tau) [m] and its integral from x to l [m2]; tau is linear per step."""
         length, passed = np.append(self.lengths, half), np.append(self.passed, time)
         age = np.maximum(time - passed, 0.0)
         step, fall = np.diff(length), age[:-1] - age[1:]
@@ -151,7 +162,7 @@ def self_similar(crack: Crack, thick: float) -> tuple[float, float, FloatArray]:
 
 
 def solution(nodes: int, steps: int, viscosity: float, coefficient: float) -> FloatArray:
-    """Give half-length, opening and pressure at the centre at some times, in `steps` steps per factor e."""
+    """Give half-length, opening and pressure at the centre, in `steps` steps per factor e."""
     crack = Crack(nodes)
     thick = 12.0 * viscosity
     _, gamma, pi = self_similar(crack, thick)

@@ -1,11 +1,12 @@
-"""Shares of states in which the stated errors of length, pressure and onset hold, in states of known truth.
+"""Shares of states of known truth in which the stated errors of length, pressure and onset hold.
 
     .venv/bin/python verification/reservoir_scale/stated_errors.py [SOLVER] [PART ...]
 
-Truth is a closed form (across.nml, without viscosity and leak-off), a self-similar solution (the KGD
-crack of ../kgd) or the same scene with cells, increments and windows' elements a quarter as large and
-a quarter of the tolerance of time steps. Such a run has errors of its own, about a quarter of those of the
-other one, so that a stated error that just holds may miss it by that. The runs are kept in build/stated_errors.
+Truth is a closed form (across.nml, without viscosity and leak-off), a self-similar solution (the
+KGD crack of ../kgd) or the same scene with cells, increments, elements of windows and the tolerance
+of time steps a quarter as large. Such a run has errors of its own, about a quarter of those of the
+other one, so that a stated error that just holds may miss it by that. The runs are kept in
+build/stated_errors.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ STORE = TOP / "build/stated_errors"
 SOLVER = TOP / "build/release/fortran/app/wingcrack-solver"
 Array = npt.NDArray[np.float64]
 
-# A fracture at 45 degrees that slips, opens and leaks, of half-length {half} m, in cells of a tenth of that.
+# A fracture at 45 degrees that slips, opens and leaks.
 INCLINED = """\
 &scene name = 'inclined' /
 &domain x_min = 0.0, x_max = {side}, y_min = 0.0, y_max = {side} /
@@ -59,7 +60,7 @@ INCLINED = """\
 
 @dataclass
 class States:
-    """Results of a run, or the truth at the same times: length, pressure, onset, each with its error."""
+    """Length, pressure and onset of a run or of the truth, and their stated errors."""
 
     length: Array
     pressure: Array
@@ -144,7 +145,7 @@ def scene_of(path: Path, changes: dict[str, str]) -> str:
 
 
 def closed_form(solver: Path) -> list[Case]:
-    """A fracture across the least stress: V = 2 sqrt(pi) a^(3/2) K_IC/E', p = sigma + K_IC/sqrt(pi a)."""
+    """A fracture of the volume 2 sqrt(pi) a^(3/2) K_IC/E', at sigma + K_IC/sqrt(pi a)."""
     cases = []
     for half, rate, toughness, share in [
         (10.0, 1.0e-5, 2.0e6, 5),
@@ -253,7 +254,8 @@ def summary(ratios: Array) -> str:
     """States in which the error holds, and the median of stated over true."""
     if ratios.size == 0:
         return "  -"
-    return f"{np.sum(ratios >= 1.0):3d} of {ratios.size:3d}, x{np.median(ratios):6.2f}, least{np.min(ratios):6.2f}"
+    hold = f"{np.sum(ratios >= 1.0):3d} of {ratios.size:3d}"
+    return f"{hold}, x{np.median(ratios):6.2f}, least{np.min(ratios):6.2f}"
 
 
 def ratios(stated: Array, found: Array, truth: Array) -> Array:
