@@ -10,7 +10,7 @@ module twolevel_notes
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use twolevel_excess, only: tolerance
-   use scene_types, only: scene_t
+   use scene_types, only: fracture_t, scene_t
    use twolevel_errors, only: tip_excess_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_onset, only: approach_t
@@ -193,6 +193,7 @@ contains
       type(levels_state_t), intent(inout) :: now
       type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked
+      integer(ik) :: i
 
       leaked = 0.0_rk
       associate (fluid => now%fluid)
@@ -204,9 +205,35 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
+         do i = 1, size(tips, kind=ik)
+            call find_wing(scene%fractures(tip(i)%fracture), tip(i), tips(i)%wing, tips(i)%bend)
+         end do
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                      total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate
    end subroutine note_stated_errors
+
+   !> Distance of a tip from the end of the fracture that it has grown from, and the sine of the
+   !! angle between this wing and the fracture; 1 where the wing turns back.
+   pure subroutine find_wing(fracture, tip, length, bend)
+      type(fracture_t), intent(in) :: fracture  !< as given in the scene
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(out) :: length  !< [m]
+      real(rk), intent(out) :: bend  !< [-]
+      real(rk) :: along(2), wing(2)
+      integer(ik) :: at, behind
+
+      at = merge(1_ik, size(fracture%x, kind=ik), tip%end == 1)
+      behind = at + merge(1_ik, -1_ik, tip%end == 1)
+      associate (x => fracture%x, y => fracture%y)
+         along = [x(at) - x(behind), y(at) - y(behind)]
+         wing = tip%xy - [x(at), y(at)]
+      end associate
+      length = norm2(wing)
+      bend = 0.0_rk
+      if (.not. length > 0.0_rk) return
+      bend = abs(along(1)*wing(2) - along(2)*wing(1))/(norm2(along)*length)
+      if (dot_product(along, wing) < 0.0_rk) bend = 1.0_rk
+   end subroutine find_wing
 
 end module twolevel_notes
