@@ -18,6 +18,7 @@ import math
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -144,9 +145,8 @@ def scene_of(path: Path, changes: dict[str, str]) -> str:
     return text
 
 
-def closed_form(solver: Path) -> list[Case]:
+def closed_form(solver: Path) -> Iterator[Case]:
     """A fracture of the volume 2 sqrt(pi) a^(3/2) K_IC/E', at sigma + K_IC/sqrt(pi a)."""
-    cases = []
     for half, rate, toughness, share in [
         (10.0, 1.0e-5, 2.0e6, 5),
         (10.0, 1.0e-5, 2.0e6, 10),
@@ -177,13 +177,11 @@ def closed_form(solver: Path) -> list[Case]:
             lengths, 10.0e6 + toughness / np.sqrt(math.pi * lengths / 2), factor * half**1.5
         )
         name = f"across, {2 * half:g} m, K_IC {toughness / 1e6:g}, a/{share}"
-        cases.append(Case(name, states(out, times), truth))
-    return cases
+        yield Case(name, states(out, times), truth)
 
 
-def self_similar(solver: Path) -> list[Case]:
+def self_similar(solver: Path) -> Iterator[Case]:
     """The KGD crack with viscosity, of ../kgd; its starter crack has no onset of its own."""
-    cases = []
     for name, viscosity, end, gamma, net in [
         ("K_m = 4", 1.0306923793741721e-4, 20.0, 0.3660035934, 1.204788485),
         ("K_m = 1", 2.6385724906858806e-2, 40.0, 0.5992540886, 0.5558339183),
@@ -204,8 +202,7 @@ def self_similar(solver: Path) -> list[Case]:
         truth = States(
             2 * gamma * size, net * modulus * (thick / (modulus * times)) ** (1 / 3), math.nan
         )
-        cases.append(Case(f"KGD, {name}", states(out, times), truth))
-    return cases
+        yield Case(f"KGD, {name}", states(out, times), truth)
 
 
 def inclined(half: float, finer: int, **values: object) -> str:
@@ -229,9 +226,8 @@ def inclined(half: float, finer: int, **values: object) -> str:
     return INCLINED.format(**{**usual, **values})
 
 
-def refined(solver: Path) -> list[Case]:
+def refined(solver: Path) -> Iterator[Case]:
     """The inclined fracture, leaking or in tight rock, and itself with a quarter of all sizes."""
-    cases = []
     tight = {"permeability": 1.0e-23, "biot": 0.01}
     for name, half, values in [
         ("20 m, tight", 10.0, tight),
@@ -243,8 +239,7 @@ def refined(solver: Path) -> list[Case]:
         fine = run(solver, inclined(half, 4, **values))
         out = run(solver, inclined(half, 1, **values))
         times = times_at(fine, 2 * half * np.array([1.05, 1.1, 1.15, 1.2, 1.25, 1.3, 1.38, 1.45]))
-        cases.append(Case(f"inclined, {name}", states(out, times), states(fine, times)))
-    return cases
+        yield Case(f"inclined, {name}", states(out, times), states(fine, times))
 
 
 PARTS = {"closed": closed_form, "viscous": self_similar, "refined": refined}
@@ -281,7 +276,8 @@ def main() -> int:
                     np.array([truth.onset]),
                 )[: 0 if math.isnan(truth.onset) else 1],
             }
-            print(f"{case.name:28s}" + "".join(f"{summary(now[key]):>34s}" for key in now))
+            line = "".join(f"{summary(now[key]):>34s}" for key in now)
+            print(f"{case.name:28s}{line}", flush=True)
             for key, values in now.items():
                 total[key].append(values)
     print(f"{'all':28s}" + "".join(f"{summary(np.concatenate(v)):>34s}" for v in total.values()))
