@@ -393,15 +393,15 @@ def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
     scene = (TOP / "verification/kgd/kgd.nml").read_text()
     usual = 1.0306923793741721e-4  # K_m = 4
     told = {}
-    for name, factor in (("tough", 1.0), ("between", 16.0), ("viscous", 1e4)):
+    for name, factor in (("tough", 1.0), ("between", 16.0), ("viscous", 25.0**4)):
         assert "1.0306923793741721e-4" in scene
         text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
         (tmp_path / f"{name}.nml").write_text(text)
         told[name] = call(tmp_path, "check", f"{name}.nml").stdout
     assert "toughness-dominated growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
     assert "growth depends on toughness and viscosity, K_m = 2.000E+00" in told["between"]
-    assert "viscosity-dominated growth, K_m = 4.000E-01" in told["viscous"]
-    warning = "&injection 'well_1': K_m is 0.4: growth is then viscosity-dominated"
+    assert "viscosity-dominated growth, K_m = 1.600E-01" in told["viscous"]
+    warning = "&injection 'well_1': K_m is 0.16: growth is then viscosity-dominated"
     assert [warning in told[name] for name in told] == [False, False, True]
 
 

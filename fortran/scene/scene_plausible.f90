@@ -107,8 +107,8 @@ module scene_plausible
       doubt_t("initial", "pressure", "Pa", "above the smallest compression in situ somewhere", &
          "fractures across that compression are open from the start"), &
       doubt_t("injection", "K_m", "-", &
-         "below 0.5, of a rate in a fracture, with growth (docs/theory.md)", &
-         "growth is then viscosity-dominated; growth is verified for K_m of 0.5 and more"), &
+         "below 0.2, of a rate in a fracture, with growth (docs/theory.md)", &
+         "growth is then viscosity-dominated; growth is verified for K_m of 0.2 and more"), &
       doubt_t("restraint", "surplus", "-", "above 0: more components than fix the rigid motions", &
          "they are then point loads, around which results depend on the cell size; use "// &
          "displacements or springs on sides instead"), &
@@ -123,7 +123,7 @@ module scene_plausible
 
    character(len=9), parameter :: sides(4) = [" 'left'  ", " 'right' ", " 'bottom'", " 'top'   "]
 
-   real(rk), parameter, public :: least_verified = 0.5_rk  !< smallest K_m of verification/kgd [-]
+   real(rk), parameter, public :: least_verified = 0.2_rk  !< smallest K_m of verification/kgd [-]
 
 contains
 

@@ -168,7 +168,7 @@ contains
                        tip%found%k2, tip%found%k1_error, tip%found%k2_error, tip%found%g_domain, tip%lacking, &
                        tip%uncertain, tip%compared, tip%compared_at, tip%of_elements, &
                        tip%of_edge, tip%passing, tip%jump_then, tip%place_then, &
-                       truths([tip%is_compared])]
+                       truths([tip%is_compared, tip%was_undrained])]
             end associate
          end do
       end if

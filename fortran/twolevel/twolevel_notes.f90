@@ -10,7 +10,7 @@ module twolevel_notes
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
-   use scene_types, only: growth_t, scene_t
+   use scene_types, only: fracture_t, growth_t, scene_t
    use twolevel_errors, only: tip_excess_t
    use twolevel_jumps, only: jumps_t
    use twolevel_levels_state, only: levels_state_t
@@ -150,6 +150,7 @@ contains
       real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the shorter increment
       character(len=:), allocatable :: what
       integer(ik) :: ahead, behind, i, j
+      logical :: is_chance
 
       if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
@@ -161,10 +162,14 @@ contains
                else if (groups%kind(i) == groups%kind(j) .and. all(gain > 0.0_rk)) then
                   self%relation(i, j) = together
                else if (self%relation(i, j) == together) then
-                  self%relation(i, j) = &
-                     merge(separated, apart, &
-                           groups%differ_by_chance(i, j, tips%excess(toughness), &
-                                                   tips%relative_error(toughness)))
+                  ! A tip of another fracture that has fallen behind has other fluid.
+                  is_chance = tips(i)%fracture == tips(j)%fracture .or. &
+                              .not. any(groups%is_alone([i, j]))
+                  if (is_chance) then
+                     is_chance = groups%differ_by_chance(i, j, tips%excess(toughness), &
+                                                         tips%relative_error(toughness))
+                  end if
+                  self%relation(i, j) = merge(separated, apart, is_chance)
                end if
                if (self%relation(i, j) /= separated .or. all(self%has_separated([i, j]))) cycle
                if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
@@ -200,6 +205,7 @@ contains
       type(jumps_t), intent(inout) :: jumps
       type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked
+      integer(ik) :: i
 
       leaked = 0.0_rk
       associate (fluid => now%fluid)
@@ -212,9 +218,35 @@ contains
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
          call jumps%follow(tip, toughness, dt, now%coarse%time, tips%jump)
+         do i = 1, size(tips, kind=ik)
+            call find_wing(scene%fractures(tip(i)%fracture), tip(i), tips(i)%wing, tips(i)%bend)
+         end do
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                      total_length(front%network), now%trend%pressure_rise(), leaked)
       end associate
    end subroutine note_stated_errors
+
+   !> Distance of a tip from the end of the fracture that it has grown from, and the sine of the
+   !! angle between this wing and the fracture; 1 where the wing turns back.
+   pure subroutine find_wing(fracture, tip, length, bend)
+      type(fracture_t), intent(in) :: fracture  !< as given in the scene
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(out) :: length  !< [m]
+      real(rk), intent(out) :: bend  !< [-]
+      real(rk) :: along(2), wing(2)
+      integer(ik) :: at, behind
+
+      at = merge(1_ik, size(fracture%x, kind=ik), tip%end == 1)
+      behind = at + merge(1_ik, -1_ik, tip%end == 1)
+      associate (x => fracture%x, y => fracture%y)
+         along = [x(at) - x(behind), y(at) - y(behind)]
+         wing = tip%xy - [x(at), y(at)]
+      end associate
+      length = norm2(wing)
+      bend = 0.0_rk
+      if (.not. length > 0.0_rk) return
+      bend = abs(along(1)*wing(2) - along(2)*wing(1))/(norm2(along)*length)
+      if (dot_product(along, wing) < 0.0_rk) bend = 1.0_rk
+   end subroutine find_wing
 
 end module twolevel_notes

@@ -51,7 +51,8 @@ contains
          do i = 1, size(tips, kind=ik)
             if (.not. tips(i)%is_loaded()) cycle
             if (.not. any(active(windows%served_with(i)))) cycle
-            call now%windows%tip(i)%note_jump(tip_jump(problem, now, tips(i)), tips(i)%xy)
+            call now%windows%tip(i)%note_jump(tip_jump(problem, now, tips(i)), tips(i)%xy, &
+                                                now%undrained)
          end do
       end associate
    end subroutine find_tip_intensities
@@ -77,8 +78,9 @@ contains
       associate (toughness => scene%material%toughness, known => now%windows%tip)
          do i = 1, size(tips, kind=ik)
             associate (tip => tips(i))
-               can_be(i) = tip%is_loaded() .and. windows%has_mesh(i, now%undrained) .and. &
-                           known(i)%has_same_jump(tip_jump(problem, now, tip), tip%xy) .and. &
+               can_be(i) = tip%is_loaded() .and. windows%has_mesh(i) .and. &
+                           known(i)%has_same_jump(tip_jump(problem, now, tip), tip%xy, &
+                                                  now%undrained) .and. &
                            tip%excess(toughness) + tip%relative_error(toughness) <= -far
             end associate
          end do

@@ -39,6 +39,7 @@ module twolevel_window_tip
       !> At the last evaluation: opening and slip behind the tip, proportional to K [m^1/2], and the
       !! position of the tip [m]
       real(rk) :: jump_then(2) = 0.0_rk, place_then(2) = huge(1.0_rk)
+      logical :: was_undrained = .false.  !< and whether it was that of an undrained response
       !> the errors by the coarse level have been estimated for the last evaluation
       logical :: is_compared = .false.
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
@@ -114,13 +115,15 @@ contains
    end subroutine forget_coarse_error
 
    !> Store the jump behind the tip at an evaluation.
-   pure subroutine note_jump(self, jump, place)
+   pure subroutine note_jump(self, jump, place, undrained)
       class(window_tip_t), intent(inout) :: self
       real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
       real(rk), intent(in) :: place(2)  !< position of the tip [m]
+      logical, intent(in) :: undrained  !< in the undrained response
 
       self%jump_then = jump
       self%place_then = place
+      self%was_undrained = undrained
       self%is_compared = .false.
    end subroutine note_jump
 
@@ -133,14 +136,16 @@ contains
    end subroutine forget_jump
 
    !> Whether the tip is where it was at the last evaluation, with nearly the same jump behind it,
-   !! and the errors of this evaluation are known.
-   pure logical function has_same_jump(self, jump, place)
+   !! drained or undrained as then, and the errors of this evaluation are known.
+   pure logical function has_same_jump(self, jump, place, undrained)
       class(window_tip_t), intent(in) :: self
       real(rk), intent(in) :: jump(2)  !< opening and slip, proportional to K [m^1/2]
       real(rk), intent(in) :: place(2)  !< position of the tip [m]
+      logical, intent(in) :: undrained  !< in the undrained response
       real(rk), parameter :: constant = 0.1_rk  ! change of a jump that carries an intensity [-]
 
       has_same_jump = self%is_compared .and. .not. norm2(place - self%place_then) > 0.0_rk .and. &
+                      (undrained .eqv. self%was_undrained) .and. &
                       norm2(jump - self%jump_then) <= constant*norm2(self%jump_then)
    end function has_same_jump
 

@@ -337,16 +337,12 @@ contains
       numbers = self%slot(self%window_of(tip))%window%serves
    end function served_with
 
-   !> The window of a tip has been meshed, is not to be meshed again from the beginning, and its
-   !! last solution is that of undrained rock, or is not.
-   pure logical function has_mesh(self, tip, undrained)
+   !> The window of a tip has been meshed, and is not to be meshed again from the beginning.
+   pure logical function has_mesh(self, tip)
       class(windows_t), intent(in) :: self
       integer(ik), intent(in) :: tip
-      logical, intent(in) :: undrained
 
-      associate (window => self%slot(self%window_of(tip))%window)
-         has_mesh = allocated(window%made) .and. (window%undrained .eqv. undrained)
-      end associate
+      has_mesh = allocated(self%slot(self%window_of(tip))%window%made)
    end function has_mesh
 
    !> A window serves a tip with intensities to be evaluated.

@@ -33,7 +33,7 @@ program test_scene_plausible
 
 contains
 
-   !> K_m of 0.5 and 0.45: E' = 32 GPa, and mu' Q such that (E'^3 mu' Q)**(1/4) is 2 K' or K'/0.45.
+   !> K_m of 0.2 and 0.18: E' = 32 GPa, and mu' Q such that (E'^3 mu' Q)**(1/4) is 5 K' or K'/0.18.
    subroutine test_regime()
       type(scene_t) :: s
       real(rk), parameter :: k = 3.191538243211461e6_rk  ! sqrt(32/pi) times 1 MPa sqrt(m)
@@ -46,10 +46,10 @@ contains
       s%fluid%viscosity = 1.0e-3_rk
       s%fractures = [fracture_t(name="a", x=[0.3_rk, 0.7_rk], y=[1.0_rk, 1.0_rk])]
       s%injections = [injection_t(name="w", fracture=1, &
-                                  rate=[0.0_rk, 16.0_rk*k**4/(32.0e9_rk**3*12.0e-3_rk)])]
-      call expect(s, "", "K_m = 0.5")
+                                  rate=[0.0_rk, 625.0_rk*k**4/(32.0e9_rk**3*12.0e-3_rk)])]
+      call expect(s, "", "K_m = 0.2")
       s%injections(1)%rate = s%injections(1)%rate/0.9_rk**4
-      call expect(s, "&injection 'w': K_m is 0.45: growth is then viscosity-dominated", "0.45")
+      call expect(s, "&injection 'w': K_m is 0.18: growth is then viscosity-dominated", "0.18")
       s%injections(1)%rate = -s%injections(1)%rate
       call expect(s, "", "a well that draws")
       s%injections(1)%rate = -s%injections(1)%rate

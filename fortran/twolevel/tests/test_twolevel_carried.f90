@@ -29,6 +29,7 @@ program test_twolevel_carried
 
    call test_network("10 tips", 5, 1.0e7_rk, .false.)
    call test_network("10 tips in one window", 5, 1.0e7_rk, .true.)
+   call test_rejected()
    call test_few()
    call test_near_toughness()
    call test_cell_length()
@@ -155,6 +156,20 @@ contains
          ", largest difference over the stated error ", worst
    end subroutine test_network
 
+   !> The first step after the undrained response is rejected and tried again: K of this response is
+   !! not kept, though the windows are those of the first try.
+   subroutine test_rejected()
+      type(twolevel_simulation_t) :: simulation
+
+      call start(simulation, 5, 1.0e7_rk, .false.)
+      call step(simulation, 1.0e-3_rk)
+      call evaluate(simulation)
+      call simulation%put_back()
+      call step(simulation, 0.5e-3_rk)
+      call evaluate(simulation)
+      call checks%is_true(.not. any(simulation%tip%is_carried), "after a rejected step")
+   end subroutine test_rejected
+
    !> Eight tips or fewer are all evaluated.
    subroutine test_few()
       type(two_levels_t) :: simulation
@@ -243,15 +258,17 @@ contains
       type(tip_t) :: tip
       real(rk), parameter :: place(2) = [1.0_rk, 2.0_rk], jump(2) = [3.0_rk, -4.0_rk]
 
-      call checks%is_true(.not. seen%has_same_jump(jump, place), "never evaluated")
-      call seen%note_jump(jump, place)
-      call checks%is_true(.not. seen%has_same_jump(jump, place), "errors not estimated")
+      call checks%is_true(.not. seen%has_same_jump(jump, place, .false.), "never evaluated")
+      call seen%note_jump(jump, place, .false.)
+      call checks%is_true(.not. seen%has_same_jump(jump, place, .false.), "errors not estimated")
       seen%is_compared = .true.
-      call checks%is_true(seen%has_same_jump(jump, place), "the same")
-      call checks%is_true(.not. seen%has_same_jump(jump, place + 1.0e-9_rk), "the tip has moved")
-      call checks%is_true(seen%has_same_jump(jump + [0.0_rk, 0.49_rk], place), "9.8 % of change")
-      call checks%is_true(.not. seen%has_same_jump(jump + [0.51_rk, 0.0_rk], place), "10.2 %")
-      call checks%is_true(.not. seen%has_same_jump(-jump, place), "the other direction")
+      call checks%is_true(seen%has_same_jump(jump, place, .false.), "the same")
+      call checks%is_true(.not. seen%has_same_jump(jump, place + 1.0e-9_rk, .false.), "moved")
+      call checks%is_true(seen%has_same_jump(jump + [0.0_rk, 0.49_rk], place, .false.), "9.8 %")
+      call checks%is_true(.not. seen%has_same_jump(jump + [0.51_rk, 0.0_rk], place, .false.), &
+                          "10.2 %")
+      call checks%is_true(.not. seen%has_same_jump(-jump, place, .false.), "the other direction")
+      call checks%is_true(.not. seen%has_same_jump(jump, place, .true.), "the undrained response")
       call checks%is_close(seen%change_of_jump(jump + [0.4_rk, 0.0_rk]), 0.08_rk, 1.0e-12_rk, &
                            "change")
       call tip%carry(intensity_t(k1=3.0_rk, k2=4.0_rk, k1_error=0.1_rk, k2_error=0.2_rk), 0.08_rk)
@@ -259,7 +276,7 @@ contains
       call checks%is_close(tip%intensity%k1_error, 0.5_rk, 1.0e-12_rk, "error of K_I")
       call checks%is_close(tip%intensity%k2_error, 0.6_rk, 1.0e-12_rk, "error of K_II")
       call seen%forget_jump()
-      call checks%is_true(.not. seen%has_same_jump(jump, place), "forgotten")
+      call checks%is_true(.not. seen%has_same_jump(jump, place, .false.), "forgotten")
    end subroutine test_same_jump
 
    !> Which tips are shut: two fractures, of three cells and of one, numbered one after the other.

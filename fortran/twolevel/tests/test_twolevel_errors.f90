@@ -9,6 +9,7 @@ program test_twolevel_errors
    type(checks_t) :: checks
 
    call test_growth()
+   call test_bent()
    call test_steps()
    call checks%finish()
 
@@ -43,6 +44,21 @@ contains
                                  tip_excess_t(grows(2), 0.01_rk, -5.0_rk, 0.01_rk)], &
                                 0.2_rk, 3.0e6_rk, 0.5_rk)
    end subroutine accept
+
+   !> Wings of 0.5 and 4 cells of 10 mm at 30 degrees to their fractures: half of a cell, and 1.3/4
+   !! of that.
+   subroutine test_bent()
+      type(stated_errors_t) :: stated_errors
+
+      call stated_errors%accept(1.0_rk, 3.0e6_rk, [tip_excess_t(.true., 0.0_rk, -5.0_rk, 0.01_rk, &
+                                                                0.005_rk, 0.5_rk), &
+                                                   tip_excess_t(.true., 0.0_rk, -5.0_rk, 0.01_rk, &
+                                                                0.04_rk, 0.5_rk)], &
+                                0.2_rk, 3.0e6_rk, 0.0_rk)
+      call checks%is_close(stated_errors%tip(1), 1.0e-3_rk + 5.0e-3_rk, 1.0e-12_rk, "short wing")
+      call checks%is_close(stated_errors%tip(2), 1.0e-3_rk + 5.0e-3_rk*1.3_rk/4.0_rk, 1.0e-12_rk, &
+                           "longer wing")
+   end subroutine test_bent
 
    !> p' = 2 t by backward Euler with the step h is h t too large at t; the error h**2 of the first
    !! step, which has no rate to compare with, is not known.

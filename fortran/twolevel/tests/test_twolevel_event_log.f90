@@ -167,11 +167,16 @@ contains
                           "one has met a target")
       call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.0_rk, first=2_ik) == 0, &
                           "never one group")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.0_rk, other=.true.) == 0, &
+                          "of another fracture, behind")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.0_rk, other=.false.) == 1, &
+                          "of another fracture, equal")
    end subroutine test_separation
 
    !> Number of events of two tips that have grown by 0.02 m, in one group unless `first` says
    !! another one, and then by different gains.
-   integer function n_separations(excess, gain, error, off, increments, arrested, first) result(n)
+   integer function n_separations(excess, gain, error, off, increments, arrested, first, &
+                                  other) result(n)
       real(rk), intent(in) :: excess(2)  !< of K_eq over K_IC when they separate [-]
       real(rk), intent(in) :: gain(2)  !< [m]
       real(rk), intent(in) :: error  !< of the position of each [m]
@@ -179,6 +184,8 @@ contains
       real(rk), intent(in), optional :: increments(2)  !< [m]
       logical, intent(in), optional :: arrested  !< the tip behind is
       integer(ik), intent(in), optional :: first  !< group of the second tip at first
+      !> the second tip is one of another fracture, and has fallen behind its group
+      logical, intent(in), optional :: other
       type(two_levels_t) :: simulation
       real(rk) :: increment(2)
       integer :: k
@@ -195,10 +202,15 @@ contains
          groups%kind = [1_ik, 1_ik]
          if (present(first)) groups%kind(2) = first
          groups%usual = [0.0_rk, 0.0_rk]
+         groups%is_alone = [.false., .false.]
       end associate
       simulation%now%stated_errors%tip = [error, error]
       call note(simulation, increment)
       simulation%now%groups%kind = [1_ik, 2_ik]
+      if (present(other)) then
+         simulation%tip(2)%fracture = 2
+         simulation%now%groups%is_alone(2) = other
+      end if
       call note(simulation, increment)
       ! What they are later does not matter.
       simulation%tip%drive%intensity = toughness

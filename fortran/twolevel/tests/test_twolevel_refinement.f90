@@ -1,10 +1,8 @@
 !> Windows that are too small for their tips: the errors of the intensities are stated as large, the
 !! windows are enlarged, and the intensities are right then; an accurate window stays as it is.
-!> become larger, and the intensities are right then; a good window stays as it is.
-!>
-!> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
+!!
+!! One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m under 20 and 10 MPa whose
 !! fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in an infinite plane.
-!> fluid keeps its pressure: K_II = (tau - mu (sigma_n - p)) sqrt(pi a), in a plane without end.
 program test_twolevel_refinement
    use testing_checks, only: checks_t
    use base_errors, only: error_t
@@ -162,8 +160,6 @@ contains
    !> Where the error of the window itself is the larger part its elements become smaller, until no
    !! smaller ones are possible: then the errors of growth are stated. A pressure dp changes K_II of
    !! this crack by friction dp sqrt(pi a).
-   !> ones are possible: then the errors of growth are stated. A pressure dp changes K_II of this
-   !> crack by friction dp sqrt(pi a).
    subroutine test_poor_elements()
       type(two_levels_t) :: simulation
       type(growth_error_t) :: growth

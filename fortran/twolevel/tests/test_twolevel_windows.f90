@@ -1,10 +1,8 @@
 !> Windows keep their meshes under small moves of tips that they contain but do not serve: the
 !! intensities hardly change; they change as much as they should once the moves are noticeable.
-!> nothing then, and by as much as they should once the moves are noticeable.
-!>
-!> One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m; each of its two windows
+!!
+!! One crack of 0.1 m at 45 degrees, closed and slipping, in a body of 2 m; each of its two windows
 !! contains all of it.
-!> holds all of it.
 program test_twolevel_windows
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
