@@ -72,7 +72,7 @@ contains
       is_too_short = .false.
       is_last = .false.
       is_unstable = .false.
-      may_jump = .false.
+      may_jump = self%stepper%expects_jump() .and. is_moment(self)
       do
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
@@ -115,10 +115,17 @@ contains
    pure logical function is_moment(self)
       class(stepping_levels_t), intent(in) :: self
 
-      associate (time => self%before%time)
-         is_moment = self%dt <= punctual*(time - last_switch(self%scene, time))
-      end associate
+      is_moment = self%dt <= moment(self)
    end function is_moment
+
+   !> Length of a step within which the time of a jump does not matter [s].
+   pure real(rk) function moment(self)
+      class(stepping_levels_t), intent(in) :: self
+
+      associate (time => self%before%time)
+         moment = punctual*(time - last_switch(self%scene, time))
+      end associate
+   end function moment
 
    !> Whether the equations are solved with the tips in equilibrium, whatever the time error.
    pure logical function solves(trial)
@@ -204,6 +211,7 @@ contains
          call self%notes%note_competition(self%tip, self%now%interaction, self%increments(), &
                                           self%now%coarse%time, self%chronicle)
       end if
+      self%stepper%moment = moment(self)
       call self%stepper%step_done(trial, self%dt)
       call self%now%trend%accept(self%before, self%now%coarse, self%dt)
       ! The rates of a step in which cracks have joined do not apply to the next step.
