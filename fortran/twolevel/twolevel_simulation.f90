@@ -21,6 +21,7 @@ module twolevel_simulation
    use twolevel_stimulation, only: stimulation_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_well_rows, only: well_results_t
+   use twolevel_window_total, only: limit_windows
    implicit none(type, external)
    private
 
@@ -113,6 +114,10 @@ contains
       is_first = .not. self%has_begun
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
       self%has_begun = .true.
+      if (self%scene%growth%enabled) then
+         call limit_windows(self, timers, error)
+         if (allocated(error)) return
+      end if
       call self%begin_step()
       if (self%is_initial) then
          call find_initial_state(self, timers, error)

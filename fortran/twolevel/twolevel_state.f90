@@ -59,6 +59,8 @@ module twolevel_state
       real(rk) :: load_pressure = 0.0_rk  !< largest pressure expected from the loads [Pa]
       !> largest number of coarse fracture cells for this comparison
       integer(ik) :: reference_most = 800
+      !> unknowns of the windows when they were last compared with those of the body
+      integer(ik) :: compared_unknowns = 0
    contains
       procedure :: mesh_levels
       procedure, private :: set_scales
@@ -497,11 +499,11 @@ contains
                                                             self%tip(i))), dim=2)
    end function tip_jump
 
-   !> The windows are held against the whole body as one window.
+   !> The windows are compared with the whole body as one window.
    pure logical function has_reference(self)
       class(two_levels_t), intent(in) :: self
 
-      has_reference = .not. self%scene%discretization%window_is_body .and. &
+      has_reference = .not. self%windows%all_in_body() .and. &
                       self%problem%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
 
