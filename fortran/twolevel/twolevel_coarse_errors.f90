@@ -153,7 +153,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
 
-      if (self%scene%discretization%window_is_body) then
+      if (self%windows%all_in_body()) then
          do i = 1, size(self%tip, kind=ik)
             associate (seen => self%now%windows%tip(i))
                seen%of_elements = max(seen%found%k1_error, seen%found%k2_error)

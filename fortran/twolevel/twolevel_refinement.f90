@@ -6,8 +6,9 @@
 !! requires smaller elements. The error of the coarse level, which enters through the displacement
 !! on the edge, requires a larger window, and finally the body as one window for all tips. A window
 !! keeps its refined size and elements, and moves with its tip. A refinement that has not reduced the
-!! error is not followed by another one of its kind: the two levels then differ by something else,
-!! such as the history of slip on faces of a new kink.
+!! error is taken back, and not followed by another one of its kind: the two levels then differ by
+!! something else, such as the history of slip on faces of a new kink. The windows of the loaded
+!! tips together are not enlarged beyond the area of the body.
 !!
 !! An error of K_eq is an error of the pressure at which the tip reaches its toughness, and of the
 !! equilibrium position of a growing tip (model.md, section 5). Both are compared with the scales of
@@ -23,10 +24,11 @@ module twolevel_refinement
    use report_limits, only: limit_growth_error
    use report_rows, only: event_growth_uncertain, event_window
    use report_watch, only: doubtful, error_of_k, uncertainty
-   use scene_types, only: domain_t
    use twolevel_state, only: two_levels_t
-   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, refinement_t
+   use twolevel_stepping, only: improve_by_body, improve_edge, improve_elements, refinement_t, &
+                                withdraw_edge, withdraw_elements
    use twolevel_window_tip, only: of_edge, of_elements, window_tip_t
+   use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
 
@@ -162,6 +164,15 @@ contains
 
       kind = improve_edge
       seen = self%now%windows%tip(tip)
+      if (seen%can_withdraw(of_elements) .and. seen%is_futile(of_elements, error)) then
+         kind = withdraw_elements
+         what = "larger elements again, the smaller ones had no effect"
+         return
+      else if (seen%can_withdraw(of_edge) .and. seen%is_futile(of_edge, error)) then
+         kind = withdraw_edge
+         what = "a smaller window again, the larger one had no effect"
+         return
+      end if
       associate (window => self%windows%slot(self%windows%window_of(tip))%window)
          ! If one refinement is impossible, the other one is taken where it reduces the error
          ! noticeably. A window that contains the body differs from it by the elements alone.
@@ -183,11 +194,13 @@ contains
             end if
          else if (can_be_larger) then
             what = "a window of "//brief_text(2.0_rk*window%edge_length(), 3)//" m"
-            if (self%problem%mesh%fracture%n_cells > self%reference_most .or. .not. &
-                costs_as_body(self%scene%domain, 2.0_rk*window%edge_length())) return
-            if (.not. uncertainty(self%tip(tip), self%rules%toughness) < far_off) return
-            kind = improve_by_body
-            what = "the body as its window"
+            if (costs_as_body(self, 2.0_rk*window%edge_length()) .and. &
+                uncertainty(self%tip(tip), self%rules%toughness) < far_off) then
+               kind = improve_by_body
+               what = "the body as its window"
+            else if (exceed_body(self, tip)) then
+               deallocate (what)
+            end if
          end if
       end associate
    end subroutine choose
@@ -201,34 +214,99 @@ contains
       do k = 1, size(refinements)
          associate (i => refinements(k)%tip, windows => self%windows, &
                     seen => self%now%windows%tip(refinements(k)%tip))
-            seen%refined_at(merge(of_elements, of_edge, refinements(k)%kind == improve_elements)) &
-               = refinements(k)%error
             select case (refinements(k)%kind)
             case (improve_elements)
-               seen%times_finer = seen%times_finer + 1
-               call windows%mesh_again(i, seen)
-               if (self%scene%discretization%window_is_body) cycle
-               self%now%reference%tip(i)%times_finer = seen%times_finer
-               call self%reference%mesh_again(i, self%now%reference%tip(i))
+               call note_error(seen, of_elements, refinements(k)%error)
+               call change_elements(self, i, 1)
+            case (withdraw_elements)
+               seen%can_withdraw(of_elements) = .false.
+               call change_elements(self, i, -1)
             case (improve_edge)
-               associate (window => windows%slot(windows%window_of(i))%window)
-                  window%times_larger = window%times_larger + 1
-               end associate
-               call windows%mesh_again(i, seen)
+               call note_error(seen, of_edge, refinements(k)%error)
+               call change_edge(windows, i, 1, seen)
+            case (withdraw_edge)
+               seen%can_withdraw(of_edge) = .false.
+               call change_edge(windows, i, -1, seen)
             case default
+               call note_error(seen, of_edge, refinements(k)%error)
+               seen%can_withdraw(of_edge) = .false.
                call windows%take_body(i, seen)
             end select
          end associate
       end do
    end subroutine refine_windows
 
-   !> Whether a window of this size would cost about as much as the body.
-   pure logical function costs_as_body(domain, edge)
-      type(domain_t), intent(in) :: domain
+   !> Store the error before a refinement, with which its effect is judged.
+   pure subroutine note_error(seen, part, error)
+      type(window_tip_t), intent(inout) :: seen
+      integer, intent(in) :: part  !< of_elements or of_edge
+      real(rk), intent(in) :: error  !< [Pa m^1/2]
+
+      seen%refined_at(part) = error
+      seen%can_withdraw(part) = .true.
+   end subroutine note_error
+
+   !> Make the elements around a tip smaller or larger, in the reference too.
+   subroutine change_elements(self, i, by)
+      class(two_levels_t), intent(inout) :: self
+      integer(ik), intent(in) :: i  !< tip
+      integer, intent(in) :: by  !< halvings
+
+      associate (seen => self%now%windows%tip(i))
+         seen%times_finer = seen%times_finer + by
+         call self%windows%mesh_again(i, seen)
+         if (self%scene%discretization%window_is_body) return
+         self%now%reference%tip(i)%times_finer = seen%times_finer
+      end associate
+      call self%reference%mesh_again(i, self%now%reference%tip(i))
+   end subroutine change_elements
+
+   !> Make the window of a tip larger or smaller.
+   subroutine change_edge(windows, i, by, seen)
+      type(windows_t), intent(inout) :: windows
+      integer(ik), intent(in) :: i  !< tip
+      integer, intent(in) :: by  !< doublings
+      type(window_tip_t), intent(inout) :: seen  !< data of this tip
+
+      associate (window => windows%slot(windows%window_of(i))%window)
+         window%times_larger = window%times_larger + by
+      end associate
+      call windows%mesh_again(i, seen)
+   end subroutine change_edge
+
+   !> Whether the windows of the loaded tips together would be larger than the body if the window of
+   !! a tip had twice its edge.
+   pure logical function exceed_body(self, tip)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(in) :: tip
+      real(rk) :: area, body(2)
+      integer(ik) :: w
+
+      associate (domain => self%scene%domain, windows => self%windows)
+         body = [domain%x_max - domain%x_min, domain%y_max - domain%y_min]
+         area = 0.0_rk
+         do w = 1, size(windows%slot, kind=ik)
+            if (.not. windows%is_active(w, self%tip)) cycle
+            associate (edge => merge(2.0_rk, 1.0_rk, w == windows%window_of(tip)) &
+                       *windows%slot(w)%window%edge_length())
+               area = area + product(min(body, edge))
+            end associate
+         end do
+      end associate
+      exceed_body = area > product(body)
+   end function exceed_body
+
+   !> Whether a window of this size would cost about as much as the body, where the body can be the
+   !! window.
+   pure logical function costs_as_body(self, edge)
+      class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: edge  !< [m]
       real(rk), parameter :: large = 0.3_rk  ! share of the body's shorter side [-]
 
-      costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
+      associate (domain => self%scene%domain)
+         costs_as_body = edge > large*min(domain%x_max - domain%x_min, domain%y_max - domain%y_min)
+      end associate
+      costs_as_body = costs_as_body .and. self%problem%mesh%fracture%n_cells <= self%reference_most
    end function costs_as_body
 
 end module twolevel_refinement

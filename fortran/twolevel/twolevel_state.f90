@@ -73,6 +73,8 @@ module twolevel_state
       type(stimulation_t) :: stimulation
       type(well_results_t) :: well_results
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness [N m]
+      !> unknowns of the windows when they were last compared with those of the body
+      integer(ik) :: compared_unknowns = 0
    contains
       procedure :: begin
       procedure :: next_state
@@ -356,11 +358,11 @@ contains
       call timers%stop(phase_tips)
    end subroutine evaluate
 
-   !> The windows are held against the whole body as one window.
+   !> The windows are compared with the whole body as one window.
    pure logical function has_reference(self)
       class(two_levels_t), intent(in) :: self
 
-      has_reference = .not. self%scene%discretization%window_is_body .and. &
+      has_reference = .not. self%windows%all_in_body() .and. &
                       self%problem%mesh%fracture%n_cells <= self%reference_most
    end function has_reference
 

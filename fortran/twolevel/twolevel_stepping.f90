@@ -34,6 +34,7 @@ module twolevel_stepping
    private
 
    public :: improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t, trial_t
+   public :: withdraw_edge, withdraw_elements
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
@@ -48,6 +49,7 @@ module twolevel_stepping
    integer, parameter :: improve_elements = 1  !< smaller elements
    integer, parameter :: improve_edge = 2  !< larger window
    integer, parameter :: improve_by_body = 3  !< body as window
+   integer, parameter :: withdraw_elements = 4, withdraw_edge = 5  !< refinement without effect
 
    !> Refinement of the window of a tip.
    type :: refinement_t
@@ -103,6 +105,8 @@ module twolevel_stepping
       !> time left to the end of the last step in which tips advanced too far [s]
       real(rk) :: left_in_vain = huge(1.0_rk)
       integer :: halvings = 0  !< number of steps that have halved it
+      !> length of a step within which the time of a jump does not matter [s]
+      real(rk) :: moment = 0.0_rk
       integer :: in_vain = 0  !< cuts of the present step after which tips still advanced too far
       integer :: onset_cuts = 0  !< cuts of the present step to an onset of growth
       integer :: arrival_cuts = 0  !< cuts of the present step to the arrival at a target
@@ -115,6 +119,7 @@ module twolevel_stepping
    contains
       procedure :: begin
       procedure :: step_to
+      procedure :: expects_jump
       procedure :: takes
       procedure :: cut
       procedure :: step_done
@@ -257,8 +262,9 @@ contains
    end subroutine step_done
 
    !> Limit the next step where a step in which tips advanced too far has been cut to this one: to
-   !! half of the time that is left, and after several such steps to all of it. With noticeable
-   !! growth it is the length of a segment that limits steps (powers), and a jump is over.
+   !! half of the time that is left, and to all of it after several such steps, or where the time of
+   !! a jump does not matter. With noticeable growth it is the length of a segment that limits steps
+   !! (powers), and a jump is over.
    pure subroutine approach(self, trial, dt)
       class(stepper_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
@@ -274,9 +280,17 @@ contains
          return
       end if
       self%halvings = self%halvings + 1
-      self%next = min(self%next, merge(0.5_rk, 1.0_rk, self%halvings <= most_halvings) &
-                      *self%left_in_vain)
+      self%next = min(self%next, merge(0.5_rk, 1.0_rk, self%halvings <= most_halvings .and. &
+                                       self%left_in_vain > self%moment)*self%left_in_vain)
    end subroutine approach
+
+   !> Whether the next step ends where tips have been found to advance too far.
+   pure logical function expects_jump(self)
+      class(stepper_t), intent(in) :: self
+
+      expects_jump = self%left_in_vain < huge(1.0_rk) .and. &
+                     self%next >= self%left_in_vain*(1.0_rk - same_value)
+   end function expects_jump
 
    !> Whether steps have remained too short for progress in time.
    pure logical function is_stuck(self)

@@ -21,6 +21,7 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
+   use twolevel_window_total, only: limit_windows
    implicit none(type, external)
 
 contains
@@ -36,6 +37,10 @@ contains
       is_first = .not. self%has_begun
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
       self%has_begun = .true.
+      if (self%scene%growth%enabled) then
+         call limit_windows(self, timers, error)
+         if (allocated(error)) return
+      end if
       call self%begin_step()
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
@@ -109,7 +114,8 @@ contains
       is_too_short = .false.
       is_last = .false.
       is_unstable = .false.
-      may_jump = .false.
+      may_jump = self%stepper%expects_jump() .and. &
+                 self%step%dt <= moment(self%scene, self%before%time)
       do
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
@@ -131,9 +137,8 @@ contains
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
          ! In a step so short that the time of a jump within it does not matter.
-         may_jump = is_last .or. &
-                    (trial%goes_too_far .and. self%step%dt <= &
-                     punctual*(self%before%time - last_switch(self%scene, self%before%time)))
+         may_jump = is_last .or. (trial%goes_too_far .and. &
+                                  self%step%dt <= moment(self%scene, self%before%time))
       end do
       is_unstable = is_unstable .or. trial%jumps
       if (self%now%trend%is_known() .and. .not. (self%step%is_after_switch .or. is_unstable)) then
@@ -151,6 +156,14 @@ contains
       if (.not. trial%converged) words = &
          ": fluid or sides may act faster; &time smallest_factor allows shorter steps"
    end function way_out
+
+   !> Length of a step within which the time of a jump does not matter [s].
+   pure real(rk) function moment(scene, since)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: since  !< start of the step [s]
+
+      moment = punctual*(since - last_switch(scene, since))
+   end function moment
 
    !> Refine windows and evaluate the tips again in the state at the start of the step, from which
    !! onsets are interpolated; before the first step this state has no tractions.
@@ -229,6 +242,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
          call self%notes%note_competition(self%tip, self%now%interaction, self%increments(), &
                                           self%now%coarse%time, self%chronicle)
       end if
+      self%stepper%moment = moment(self%scene, self%before%time)
       call self%stepper%step_done(trial, self%step%dt)
       if (self%step%is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) then
          self%stepper%next = wanted

@@ -15,7 +15,7 @@ module twolevel_window_tip
 
    !> A refinement has had no effect if the error is still more than this share of the error before
    !! [-], until the error has become so many times as large [-].
-   real(rk), parameter :: no_effect = 0.95_rk, other_state = 2.0_rk
+   real(rk), parameter :: no_effect = 0.9_rk, other_state = 2.0_rk
 
    !> Largest number of refinements. Each halves the rosette; from the second on each also halves
    !! the other elements.
@@ -27,6 +27,7 @@ module twolevel_window_tip
       integer :: times_finer = 0  !< number of refinements
       !> (of_elements, of_edge) error of the intensities before the last refinement [Pa m^1/2]
       real(rk) :: refined_at(2) = huge(1.0_rk)
+      logical :: can_withdraw(2) = .false.  !< this refinement can still be taken back
       !> intensities of the last solution, without the error by the coarse level
       type(intensity_t) :: found
       !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), by

@@ -12,6 +12,7 @@ program test_twolevel_refinement
    use sample_scenes, only: add_fracture, squeezed_body
    use scene_types, only: scene_t
    use report_rows, only: event_growth_uncertain
+   use twolevel_window_total, only: limit_windows
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: refinement_t
@@ -36,6 +37,7 @@ program test_twolevel_refinement
    call test_poor_elements()
    call test_no_effect()
    call test_body()
+   call test_many_windows()
    call checks%finish()
 
 contains
@@ -169,7 +171,7 @@ contains
 
       call start(0.3_rk, 0.5_rk, simulation, usual_toughness)
       do n = 1, 5
-         off = 0.1_rk*0.9_rk**(n - 5)*usual_toughness
+         off = 0.1_rk*0.8_rk**(n - 5)*usual_toughness
          simulation%now%windows%tip%found%k2_error = off
          simulation%now%windows%tip%of_elements = off
          simulation%tip%intensity%k2_error = off
@@ -208,15 +210,21 @@ contains
       call checks%is_true(all(simulation%now%windows%tip%times_finer == 1), "smaller elements")
       call set_error(simulation, 0.098_rk)
       call improve(simulation, any_improved)
-      call checks%is_true(all(simulation%now%windows%tip%times_finer == 1), "once")
+      call checks%is_true(all(simulation%now%windows%tip%times_finer == 0), "taken back")
+      call set_error(simulation, 0.098_rk)
+      call improve(simulation, any_improved)
       call checks%is_true(all([(simulation%windows%slot(i)%window%times_larger == 1, i=1, 2)]), &
                           "a larger window then")
+      call set_error(simulation, 0.097_rk)
+      call improve(simulation, any_improved)
+      call checks%is_true(all([(simulation%windows%slot(i)%window%times_larger == 0, i=1, 2)]), &
+                          "taken back, too")
       call set_error(simulation, 0.097_rk)
       call improve(simulation, any_improved)
       call checks%is_true(.not. any_improved, "and no more of either")
       call set_error(simulation, 0.21_rk)
       call improve(simulation, any_improved)
-      call checks%is_true(all(simulation%now%windows%tip%times_finer == 2), "another state")
+      call checks%is_true(all(simulation%now%windows%tip%times_finer == 1), "another state")
    end subroutine test_no_effect
 
    !> An error to which elements and edge contribute nearly equally.
@@ -249,5 +257,54 @@ contains
       end associate
       call checks%is_true(.not. any(are_built(simulation)), "its own is not built")
    end subroutine test_body
+
+   !> Windows of eight tips that nearly cover the body, and one another, have more unknowns than the
+   !! body: the body is the only window then, has fewer, and gives the same K. Small windows stay.
+   subroutine test_many_windows()
+      real(rk), parameter :: half = 0.05_rk*sqrt(0.5_rk), apart = 0.35_rk
+      type(twolevel_simulation_t) :: simulation
+      type(scene_t) :: scene
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      integer(ik) :: before
+      real(rk), allocatable :: k2(:)
+      real(rk) :: window
+      integer :: i, n
+
+      do n = 1, 2
+         window = merge(0.15_rk, 0.6_rk, n == 1)
+         scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+         scene%material%toughness = 10.0_rk*usual_toughness
+         scene%initial%pressure = pressure
+         scene%discretization%size_fracture = 0.02_rk
+         scene%discretization%window = window
+         scene%growth%enabled = .true.
+         do i = 1, 4
+            associate (x => 1.0_rk + apart*[-1.5_rk, -0.5_rk, 0.5_rk, 1.5_rk])
+               call add_fracture(scene, "f", x(i) + [-half, half], 1.0_rk + [-half, half], &
+                                 friction, 0.0_rk)
+            end associate
+         end do
+         simulation = twolevel_simulation_t()
+         call simulation%begin(scene, timers, error)
+         call checks%no_error(error, "begin")
+         call simulation%equilibrate(timers, report, error)
+         call checks%no_error(error, "initial state")
+         call evaluate(simulation)
+         before = simulation%windows%n_unknowns(simulation%tip)
+         k2 = simulation%tip%intensity%k2
+         call limit_windows(simulation, timers, error)
+         call checks%no_error(error, "limit")
+         if (n == 1) then
+            call checks%is_true(.not. any(simulation%windows%window_of == 9), "small windows stay")
+         else
+            call checks%is_true(simulation%windows%all_in_body(), "the body for all tips")
+            call checks%is_true(simulation%windows%n_unknowns(simulation%tip) < before, &
+                                "fewer unknowns")
+            call checks%is_true(all(abs(simulation%tip%intensity%k2 - k2) < 0.01_rk*abs(k2)), &
+                                "the same K")
+         end if
+      end do
+   end subroutine test_many_windows
 
 end program test_twolevel_refinement

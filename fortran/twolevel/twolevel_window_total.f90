@@ -1,0 +1,46 @@
+!> The windows of all loaded tips together are not larger than the body as one window: where they
+!! would have more unknowns, all tips take the body. This is decided in accepted states, and again
+!! only when the windows have grown considerably, since it costs a mesh of the body.
+module twolevel_window_total
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_timers, only: phase_tips, timers_t
+   use report_rows, only: event_window
+   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_state, only: two_levels_t
+   implicit none(type, external)
+   private
+
+   public :: limit_windows
+
+   !> Growth of the number of unknowns after which the body is meshed again for comparison [-].
+   real(rk), parameter :: considerable = 1.25_rk
+
+contains
+
+   !> Replace the windows by the body where they have more unknowns, and evaluate the tips in it.
+   subroutine limit_windows(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: n, n_body
+
+      if (.not. self%scene%growth%intensities .or. .not. self%has_reference()) return
+      n = self%windows%n_unknowns(self%tip)
+      ! The reference has larger elements than the windows, and so fewer unknowns than the body.
+      if (n <= max(self%reference%n_unknowns(self%tip), &
+                   int(considerable*self%compared_unknowns, ik))) return
+      self%compared_unknowns = n
+      call timers%start(phase_tips)
+      call self%windows%count_body(self%scene, self%network, self%now%windows%tip, n_body, error)
+      call timers%stop(phase_tips)
+      if (allocated(error) .or. n <= n_body) return
+      call self%windows%share_body(self%now%windows%tip)
+      call self%chronicle%add_event(self%now%coarse%time, event_window, "the body as one window "// &
+                                    "for all tips: it has fewer unknowns than their windows")
+      if (.not. allocated(self%now%coarse%tractions)) return
+      call self%evaluate(timers, error)
+      if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+   end subroutine limit_windows
+
+end module twolevel_window_total
