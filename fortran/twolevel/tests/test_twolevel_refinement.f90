@@ -202,7 +202,7 @@ contains
    !> A refinement that has not reduced the error is not repeated: neither smaller elements nor a
    !! larger window, until the error has become twice as large.
    subroutine test_no_effect()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       logical :: any_improved
       integer :: i
 
@@ -225,7 +225,7 @@ contains
 
    !> An error to which elements and edge contribute nearly equally.
    subroutine set_error(simulation, share)
-      type(twolevel_simulation_t), intent(inout) :: simulation
+      type(two_levels_t), intent(inout) :: simulation
       real(rk), intent(in) :: share  !< of the toughness [-]
 
       simulation%tip%intensity%k2_error = share*usual_toughness
