@@ -130,8 +130,7 @@ contains
       increments = self%rules%increment_of(self%tip%fracture)
    end function increments
 
-   !> One increment of the tips at their onset, by the law of advances. They have to be evaluated
-   !! before, and are after.
+   !> One increment of the evaluated tips at their onset, by the law of advances.
    subroutine grow_tips(self, any_grew, timers, error)
       class(front_t), intent(inout) :: self
       logical, intent(out) :: any_grew
