@@ -23,8 +23,19 @@ contains
    !> The length of a vector; the same digits in units that differ by a power of 2.
    pure real(rk) function magnitude(v)
       real(rk), intent(in) :: v(:)  !< [any unit]
+      real(rk) :: largest
 
-      magnitude = sqrt(dot_product(v, v))
+      magnitude = dot_product(v, v)
+      if (magnitude > 1.0e-280_rk .and. magnitude < 1.0e280_rk) then
+         magnitude = sqrt(magnitude)
+      else
+         ! Squares may be out of the range of numbers.
+         largest = maxval(abs(v))
+         magnitude = largest
+         if (largest > 0.0_rk .and. largest <= huge(1.0_rk)) then
+            magnitude = scale(sqrt(sum(scale(v, -exponent(largest))**2)), exponent(largest))
+         end if
+      end if
    end function magnitude
 
    !> The component of u x v out of the plane: positive if v points to the left of u.

@@ -2,7 +2,7 @@
 program test_base_plane
    use base_kinds, only: pi, rk
    use base_plane, only: barycentric, cross, crosses, meeting, nearest_place, nearest_share, &
-                         point_distance, polygon_area, triangle_area, turned, turned_left
+                         norm2, point_distance, polygon_area, triangle_area, turned, turned_left
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -12,6 +12,7 @@ program test_base_plane
    type(checks_t) :: checks
 
    call check_vectors()
+   call check_lengths()
    call check_nearest(0.0_rk)
    call check_nearest(far)
    call check_segments(0.0_rk)
@@ -21,6 +22,22 @@ program test_base_plane
    call checks%finish()
 
 contains
+
+   !> The same digits in units that differ by a power of 2, up to the range of numbers.
+   subroutine check_lengths()
+      real(rk), parameter :: v(2) = [0.3_rk, -1.7_rk]
+      integer :: power
+
+      call checks%is_close(norm2([3.0_rk, 4.0_rk]), 5.0_rk, 0.0_rk, "3, 4, 5")
+      call checks%is_close(norm2([0.0_rk, 0.0_rk]), 0.0_rk, 0.0_rk, "no length")
+      do power = -1000, 1000, 8
+         call checks%is_close(scale(norm2(scale(v, power)), -power), norm2(v), &
+                              2.0_rk*epsilon(1.0_rk), "any unit")
+         if (abs(power) > 460) cycle
+         call checks%is_close(scale(norm2(scale(v, power)), -power), norm2(v), 0.0_rk, &
+                              "the same digits")
+      end do
+   end subroutine check_lengths
 
    subroutine same(value, expected, name)
       real(rk), intent(in) :: value(2), expected(2)

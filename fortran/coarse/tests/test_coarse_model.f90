@@ -228,7 +228,7 @@ contains
       modulus = 2.0_rk*40.0e9_rk/2.4_rk/(1.0_rk - 0.3104329765_rk)
       slip = 4.0_rk*drop*a/modulus
       do level = 1, 3
-         call make_mesh(at, 0.01_rk/2**(level - 1), 0.1_rk, mesh)
+         call make_mesh(at, 0.02_rk/2**(level - 1), 0.2_rk/2**(level - 1), mesh)
          call start(mesh, scene, 0.5_rk, psi, model, state)
          call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
          call checks%no_error(error, "slipping step")

@@ -159,7 +159,7 @@ contains
    !> The first step after the undrained response is rejected and tried again: K of this response is
    !! not kept, though the windows are those of the first try.
    subroutine test_rejected()
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
 
       call start(simulation, 5, 1.0e7_rk, .false.)
       call step(simulation, 1.0e-3_rk)

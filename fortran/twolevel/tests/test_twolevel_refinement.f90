@@ -262,7 +262,7 @@ contains
    !! body: the body is the only window then, has fewer, and gives the same K. Small windows stay.
    subroutine test_many_windows()
       real(rk), parameter :: half = 0.05_rk*sqrt(0.5_rk), apart = 0.35_rk
-      type(twolevel_simulation_t) :: simulation
+      type(two_levels_t) :: simulation
       type(scene_t) :: scene
       type(step_report_t) :: report
       type(error_t), allocatable :: error
@@ -285,7 +285,7 @@ contains
                                  friction, 0.0_rk)
             end associate
          end do
-         simulation = twolevel_simulation_t()
+         simulation = two_levels_t()
          call simulation%begin(scene, timers, error)
          call checks%no_error(error, "begin")
          call simulation%equilibrate(timers, report, error)
