@@ -280,7 +280,7 @@ contains
       call simulation%begin(symmetric_scene("conserved"), timers, error)
       call checks%no_error(error, "equilibrium")
       grown = 0
-      do step = 1, 8
+      do step = 1, 12
          call simulation%next_state(timers, error)
          call checks%no_error(error, "a step in equilibrium")
          if (allocated(error)) return

@@ -68,7 +68,7 @@ contains
       if (law == "paris") scene%growth%new_volume = "prefilled"
       call simulation%begin(scene, timers, error)
       call checks%no_error(error, law//": begin")
-      do step = 1, 6
+      do step = 1, 10
          call simulation%next_state(timers, error)
          call checks%no_error(error, law//": a state")
          if (allocated(error)) return
