@@ -72,7 +72,7 @@ class Units:
     def factor(self, unit: str) -> float:
         """What a number of a unit is multiplied by."""
         length, stress, time = DIMENSIONS[unit]
-        return self.length**length * self.stress**stress * self.time**time
+        return float(self.length**length * self.stress**stress * self.time**time)
 
 
 def in_units(text: str, units: Units) -> str:

@@ -211,8 +211,8 @@ contains
 
    end subroutine wanted_sizes
 
-   !> The error s that each element may have, over what is allowed: n(s) s**2 + 2 m s**2 (tips) is 1,
-   !! n(s) = sum s**(-2/3). The sum rises with s; by bisection.
+   !> The error s that each element may have, over what is allowed: n(s) s**2 + 2 m s**2 (tips) is
+   !! 1, n(s) = sum s**(-2/3). The sum rises with s; by bisection.
    pure real(rk) function share_of_element(sum_of_powers, n_tips) result(share)
       real(rk), intent(in) :: sum_of_powers  !< of the errors**(2/3), tips left out [-]
       integer(ik), intent(in) :: n_tips
