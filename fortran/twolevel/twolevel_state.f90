@@ -7,7 +7,7 @@ module twolevel_state
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use mesh_geometry, only: cell_area
    use coarse_in_situ, only: in_situ_state_t
-   use coarse_model, only: new_state, rest_fluid
+   use coarse_model, only: new_state, profiles_t, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
    use growth_network, only: fracture_length, network_of_scene
@@ -24,6 +24,7 @@ module twolevel_state
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_scales, only: pressure_scale
    use twolevel_schedule, only: follow_sides, last_switch
+   use twolevel_stepping, only: first_step
    use twolevel_transfer, only: transfer_cells, transfer_state
    use twolevel_wells, only: rate, share_wells, transfer_shares
    use twolevel_unsolved, only: why_unsolved
@@ -101,6 +102,7 @@ contains
          if (allocated(error)) return
          call first_cells(self%scene, mesh%fracture, problem%model%cells)
          call share_wells(self%scene%injections, mesh%fracture, problem%share)
+         call choose_first_step(self%scene, problem)
          call problem%model%set_mesh(mesh, self%scene, timers, error)
          if (allocated(error)) return
          call problem%feed_wells(self%scene, error)
@@ -538,6 +540,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(coarse_problem_t), allocatable :: problem
       type(mesh_map_t) :: map
+      type(profiles_t) :: profiles
       real(rk) :: radius
       integer(ik) :: i, k, nearest
 
@@ -558,6 +561,9 @@ contains
       call timers%stop(phase_remesh)
       if (allocated(error)) return
       call timers%start(phase_transfer)
+      associate (layers => self%problem%model%layers, state => self%now%coarse)
+         if (layers%n > 0) profiles = layers%profiles(state%unknowns, state%layer)
+      end associate
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
       if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
@@ -565,13 +571,50 @@ contains
       call move_alloc(problem, self%problem)
       call self%windows%coarse_changed()
       call self%reference%coarse_changed()
+      call choose_first_step(self%scene, self%problem)
       call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
       if (allocated(error)) return
+      call transfer_layers(self%problem, profiles, map, self%now%coarse)
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
       self%now%has_new_mesh = .true.
    end subroutine remesh_coarse
+
+   !> Set the first step of the run, which determines where layers are resolved.
+   subroutine choose_first_step(scene, problem)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(inout) :: problem
+
+      if (scene%discretization%layers == "auto") problem%model%first_step = first_step(scene%time)
+   end subroutine choose_first_step
+
+   !> Transfer the pressures in layers to a new coarse mesh, after all else.
+   subroutine transfer_layers(problem, profiles, map, state)
+      type(coarse_problem_t), intent(in) :: problem  !< with the new mesh
+      type(profiles_t), intent(in) :: profiles  !< before
+      type(mesh_map_t), intent(in) :: map
+      type(state_t), intent(inout) :: state
+
+      associate (layers => problem%model%layers, mesh => problem%mesh)
+         if (layers%n == 0) return
+         call insert_layers(mesh%n_cells, layers%n, state%unknowns)
+         call layers%take_profiles(profiles, map%cell_old, map%fracture_cell_old, state%unknowns, &
+                                   state%layer)
+      end associate
+   end subroutine transfer_layers
+
+   !> Insert the blocks of layers after those of the cells.
+   pure subroutine insert_layers(n_cells, n_layers, unknowns)
+      integer(ik), intent(in) :: n_cells, n_layers
+      real(rk), allocatable, intent(inout) :: unknowns(:, :)  !< (3, blocks)
+      real(rk), allocatable :: with_layers(:, :)
+
+      allocate (with_layers(3, size(unknowns, 2) + n_layers), source=0.0_rk)
+      with_layers(:, :n_cells) = unknowns(:, :n_cells)
+      with_layers(:, n_cells + n_layers + 1:) = unknowns(:, n_cells + 1:)
+      call move_alloc(with_layers, unknowns)
+   end subroutine insert_layers
 
    !> Transfer cells, wells and state to a new coarse mesh.
    subroutine transfer_levels(scene, old, map, new, now)
