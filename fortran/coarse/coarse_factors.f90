@@ -237,6 +237,7 @@ contains
       is_pressure = self%rows%matrix%is_pressure()
       pressure = minval(self%scale, mask=is_pressure)
       where (is_pressure) known = pressure/self%scale
+      where (self%rows%matrix%is_difference()) known = 0.0_rk
       load = times_scaled(self%rows, known)
       if (size(schur) == 0) then
          found = load

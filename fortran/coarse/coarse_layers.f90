@@ -3,10 +3,10 @@
 !!
 !! On each such face a chain of graded volumes (coarse_chain) lies in series between the face and
 !! the stencils of the cell. Its resistance is taken out of that of the stencils, its volume out of
-!! that of the cell. The pressures at the outer end of the chain are unknowns, one at each end of
-!! the face; the stencils see them instead of the pressure at the face. Their mean is the pressure
-!! of the last node, so that the chain carries the mean flux; their difference keeps the resistance
-!! that has been taken out.
+!! that of the cell. At the outer end of the chain the stencils see, instead of the pressure at the
+!! face, a pressure at each end of the face. Their mean is the pressure of the last node, so that
+!! the chain carries the mean flux; their difference keeps the resistance that has been taken out.
+!! The mean and half the difference are unknowns.
 !!
 !! A cell with layers keeps its equation for the mean pressure pbar. The volumes of its layers and
 !! the rest of the cell, with pressures p_i, have w_i = p_i - pbar, sum v_i w_i = 0. In a thin layer
@@ -41,7 +41,8 @@ module coarse_layers
       integer(ik), allocatable :: face_of_cell(:)  !< (n) which face of its cell
       integer(ik), allocatable :: fracture_cell(:)  !< (n) 0 on the outer boundary
       integer(ik), allocatable :: side(:)  !< (n) of the fracture cell 1 +, 2 -; or of the body
-      !> (3, n) numbers of the unknowns: pressure at the face (0: given), at the outer end
+      !> (3, n) numbers of the unknowns: pressure at the face (0: given); mean and half difference at
+      !! the outer end
       integer(ik), allocatable :: at(:, :)
       !> (n) from the face to the rest of the cell, next to tips [m2/(Pa s)]
       real(rk), allocatable :: at_tip(:)
@@ -251,7 +252,7 @@ contains
       real(rk), intent(out) :: matrix(:, :)  !< [m2/Pa]
       real(rk), intent(out) :: of_mu(:)  !< mu per unknown, times the compliance [m2]
       integer(ik) :: a, b, i, l
-      real(rk) :: at_end, across
+      real(rk) :: across
 
       matrix = 0.0_rk
       of_mu(1) = -self%volume(k)
@@ -263,25 +264,19 @@ contains
          a = 3*i
          associate (chain => self%chain(l), n => self%chain(l)%n)
             of_mu(a) = dot_product(chain%volume(:n - 1), chain%alpha)
-            of_mu(a + 1:a + 2) = 0.5_rk*(dot_product(chain%volume(:n - 1), chain%beta) &
-                                         + chain%volume(n))
+            of_mu(a + 1) = dot_product(chain%volume(:n - 1), chain%beta) + chain%volume(n)
+            of_mu(a + 2) = 0.0_rk
             matrix(a, a) = self%dt*chain%conductance(0)*(1.0_rk - chain%alpha(1))
             matrix(a, a) = matrix(a, a) + self%dt*self%at_tip(l)
             matrix(2, 2) = matrix(2, 2) + self%dt*self%at_tip(l)
             matrix(a, 2) = -self%dt*self%at_tip(l)
             matrix(2, a) = matrix(a, 2)
             across = -self%dt*chain%conductance(0)*chain%beta(1)
-            matrix(a, a + 1:a + 2) = 0.5_rk*across
-            matrix(a + 1:a + 2, a) = 0.5_rk*across
-            at_end = chain%storage*chain%volume(n) &
-                     + self%dt*chain%conductance(n - 1)*(1.0_rk - chain%beta(n - 1))
-            matrix(a + 1:a + 2, a + 1:a + 2) = 0.25_rk*at_end
-            associate (c => 0.25_rk*self%dt*self%between(l))
-               do b = 1, 2
-                  matrix(a + b, a + b) = matrix(a + b, a + b) + c
-                  matrix(a + b, a + 3 - b) = matrix(a + b, a + 3 - b) - c
-               end do
-            end associate
+            matrix(a, a + 1) = across
+            matrix(a + 1, a) = across
+            matrix(a + 1, a + 1) = chain%storage*chain%volume(n) &
+                          + self%dt*chain%conductance(n - 1)*(1.0_rk - chain%beta(n - 1))
+            matrix(a + 2, a + 2) = self%dt*self%between(l)
          end associate
       end do
       do b = 1, size(of_mu, kind=ik)
@@ -370,8 +365,8 @@ contains
                self%rho(:n - 1, l) = chain%stored(inner(:n - 1, l))
                known = known + dot_product(chain%volume(:n - 1), self%rho(:n - 1, l))
                rhs(a) = self%dt*chain%conductance(0)*self%rho(1, l)
-               rhs(a + 1:a + 2) = 0.25_rk*chain%storage*chain%volume(n)*sum(p(number(a + 1:a + 2))) &
-                                  + 0.5_rk*self%dt*chain%conductance(n - 1)*self%rho(n - 1, l)
+               rhs(a + 1) = chain%storage*chain%volume(n)*p(number(a + 1)) &
+                            + self%dt*chain%conductance(n - 1)*self%rho(n - 1, l)
             end associate
          end do
          rhs = rhs - of_mu*(known/self%compliance(k))
@@ -425,7 +420,7 @@ contains
          integer(ik), intent(in) :: l
          real(rk), intent(out) :: at_face, at_end  !< [Pa]
 
-         at_end = 0.5_rk*sum(p(self%at(2:3, l)))
+         at_end = p(self%at(2, l))
          at_face = self%given(l)
          if (self%at(1, l) > 0) at_face = p(self%at(1, l))
       end subroutine find_ends
@@ -443,7 +438,7 @@ contains
       allocate (inner(self%n_nodes - 1, self%n))
       do l = 1, self%n
          inner(:, l) = unknowns(3, self%cell(l))
-         unknowns(:, (self%at(2, l) + 2)/3) = unknowns(3, self%cell(l))
+         unknowns(:, (self%at(2, l) + 2)/3) = unknowns(3, self%cell(l))*[1.0_rk, 0.0_rk, 1.0_rk]
       end do
    end subroutine begin
 
@@ -505,7 +500,7 @@ contains
          associate (n => self%chain(l)%n)
             found%place(:n, l) = self%chain(l)%place
             found%value(:n - 1, l) = inner(:n - 1, l)
-            found%value(n, l) = 0.5_rk*sum(unknowns(:2, (self%at(2, l) + 2)/3))
+            found%value(n, l) = unknowns(1, (self%at(2, l) + 2)/3)
             found%value(n + 1, l) = rest
          end associate
       end subroutine take
@@ -538,7 +533,7 @@ contains
                                                      before%value(:before%n(old) + 1, old), &
                                                      chain%place)
                inner(:n - 1, l) = value(:n - 1)
-               unknowns(:2, (self%at(2, l) + 2)/3) = value(n)
+               unknowns(1, (self%at(2, l) + 2)/3) = value(n)
                content = content - dot_product(chain%volume, value(:n))
             end associate
          end do

@@ -3,9 +3,9 @@
 !!
 !! The whole body has blocks of three numbers: (u_x, u_y, p) per cell, then two blocks per fracture
 !! cell, (jump x, y at its start, p on side +) and (jump x, y at its end, p on side -). With layers
-!! (coarse_layers), a block for each of them stands before those of the fractures: the pressures at
-!! the outer end of the layer at the two ends of its face, and, in the first layer of a cell, the
-!! pressure of the rest of the cell.
+!! (coarse_layers), a block for each of them stands before those of the fractures: the mean pressure
+!! at the outer end of the layer, half the difference of that at the start of its face from that at
+!! its end, and, in the first layer of a cell, the pressure of the rest of the cell.
 !!
 !! Condensed onto the fractures, q, per fracture cell:
 !!   [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-

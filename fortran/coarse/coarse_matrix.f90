@@ -39,6 +39,7 @@ module coarse_matrix
       procedure :: add_layer_term
       procedure :: add_layer_flow
       procedure :: is_pressure
+      procedure :: is_difference
       procedure :: entry_at
       procedure :: elastic_forces
    end type matrix_t
@@ -101,6 +102,16 @@ contains
       if (.not. allocated(self%layer_known)) return
       is_pressure(3*(self%n_cells - size(self%layer_known, 2, kind=ik)) + 1:3*self%n_cells) = .true.
    end function is_pressure
+
+   !> Which unknowns are differences of pressures.
+   pure function is_difference(self)
+      class(matrix_t), intent(in) :: self
+      logical :: is_difference(3*self%n_blocks)
+
+      is_difference = .false.
+      if (.not. allocated(self%layer_known)) return
+      is_difference(3*(self%n_cells - size(self%layer_known, 2)) + 2:3*self%n_cells:3) = .true.
+   end function is_difference
 
    !> The number of the entry in a row and column, which must exist.
    pure integer(ik) function entry_at(self, row, col) result(entry)

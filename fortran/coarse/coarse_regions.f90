@@ -36,9 +36,11 @@ module coarse_regions
       type(lists_t) :: faces  !< that carry a traction: of a fracture, the + side stands for both
       type(lists_t) :: flow_faces  !< that carry a flux: both sides of a fracture
       type(lists_t) :: blocks  !< cells first
-      !> With layers (coarse_layers), else unallocated: numbers of the unknowns that the stencils of
-      !! flow see, first one for each block
+      !> With layers (coarse_layers), else unallocated: numbers of what the stencils of flow see, first
+      !! one for each block; in the block of a layer the scalars at the start (1) and the end (2) of
+      !! its face stand for the unknowns, their mean and half their difference
       type(lists_t), allocatable :: scalars
+      integer(ik) :: layer_blocks(2) = 0  !< the first and the last block of layers
       integer(ik), allocatable :: cell_count(:)  !< (n_regions) how many of the blocks are cells
       !> (n_regions) x, y of the tractions [Pa] on the faces, then rotations [-] of the nodes
       type(response_t), allocatable :: traction(:)
@@ -133,6 +135,7 @@ contains
       scalars%first(regions%n_regions + 1) = n + 1
       scalars%item = scalars%item(:n)
       regions%scalars = scalars
+      regions%layer_blocks = layer_block(mesh, [1_ik, mesh%n_layers])
 
    contains
 
@@ -281,9 +284,13 @@ contains
       class(regions_t), intent(in) :: self
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), allocatable :: values(:)
+      integer(ik) :: block
 
       if (allocated(self%scalars)) then
          values = reshape(unknowns, [size(unknowns)])
+         do block = self%layer_blocks(1), self%layer_blocks(2)
+            values(3*block - 2:3*block - 1) = unknowns(1, block) + [1, -1]*unknowns(2, block)
+         end do
       else
          values = unknowns(3, :)
       end if

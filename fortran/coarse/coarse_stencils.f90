@@ -342,22 +342,43 @@ contains
       integer(ik), intent(in) :: region
       type(stencil_t), intent(in) :: stencil
       type(matrix_t), intent(inout) :: matrix
-      integer(ik) :: a, b, col, entry, row
+      integer(ik) :: a, b, entry, i, j
+      integer(ik) :: col(2), row(2)
+      real(rk) :: sign_col(2), sign_row(2)
 
       do b = 1, regions%scalars%length(region)
-         col = regions%scalars%at(region, b)
+         call unknowns_of(regions%scalars%at(region, b), col, sign_col)
          do a = 1, regions%scalars%length(region)
-            row = regions%scalars%at(region, a)
-            if ((col + 2)/3 > (row + 2)/3) cycle
-            entry = matrix%entry_at((row + 2)/3, (col + 2)/3)
+            call unknowns_of(regions%scalars%at(region, a), row, sign_row)
+            if ((col(1) + 2)/3 > (row(1) + 2)/3) cycle
+            entry = matrix%entry_at((row(1) + 2)/3, (col(1) + 2)/3)
             if (matrix%of_layers(entry) > 0) then
-               call matrix%add_layer_flow(row, col, stencil%flow%matrix(a, b))
+               do j = 1, count(col > 0)
+                  do i = 1, count(row > 0)
+                     call matrix%add_layer_flow(row(i), col(j), sign_row(i)*sign_col(j) &
+                                                *stencil%flow%matrix(a, b))
+                  end do
+               end do
             else
                matrix%flow(entry) = matrix%flow(entry) + stencil%flow%matrix(a, b)
             end if
          end do
       end do
    end subroutine add_layered_flow
+
+   !> The unknowns that add up to a scalar of the stencils of flow, with their signs.
+   pure subroutine unknowns_of(scalar, number, sign)
+      integer(ik), intent(in) :: scalar  !< of regions%scalars
+      integer(ik), intent(out) :: number(2)  !< the second is 0 for a single one
+      real(rk), intent(out) :: sign(2)
+
+      number = [scalar, 0_ik]
+      sign = 1.0_rk
+      if (modulo(scalar, 3_ik) == 0) return
+      ! At an end of a layer's face
+      number = 3*((scalar + 2)/3) - [2_ik, 1_ik]
+      if (modulo(scalar, 3_ik) == 2) sign(2) = -1.0_rk
+   end subroutine unknowns_of
 
    !> Add the contributions of the boundary data of one region to the right-hand side.
    pure subroutine add_known(regions, region, stencil, matrix)
@@ -383,10 +404,9 @@ contains
          if (modulo(at, 3_ik) == 0) then
             matrix%flow_known(row) = matrix%flow_known(row) + stencil%flow%known(a)
          else
-            associate (known => matrix%layer_known(at - 3*row + 3, &
-                                                   row - matrix%n_cells &
+            associate (known => matrix%layer_known(:, row - matrix%n_cells &
                                                    + size(matrix%layer_known, 2, kind=ik)))
-               known = known + stencil%flow%known(a)
+               known = known + [1, 3 - 2*(at - 3*row + 3)]*stencil%flow%known(a)
             end associate
          end if
       end do
