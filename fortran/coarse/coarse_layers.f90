@@ -24,8 +24,8 @@ module coarse_layers
    use coarse_layout, only: at_component, end_block, layer_block
    use coarse_matrix, only: matrix_t
    use coarse_rock, only: rock_t, solid_t
-   use mesh_geometry, only: cell_area, face_length
-   use mesh_types, only: mesh_t, point_tip
+   use mesh_geometry, only: cell_area, cell_centre, face_length
+   use mesh_types, only: mesh_t
    use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
@@ -44,8 +44,6 @@ module coarse_layers
       !> (3, n) numbers of the unknowns: pressure at the face (0: given); mean and half difference at
       !! the outer end
       integer(ik), allocatable :: at(:, :)
-      !> (n) from the face to the rest of the cell, next to tips [m2/(Pa s)]
-      real(rk), allocatable :: at_tip(:)
       real(rk), allocatable :: between(:)  !< (n) between the ends of the face [m2/(Pa s)]
       !> (n) taken out of the resistance of each end in coarse_diffusion [Pa s]
       real(rk), allocatable :: relief(:)
@@ -58,6 +56,7 @@ module coarse_layers
       real(rk), allocatable :: rho(:, :)  !< (n_nodes - 1, n) of the present step [Pa]
       real(rk), allocatable :: given(:)  !< (n) pressure at the face in the present step [Pa]
    contains
+      procedure :: add_tip_flow
       procedure :: set_terms
       procedure :: set_given
       procedure :: add_load
@@ -84,7 +83,7 @@ module coarse_layers
    real(rk), parameter :: first_volume = 0.5_rk
    !> What flows round a tip beyond the flow in one dimension, per side, over the mobility and the
    !! difference of pressure [-].
-   real(rk), parameter :: round_tip = 0.25_rk
+   real(rk), parameter :: round_tip = 0.3_rk
    !> No layer where sqrt(c dt) of the first step exceeds so many heights of the cell [-].
    real(rk), parameter :: wide = 2.0_rk
 
@@ -177,8 +176,7 @@ contains
 
       n = layers%n
       allocate (layers%chain(n), layers%fracture_cell(n), layers%side(n), layers%at(3, n))
-      allocate (layers%between(n), layers%relief(n), layers%given(n), &
-                layers%at_tip(n), source=0.0_rk)
+      allocate (layers%between(n), layers%relief(n), layers%given(n), source=0.0_rk)
       layers%cells = pack(layers%cell, [.true., layers%cell(2:) /= layers%cell(:n - 1)])
       allocate (place(n))
       k = 0
@@ -204,9 +202,6 @@ contains
                                         dim=1)
                layers%at(1, l) = at_component(end_block(mesh, layers%fracture_cell(l), &
                                                         layers%side(l)), 3_ik)
-               layers%at_tip(l) = round_tip*rock%mobility_at(c)*count( &
-                         mesh%fracture%point_kind(mesh%fracture%cell_points(:, &
-                                                         layers%fracture_cell(l))) == point_tip)
             else
                layers%side(l) = mesh%face_side(f)
                layers%at(1, l) = 0
@@ -228,6 +223,66 @@ contains
       end do
       allocate (layers%rho(layers%n_nodes - 1, n), source=0.0_rk)
    end subroutine set_up
+
+   !> Flow round tips: a conductance from the faces of a tip's cell with layers to the cell ahead.
+   pure subroutine add_tip_flow(self, mesh, rock, matrix)
+      class(layers_t), intent(in) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(rock_t), intent(in) :: rock
+      type(matrix_t), intent(inout) :: matrix
+      integer(ik) :: ahead, cell, side, tip
+      real(rk) :: conductance
+
+      if (self%n == 0) return
+      associate (fracture => mesh%fracture)
+         do tip = 1, fracture%n_tips
+            cell = fracture%point_cells%at(fracture%tip_point(tip), 1_ik)
+            ahead = cell_ahead(mesh, tip)
+            do side = 1, 2
+               if (mesh%face_layer(fracture%cell_faces(side, cell)) == 0) cycle
+               conductance = round_tip*rock%mobility_at(ahead)
+               call add(matrix, end_block(mesh, cell, side), end_block(mesh, cell, side), -conductance)
+               call add(matrix, ahead, ahead, -conductance)
+               call add(matrix, end_block(mesh, cell, side), ahead, conductance)
+            end do
+         end do
+      end associate
+
+   contains
+
+      pure subroutine add(matrix, row, col, flow)
+         type(matrix_t), intent(inout) :: matrix
+         integer(ik), intent(in) :: row, col  !< blocks
+         real(rk), intent(in) :: flow  !< [m2/(Pa s)]
+
+         associate (entry => matrix%entry_at(row, col))
+            matrix%flow(entry) = matrix%flow(entry) + flow
+         end associate
+      end subroutine add
+
+   end subroutine add_tip_flow
+
+   !> The cell at a tip whose centre lies most nearly ahead of it.
+   pure integer(ik) function cell_ahead(mesh, tip) result(ahead)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: tip
+      real(rk) :: along, most, offset(2)
+      integer(ik) :: c
+
+      ahead = 0
+      most = -2.0_rk
+      associate (node => mesh%fracture%tip_node(tip))
+         do c = 1, mesh%n_cells
+            if (.not. any(mesh%cell_nodes(:, c) == node)) cycle
+            offset = cell_centre(mesh, c) - mesh%xy(:, node)
+            along = dot_product(offset, mesh%fracture%tip_direction(:, tip))/norm2(offset)
+            if (along > most) then
+               most = along
+               ahead = c
+            end if
+         end do
+      end associate
+   end function cell_ahead
 
    !> Numbers of the unknowns of a cell with layers: mean pressure, that of the rest, and those of
    !! its layers.
@@ -267,10 +322,6 @@ contains
             of_mu(a + 1) = dot_product(chain%volume(:n - 1), chain%beta) + chain%volume(n)
             of_mu(a + 2) = 0.0_rk
             matrix(a, a) = self%dt*chain%conductance(0)*(1.0_rk - chain%alpha(1))
-            matrix(a, a) = matrix(a, a) + self%dt*self%at_tip(l)
-            matrix(2, 2) = matrix(2, 2) + self%dt*self%at_tip(l)
-            matrix(a, 2) = -self%dt*self%at_tip(l)
-            matrix(2, a) = matrix(a, 2)
             across = -self%dt*chain%conductance(0)*chain%beta(1)
             matrix(a, a + 1) = across
             matrix(a + 1, a) = across

@@ -106,6 +106,7 @@ contains
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ, &
                       self%layers%relief)
       if (.not. allocated(error)) then
+         call self%layers%add_tip_flow(mesh, self%rock, self%matrix)
          if (scene%has_points()) call hold_points(scene, mesh, self%matrix, self%weight)
          call find_connections(mesh, self%connections)
          call find_joints(mesh, self%sides, self%joints)
