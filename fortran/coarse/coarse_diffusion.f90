@@ -27,7 +27,7 @@ contains
 
    !> The equations of the fluxes of one region.
    pure subroutine set_flux_equations(mesh, resistivity, is_given, given, regions, region, local, &
-                                 relief)
+                                      relief)
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)

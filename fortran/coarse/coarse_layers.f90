@@ -241,7 +241,7 @@ contains
             do side = 1, 2
                if (mesh%face_layer(fracture%cell_faces(side, cell)) == 0) cycle
                conductance = round_tip*rock%mobility_at(ahead)
-               call add(matrix, end_block(mesh, cell, side), end_block(mesh, cell, side), -conductance)
+            call add(matrix, end_block(mesh, cell, side), end_block(mesh, cell, side), -conductance)
                call add(matrix, ahead, ahead, -conductance)
                call add(matrix, end_block(mesh, cell, side), ahead, conductance)
             end do
@@ -326,7 +326,7 @@ contains
             matrix(a, a + 1) = across
             matrix(a + 1, a) = across
             matrix(a + 1, a + 1) = chain%storage*chain%volume(n) &
-                          + self%dt*chain%conductance(n - 1)*(1.0_rk - chain%beta(n - 1))
+                                   + self%dt*chain%conductance(n - 1)*(1.0_rk - chain%beta(n - 1))
             matrix(a + 2, a + 2) = self%dt*self%between(l)
          end associate
       end do

@@ -44,7 +44,7 @@ contains
          call checks%is_close(sum(1.0_rk/g)*length*conductivity, chain%place(n), 1.0e-12_rk, &
                               "resistance")
          call checks%is_true(all(chain%volume(2:)/chain%volume(:n - 1) < 4.0_rk), "ratio")
-         call checks%is_close(g(0)*chain%beta(1)/(g(n - 1)*chain%alpha(n - 1)), 1.0_rk, 1.0e-12_rk, &
+        call checks%is_close(g(0)*chain%beta(1)/(g(n - 1)*chain%alpha(n - 1)), 1.0_rk, 1.0e-12_rk, &
                               "symmetry of both ends")
          call checks%is_close(dot_product(chain%volume(:n - 1), chain%alpha) &
                               /(1.0e3_rk*g(0)*chain%gamma(1)), 1.0_rk, 1.0e-12_rk, &

@@ -143,7 +143,7 @@ contains
                               /maxval(abs(state(1)%unknowns(3, :n))), 0.0_rk, 0.05_rk, &
                               "steady means of the cells")
          call checks%is_close(maxval(abs(state(2)%unknowns(3, 17:18) &
-                                         /state(1)%unknowns(3, 17:18) - 1.0_rk)), 0.0_rk, 1.0e-6_rk, &
+                                       /state(1)%unknowns(3, 17:18) - 1.0_rk)), 0.0_rk, 1.0e-6_rk, &
                               "steady pressure away from layers")
       end associate
    end subroutine cell_with_two_layers
