@@ -1,15 +1,15 @@
-!> A layer next to a face as a chain of volumes in series, graded from the face inwards: diffusion in
-!! one dimension on distances much shorter than a cell.
+!> A layer next to a face as a chain of volumes in series, graded from the face inwards: diffusion
+!! in one dimension on distances much shorter than a cell.
 !!
-!! The quantity follows the gradient of a scalar, as in coarse_diffusion: for the fluid the scalar is
-!! the pressure and `conductivity` the mobility K/mu; the comments give those units. Volumes lie
+!! The quantity follows the gradient of a scalar, as in coarse_diffusion: for the fluid the scalar
+!! is the pressure and `conductivity` the mobility K/mu; the comments give those units. Volumes lie
 !! between edges that grow by a constant ratio. The nodes lie at the geometric means of the edges,
 !! the first one in the middle of its volume: this is worth twice the number of nodes (compare the
 !! spectrally matched grids of Druskin and Knizhnerman; Ingerman et al. 2000).
 !!
 !! An implicit step of length dt is
 !!   T p = s - mu v + dt g_0 p_0 e_1 + dt g_n p_end e_n
-!! for the inner nodes 1 .. n = N - 1, with T the storage and dt times the conductances, s the stored
+!! for the inner nodes 1 .. n = N - 1, with T the storage and dt times the conductances, s the
 !! content before the step, p_0 the scalar at the face, p_end that of node N, and mu a content per
 !! volume that all volumes receive alike (coarse_layers). `prepare` eliminates the inner nodes:
 !!   p = rho - gamma mu + alpha p_0 + beta p_end.

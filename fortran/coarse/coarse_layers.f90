@@ -41,8 +41,8 @@ module coarse_layers
       integer(ik), allocatable :: face_of_cell(:)  !< (n) which face of its cell
       integer(ik), allocatable :: fracture_cell(:)  !< (n) 0 on the outer boundary
       integer(ik), allocatable :: side(:)  !< (n) of the fracture cell 1 +, 2 -; or of the body
-      !> (3, n) numbers of the unknowns: pressure at the face (0: given); mean and half difference at
-      !! the outer end
+      !> (3, n) numbers of the unknowns: pressure at the face (0: given); mean and half difference
+      !! at the outer end
       integer(ik), allocatable :: at(:, :)
       real(rk), allocatable :: between(:)  !< (n) between the ends of the face [m2/(Pa s)]
       !> (n) taken out of the resistance of each end in coarse_diffusion [Pa s]

@@ -36,9 +36,9 @@ module coarse_regions
       type(lists_t) :: faces  !< that carry a traction: of a fracture, the + side stands for both
       type(lists_t) :: flow_faces  !< that carry a flux: both sides of a fracture
       type(lists_t) :: blocks  !< cells first
-      !> With layers (coarse_layers), else unallocated: numbers of what the stencils of flow see, first
-      !! one for each block; in the block of a layer the scalars at the start (1) and the end (2) of
-      !! its face stand for the unknowns, their mean and half their difference
+      !> With layers (coarse_layers), else unallocated: numbers of what the stencils of flow see,
+      !! first one for each block; in the block of a layer the scalars at the start (1) and the end
+      !! (2) of its face stand for the unknowns, their mean and half their difference
       type(lists_t), allocatable :: scalars
       integer(ik) :: layer_blocks(2) = 0  !< the first and the last block of layers
       integer(ik), allocatable :: cell_count(:)  !< (n_regions) how many of the blocks are cells
@@ -107,8 +107,8 @@ contains
       allocate (regions%traction(n), regions%flux(n))
    end subroutine find_regions
 
-   !> Numbers of the unknowns of flow around each vertex, where there are layers: next to a layer the
-   !! pressure at its outer end instead of that at its face, and the pressure of the rest of its
+   !> Numbers of the unknowns of flow around each vertex, where there are layers: next to a layer
+   !! the pressure at its outer end instead of that at its face, and the pressure of the rest of its
    !! cell.
    subroutine find_scalars(mesh, regions)
       type(mesh_t), intent(in) :: mesh

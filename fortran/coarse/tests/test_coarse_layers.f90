@@ -1,6 +1,6 @@
-!> Layers next to fractures: the steady state is that of the scheme without them, no fluid is made or
-!! lost, the undrained response to a load is that of the cells, the matrix is symmetric, and the
-!! pressure of a closed fracture that takes in fluid is that of the closed form.
+!> Layers next to fractures: the steady state is that of the scheme without them, no fluid is made
+!! or lost, the undrained response to a load is that of the cells, and the pressure of a closed
+!! fracture that takes in fluid is that of the closed form.
 program test_coarse_layers
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
