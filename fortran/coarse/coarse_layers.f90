@@ -64,6 +64,7 @@ module coarse_layers
       procedure :: begin
       procedure :: drained
       procedure :: on_sides
+      procedure :: find_pressure
       procedure :: profiles
       procedure :: take_profiles
    end type layers_t
@@ -518,6 +519,55 @@ contains
          drained = drained + self%dt*self%chain(l)%conductance(0)*(inner(1, l) - self%given(l))
       end do
    end function drained
+
+   !> The pressure at a point of a cell not farther from a face with a layer than the centre of the
+   !! cell; elsewhere it is left as it is.
+   pure subroutine find_pressure(self, mesh, unknowns, inner, cell, xy, pressure)
+      class(layers_t), intent(in) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk), intent(inout) :: pressure  !< [Pa]
+      real(rk) :: along(2), at_face, centre, distance, offset(2)
+      integer(ik) :: f, k, l
+
+      if (self%n == 0) return
+      do k = 1, 3
+         f = mesh%cell_faces(k, cell)
+         l = mesh%face_layer(f)
+         if (l == 0) cycle
+         along = mesh%xy(:, mesh%face_nodes(2, f)) - mesh%xy(:, mesh%face_nodes(1, f))
+         offset = xy - mesh%xy(:, mesh%face_nodes(1, f))
+         distance = abs(along(1)*offset(2) - along(2)*offset(1))/norm2(along)
+         associate (chain => self%chain(l), n => self%chain(l)%n)
+            centre = 2.0_rk/3.0_rk*cell_area(mesh, cell)/norm2(along)
+            if (distance > centre) cycle
+            at_face = self%given(l)
+            if (self%at(1, l) > 0) at_face = unknowns(3, self%at(1, l)/3)
+            pressure = between_nodes([0.0_rk, chain%place, centre], &
+                                     [at_face, inner(:n - 1, l), &
+                                      unknowns(1, layer_block(mesh, l)), &
+                                      unknowns(3, layer_block(mesh, mesh%cell_layer(cell)))], &
+                                     distance)
+         end associate
+         return
+      end do
+   end subroutine find_pressure
+
+   !> Linear interpolation between nodes.
+   pure real(rk) function between_nodes(place, value, at) result(found)
+      real(rk), intent(in) :: place(:)  !< [m]
+      real(rk), intent(in) :: value(:)  !< [Pa]
+      real(rk), intent(in) :: at  !< between the first and the last place [m]
+      integer(ik) :: k
+      real(rk) :: t
+
+      k = max(1_ik, min(count(place <= at, kind=ik), size(place, kind=ik) - 1))
+      t = (at - place(k))/(place(k + 1) - place(k))
+      found = (1.0_rk - t)*value(k) + t*value(k + 1)
+   end function between_nodes
 
    !> The pressures in the layers of a state.
    pure function profiles(self, unknowns, inner) result(found)

@@ -3,6 +3,7 @@ module coarse_nodes
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_fields, only: corner_gradients, displacement_gradients
+   use coarse_layout, only: layer_block
    use coarse_regions, only: regions_t
    use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_centre
@@ -150,6 +151,11 @@ contains
          call corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
          call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
          call extrapolate(mesh, unknowns, cell, k, gradient(:, :, k), pressure_gradient, value)
+         if (mesh%n_layers > 0) then
+            ! The gradient is that of the rest of the cell.
+            if (mesh%cell_layer(cell) > 0) value(3) = value(3) - unknowns(3, cell) &
+                                             + unknowns(3, layer_block(mesh, mesh%cell_layer(cell)))
+         end if
          mean = mean + value
          n = n + 1
       end do
