@@ -520,30 +520,34 @@ contains
       end do
    end function drained
 
-   !> The pressure at a point of a cell not farther from a face with a layer than the centre of the
-   !! cell; elsewhere it is left as it is.
-   pure subroutine find_pressure(self, mesh, unknowns, inner, cell, xy, pressure)
+   !> The pressure at a point that lies before a face with a layer, not farther from it than the
+   !! centre of its cell; elsewhere it is left as it is.
+   pure subroutine find_pressure(self, mesh, unknowns, inner, xy, pressure)
       class(layers_t), intent(in) :: self
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
       real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
-      integer(ik), intent(in) :: cell
       real(rk), intent(in) :: xy(2)  !< [m]
       real(rk), intent(inout) :: pressure  !< [Pa]
-      real(rk) :: along(2), at_face, centre, distance, offset(2)
-      integer(ik) :: f, k, l
+      real(rk) :: along(2), at_face, centre, distance, nearest, normal(2), offset(2), start(2)
+      integer(ik) :: l
 
-      if (self%n == 0) return
-      do k = 1, 3
-         f = mesh%cell_faces(k, cell)
-         l = mesh%face_layer(f)
-         if (l == 0) cycle
-         along = mesh%xy(:, mesh%face_nodes(2, f)) - mesh%xy(:, mesh%face_nodes(1, f))
-         offset = xy - mesh%xy(:, mesh%face_nodes(1, f))
-         distance = abs(along(1)*offset(2) - along(2)*offset(1))/norm2(along)
-         associate (chain => self%chain(l), n => self%chain(l)%n)
-            centre = 2.0_rk/3.0_rk*cell_area(mesh, cell)/norm2(along)
-            if (distance > centre) cycle
+      nearest = huge(1.0_rk)
+      do l = 1, self%n
+         associate (ends => mesh%xy(:, mesh%face_nodes(:, mesh%layer_face(l))), &
+                    cell => self%cell(l), chain => self%chain(l), n => self%chain(l)%n)
+            start = ends(:, 1)
+            along = (ends(:, 2) - start)/norm2(ends(:, 2) - start)
+            normal = [-along(2), along(1)]
+            offset = cell_centre(mesh, cell) - start
+            if (dot_product(offset, normal) < 0.0_rk) normal = -normal
+            centre = dot_product(offset, normal)
+            offset = xy - start
+            distance = dot_product(offset, normal)
+            if (distance < 0.0_rk .or. distance > min(centre, nearest)) cycle
+            if (dot_product(offset, along) < 0.0_rk) cycle
+            if (dot_product(offset, along) > norm2(ends(:, 2) - start)) cycle
+            nearest = distance
             at_face = self%given(l)
             if (self%at(1, l) > 0) at_face = unknowns(3, self%at(1, l)/3)
             pressure = between_nodes([0.0_rk, chain%place, centre], &
@@ -552,7 +556,6 @@ contains
                                       unknowns(3, layer_block(mesh, mesh%cell_layer(cell)))], &
                                      distance)
          end associate
-         return
       end do
    end subroutine find_pressure
 
