@@ -8,6 +8,9 @@
 !! scalar is continuous at a third of each face. On both sides of a fracture it has a separate
 !! value, an unknown, at which the flux leaves the rock. Local system (coarse_elimination):
 !!   B q = H p - given scalars on the boundary.
+!!
+!! Next to a face with a layer (coarse_layers) the scalar at the outer end of the layer takes the
+!! place of that at the face, and the resistance of the layer is taken out of B.
 module coarse_diffusion
    use base_kinds, only: ik, rk
    use coarse_elimination, only: fix_unknown, local_system_t, new_local_system, response_t
@@ -18,12 +21,13 @@ module coarse_diffusion
    implicit none(type, external)
    private
 
-   public :: cell_outflow, corner_gradient, region_fluxes, set_flux_equations
+   public :: boundary_outflow, cell_outflow, corner_gradient, region_fluxes, set_flux_equations
 
 contains
 
    !> The equations of the fluxes of one region.
-   pure subroutine set_flux_equations(mesh, resistivity, is_given, given, regions, region, local)
+   pure subroutine set_flux_equations(mesh, resistivity, is_given, given, regions, region, local, &
+                                      relief)
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)
@@ -32,13 +36,16 @@ contains
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
+      !> (layers) resistance of the layers at each end of their faces [Pa s]
+      real(rk), intent(in), optional :: relief(:)
       integer(ik) :: m, n
 
-      m = regions%blocks%length(region)
+      m = regions%scalar_count(region)
       n = regions%flow_faces%length(region)
       call new_local_system(n, m, local)
       call add_corners(mesh, resistivity, regions, region, local)
       call add_fracture_faces(mesh, regions, region, local)
+      if (present(relief)) call add_layers(mesh, regions, region, relief, local)
       local%equations(n + 1:n + m, :n) = local%coupling(:m, :n)
       call apply_sides(mesh, is_given, given, regions, region, local)
    end subroutine set_flux_equations
@@ -92,6 +99,29 @@ contains
       end do
    end subroutine add_fracture_faces
 
+   !> Layers around the vertex: their resistance, and their scalars on the outer boundary.
+   pure subroutine add_layers(mesh, regions, region, relief, local)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      real(rk), intent(in) :: relief(:)  !< [Pa s]
+      type(local_system_t), intent(inout) :: local
+      integer(ik) :: b, f, j
+
+      if (mesh%n_layers == 0) return
+      b = regions%blocks%length(region)
+      do j = 1, regions%flow_faces%length(region)
+         f = regions%flow_faces%at(region, j)
+         associate (layer => mesh%face_layer(f))
+            if (layer == 0) cycle
+            local%equations(j, j) = local%equations(j, j) - relief(layer)
+         end associate
+         if (mesh%face_side(f) == 0) cycle
+         b = b + 1
+         local%coupling(b, j) = -0.5_rk*face_length(mesh, f)
+      end do
+   end subroutine add_layers
+
    !> Outer boundary: the scalar or the flux is prescribed.
    pure subroutine apply_sides(mesh, is_given, given, regions, region, local)
       type(mesh_t), intent(in) :: mesh
@@ -107,6 +137,9 @@ contains
          f = regions%flow_faces%at(region, j)
          associate (side => mesh%face_side(f))
             if (side == 0) cycle
+            if (mesh%n_layers > 0) then
+               if (mesh%face_layer(f) > 0) cycle
+            end if
             if (is_given(side)) then
                local%equations(last, j) = local%equations(last, j) &
                                           - 0.5_rk*face_length(mesh, f)*given(side)
@@ -121,14 +154,18 @@ contains
    pure subroutine region_fluxes(regions, responses, scalars, region, flux)
       type(regions_t), intent(in) :: regions
       type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
-      real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
+      real(rk), intent(in) :: scalars(:)  !< of regions%scalars_of [Pa]
       integer(ik), intent(in) :: region
       real(rk), intent(out) :: flux(:)  !< (flow faces of the region) [m/s]
-      real(rk) :: around(regions%blocks%length(region))
+      real(rk) :: around(regions%scalar_count(region))
       integer(ik) :: b
 
       do b = 1, size(around, kind=ik)
-         around(b) = scalars(regions%blocks%at(region, b))
+         if (allocated(regions%scalars)) then
+            around(b) = scalars(regions%scalars%at(region, b))
+         else
+            around(b) = scalars(regions%blocks%at(region, b))
+         end if
       end do
       call responses(region)%apply(around, flux)
    end subroutine region_fluxes
@@ -138,7 +175,7 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(in) :: regions
       type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
-      real(rk), intent(in) :: scalars(:)  !< (n_blocks) [Pa]
+      real(rk), intent(in) :: scalars(:)  !< of regions%scalars_of [Pa]
       real(rk), intent(out) :: outflow(:)  !< (n_cells) [m2/s]
       real(rk), allocatable :: flux(:)
       integer(ik) :: f, j, r
@@ -157,6 +194,31 @@ contains
          deallocate (flux)
       end do
    end subroutine cell_outflow
+
+   !> Outflow of the body through those faces of its outer boundary that have no layer.
+   real(rk) function boundary_outflow(mesh, regions, responses, scalars) result(outflow)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      type(response_t), intent(in) :: responses(:)  !< (n_regions) of the fluxes [m/s]
+      real(rk), intent(in) :: scalars(:)  !< of regions%scalars_of [Pa]
+      real(rk), allocatable :: flux(:)
+      integer(ik) :: f, j, r
+
+      outflow = 0.0_rk
+      do r = 1, regions%n_regions
+         allocate (flux(regions%flow_faces%length(r)))
+         call region_fluxes(regions, responses, scalars, r, flux)
+         do j = 1, size(flux)
+            f = regions%flow_faces%at(r, j)
+            if (mesh%face_side(f) == 0) cycle
+            if (mesh%n_layers > 0) then
+               if (mesh%face_layer(f) > 0) cycle
+            end if
+            outflow = outflow + 0.5_rk*face_length(mesh, f)*flux(j)
+         end do
+         deallocate (flux)
+      end do
+   end function boundary_outflow
 
    !> Gradient of the scalar at corner k of a cell.
    pure subroutine corner_gradient(mesh, resistivity, regions, flux, cell, k, gradient)

@@ -193,7 +193,6 @@ contains
       real(rk), allocatable, intent(inout) :: schur(:, :)
       type(error_t), allocatable, intent(out) :: error
       integer(ik), allocatable :: order(:), place(:)
-      logical, allocatable :: is_negative(:)
       integer(ik) :: i, n
 
       n = matrix%n_blocks
@@ -204,10 +203,9 @@ contains
          allocate (order(n))
          order(place) = [(i, i=1, n)]
          call find_rows(matrix%columns, place, self%rows)
-         is_negative = [(modulo(i, 3_ik) == 0, i=1, 3*n)]
          call self%fronts%analyse([(3*i - 2, i=1, n + 1)], self%rows%blocks, error, &
                                   kept=[(i, i=self%at_fractures, 3*n)], order=order, &
-                                  is_negative=is_negative)
+                                  is_negative=matrix%is_pressure())
          if (allocated(error)) return
       end if
       self%rows%matrix => matrix
@@ -231,12 +229,15 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: tolerance = 1.0e-10_rk
       real(rk), allocatable :: found(:), known(:), load(:), reduced(:), sizes(:)
+      logical, allocatable :: is_pressure(:)
       real(rk) :: difference, lost, pressure
       integer(ik) :: i
 
       known = [(cos(real(i, rk)), i=1, size(self%scale))]
-      pressure = minval(self%scale(3 :: 3))
-      known(3 :: 3) = pressure/self%scale(3 :: 3)
+      is_pressure = self%rows%matrix%is_pressure()
+      pressure = minval(self%scale, mask=is_pressure)
+      where (is_pressure) known = pressure/self%scale
+      where (self%rows%matrix%is_difference()) known = 0.0_rk
       load = times_scaled(self%rows, known)
       if (size(schur) == 0) then
          found = load
@@ -263,7 +264,7 @@ contains
          end associate
       end if
       found = abs(found - known)  ! scaled; pressures relative to their value
-      found(3 :: 3) = found(3 :: 3)*self%scale(3 :: 3)/pressure
+      where (is_pressure) found = found*self%scale/pressure
       difference = max(difference, maxval(found))
       if (difference <= tolerance) return
       call raise_error(error, "coarse_factors_t", "elimination without exchanges is not stable")
@@ -274,7 +275,7 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(out) :: scale(:)  !< (3 n_blocks) [m], [m], [Pa] block by block
-      real(rk) :: diagonal
+      real(rk) :: block(3, 3), diagonal
       integer(ik) :: a, entry, i
 
       allocate (scale(3*matrix%n_blocks))
@@ -283,6 +284,12 @@ contains
          do a = 1, 3
             diagonal = matrix%elastic(a, a, entry)
             if (a == 3) diagonal = diagonal + dt*matrix%flow(entry)
+            if (allocated(matrix%of_layers)) then
+               if (matrix%of_layers(entry) > 0) then
+                  block = matrix%block_at(entry, dt)
+                  diagonal = block(a, a)
+               end if
+            end if
             scale(at_component(i, a)) = 1.0_rk
             if (abs(diagonal) > 0.0_rk) scale(at_component(i, a)) = 1.0_rk/sqrt(abs(diagonal))
          end do

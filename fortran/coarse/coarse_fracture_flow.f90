@@ -65,6 +65,13 @@ contains
          resistance = 1.0_rk/conductance &
                       + max(eq%cells%leak_resistance(i)/(eq%paths%settings%mobility*eq%dt), &
                             -most_of_rock/abs(eq%volume_slope(side, i))) + skin
+         if (allocated(eq%cells%has_layer)) then
+            if (eq%cells%has_layer(side, i)) then
+               ! The part of the face behind the tip takes up its share.
+               resistance = 1.0_rk/conductance + skin &
+                            + (1.0_rk/eq%cells%share(i) - 1.0_rk)/abs(eq%volume_slope(side, i))
+            end if
+         end if
          eq%residual(row) = volume*resistance - (x(row) - fluid%pressure)
          call eq%slopes%add_force(row, at, resistance)
          do end = 1, 2

@@ -2,7 +2,10 @@
 !! they determine.
 !!
 !! The whole body has blocks of three numbers: (u_x, u_y, p) per cell, then two blocks per fracture
-!! cell, (jump x, y at its start, p on side +) and (jump x, y at its end, p on side -).
+!! cell, (jump x, y at its start, p on side +) and (jump x, y at its end, p on side -). With layers
+!! (coarse_layers), a block for each of them stands before those of the fractures: the mean pressure
+!! at the outer end of the layer, half the difference of that at the start of its face from that at
+!! its end, and, in the first layer of a cell, the pressure of the rest of the cell.
 !!
 !! Condensed onto the fractures, q, per fracture cell:
 !!   [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-
@@ -15,7 +18,8 @@ module coarse_layout
    implicit none(type, external)
    private
 
-   public :: at_component, block_count, end_block, end_of_block, fracture_cell_of_block
+   public :: at_component, block_count, bulk_count, end_block, end_of_block, fracture_cell_of_block
+   public :: layer_block
    public :: condensed_layout_t, fracture_layout_t
 
    !> Numbers in q.
@@ -130,8 +134,23 @@ contains
    pure integer(ik) function block_count(mesh)
       type(mesh_t), intent(in) :: mesh
 
-      block_count = mesh%n_cells + 2*mesh%fracture%n_cells
+      block_count = bulk_count(mesh) + 2*mesh%fracture%n_cells
    end function block_count
+
+   !> How many blocks stand before those of the fractures.
+   elemental integer(ik) function bulk_count(mesh)
+      type(mesh_t), intent(in) :: mesh
+
+      bulk_count = mesh%n_cells + mesh%n_layers
+   end function bulk_count
+
+   !> The block of a layer.
+   elemental integer(ik) function layer_block(mesh, layer)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: layer
+
+      layer_block = mesh%n_cells + layer
+   end function layer_block
 
    !> The block with the jump at an end of a fracture cell. At the start it has the pressure on side
    !! +, at the end that on side -.
@@ -140,7 +159,7 @@ contains
       integer(ik), intent(in) :: cell  !< fracture cell
       integer(ik), intent(in) :: end  !< 1 start, 2 end
 
-      end_block = mesh%n_cells + 2*(cell - 1) + end
+      end_block = bulk_count(mesh) + 2*(cell - 1) + end
    end function end_block
 
    !> The fracture cell that a block beyond those of the cells belongs to.
@@ -148,7 +167,7 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: block
 
-      fracture_cell_of_block = (block - mesh%n_cells + 1)/2
+      fracture_cell_of_block = (block - bulk_count(mesh) + 1)/2
    end function fracture_cell_of_block
 
    !> The end of its fracture cell that such a block belongs to: 1 start, 2 end.
@@ -156,7 +175,7 @@ contains
       type(mesh_t), intent(in) :: mesh
       integer(ik), intent(in) :: block
 
-      end_of_block = 2 - mod(block - mesh%n_cells, 2_ik)
+      end_of_block = 2 - mod(block - bulk_count(mesh), 2_ik)
    end function end_of_block
 
    !> Where a component of a block stands if all blocks are written one after another.

@@ -4,7 +4,8 @@
 !! a fracture cell, negated [N/m]; fluid that leaves the rock through a fracture face within the
 !! step [m2]. The matrix is symmetric and quasi-definite: positive for displacements, negative for
 !! pressures. It is kept as elastic - and - flow parts, so that a new time step needs no new
-!! discretization: matrix = elastic + dt*flow.
+!! discretization: matrix = elastic + dt*flow. Layers (coarse_layers) add terms that are found for
+!! each time step; the block of a layer has three pressures.
 module coarse_matrix
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
@@ -16,7 +17,7 @@ module coarse_matrix
    !> Lower triangle in blocks, by rows; the diagonal block is the last one of its row.
    type :: matrix_t
       integer(ik) :: n_blocks = 0
-      integer(ik) :: n_cells = 0
+      integer(ik) :: n_cells = 0  !< blocks before those of the fractures: cells and layers
       type(lists_t) :: columns  !< of each row, from the first to the diagonal
       !> (3, 3, n_entries), an entry per item of columns, for unknowns [m], [m], [Pa] and rows
       !! [N/m], [N/m], [m2]
@@ -27,8 +28,18 @@ module coarse_matrix
       real(rk), allocatable :: flow_known(:)  !< (n_blocks) the same for the flow [m2/s]
       !> (n_cells) content per pressure at fixed traction [m2/Pa]
       real(rk), allocatable :: storage(:)
+      ! With layers; else unallocated:
+      !> (n_entries) which of the following belongs to an entry, 0: none
+      integer(ik), allocatable :: of_layers(:)
+      real(rk), allocatable :: layer_flow(:, :, :)  !< (3, 3, ..) part of the flow [m2/(Pa s)]
+      real(rk), allocatable :: layer_terms(:, :, :)  !< (3, 3, ..) for one time step [m2/Pa]
+      real(rk), allocatable :: layer_known(:, :)  !< (2, n_layers) as flow_known [m2/s]
    contains
       procedure :: block_at
+      procedure :: add_layer_term
+      procedure :: add_layer_flow
+      procedure :: is_pressure
+      procedure :: is_difference
       procedure :: entry_at
       procedure :: elastic_forces
    end type matrix_t
@@ -44,7 +55,63 @@ contains
 
       block = self%elastic(:, :, entry)
       block(3, 3) = block(3, 3) + dt*self%flow(entry)
+      if (.not. allocated(self%of_layers)) return
+      associate (k => self%of_layers(entry))
+         if (k > 0) block = block + dt*self%layer_flow(:, :, k) + self%layer_terms(:, :, k)
+      end associate
    end function block_at
+
+   !> Add a term between two unknowns to those of the layers; terms above the diagonal blocks are
+   !! left out.
+   pure subroutine add_layer_term(self, row, col, term)
+      class(matrix_t), intent(inout) :: self
+      integer(ik), intent(in) :: row, col  !< numbers of the unknowns
+      real(rk), intent(in) :: term  !< [m2/Pa]
+
+      associate (i => (row + 2)/3, j => (col + 2)/3)
+         if (j > i) return
+         associate (at => self%layer_terms(row - 3*i + 3, col - 3*j + 3, &
+                                           self%of_layers(self%entry_at(i, j))))
+            at = at + term
+         end associate
+      end associate
+   end subroutine add_layer_term
+
+   !> The same for the flow.
+   pure subroutine add_layer_flow(self, row, col, term)
+      class(matrix_t), intent(inout) :: self
+      integer(ik), intent(in) :: row, col  !< numbers of the unknowns
+      real(rk), intent(in) :: term  !< [m2/(Pa s)]
+
+      associate (i => (row + 2)/3, j => (col + 2)/3)
+         if (j > i) return
+         associate (at => self%layer_flow(row - 3*i + 3, col - 3*j + 3, &
+                                          self%of_layers(self%entry_at(i, j))))
+            at = at + term
+         end associate
+      end associate
+   end subroutine add_layer_flow
+
+   !> Which unknowns are pressures.
+   pure function is_pressure(self)
+      class(matrix_t), intent(in) :: self
+      logical :: is_pressure(3*self%n_blocks)
+      integer(ik) :: i
+
+      is_pressure = [(modulo(i, 3_ik) == 0, i=1, 3*self%n_blocks)]
+      if (.not. allocated(self%layer_known)) return
+      is_pressure(3*(self%n_cells - size(self%layer_known, 2, kind=ik)) + 1:3*self%n_cells) = .true.
+   end function is_pressure
+
+   !> Which unknowns are differences of pressures.
+   pure function is_difference(self)
+      class(matrix_t), intent(in) :: self
+      logical :: is_difference(3*self%n_blocks)
+
+      is_difference = .false.
+      if (.not. allocated(self%layer_known)) return
+      is_difference(3*(self%n_cells - size(self%layer_known, 2)) + 2:3*self%n_cells:3) = .true.
+   end function is_difference
 
    !> The number of the entry in a row and column, which must exist.
    pure integer(ik) function entry_at(self, row, col) result(entry)

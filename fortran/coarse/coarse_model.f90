@@ -9,12 +9,13 @@ module coarse_model
    use base_tolerances, only: same_time
    use contact_law, only: state_stick
    use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
-   use coarse_diffusion, only: cell_outflow
+   use coarse_diffusion, only: boundary_outflow, cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: add_fracture_balance
    use coarse_fractures, only: flow_paths_t, newton_settings_t
    use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
+   use coarse_layers, only: layers_t, place_layers, profiles_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
    use coarse_matrix, only: matrix_t
    use coarse_newton, only: fracture_problem_t, solve_fractures
@@ -33,7 +34,7 @@ module coarse_model
    implicit none(type, external)
    private
 
-   public :: coarse_model_t, new_state, rest_fluid
+   public :: coarse_model_t, new_state, profiles_t, rest_fluid
 
    !> Discretized body on one mesh.
    type, extends(fracture_problem_t) :: coarse_model_t
@@ -42,6 +43,8 @@ module coarse_model
       type(in_situ_state_t), allocatable :: in_situ  !< beyond which pressures and stresses count
       type(regions_t) :: regions
       type(matrix_t) :: matrix
+      type(layers_t) :: layers
+      real(rk) :: first_step = huge(1.0_rk)  !< shortest first step of the run, for layers [s]
       type(rock_wells_t) :: rock_wells  !< those of them in the rock
       !> (fracture cells) resistance of the adjacent rock over that of the scene's rock; allocated
       !! with regions [-]
@@ -65,7 +68,7 @@ contains
    !> Discretize on a mesh.
    subroutine set_mesh(self, mesh, scene, timers, error)
       class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
+      type(mesh_t), intent(inout) :: mesh  !< its layers are chosen
       type(scene_t), intent(in) :: scene
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
@@ -95,8 +98,15 @@ contains
             if (fluid%density_law /= "linear") self%settings%compressibility = 0.0_rk
          end if
       end associate
-      call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
+      if (self%first_step < huge(1.0_rk)) then
+         call place_layers(mesh, self%rock, self%sides, self%first_step, self%layers)
+      end if
+      if (allocated(self%cells%has_layer)) deallocate (self%cells%has_layer)
+      if (self%layers%n > 0) self%cells%has_layer = self%layers%on_sides(mesh%fracture%n_cells)
+      call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ, &
+                      self%layers%relief)
       if (.not. allocated(error)) then
+         call self%layers%add_tip_flow(mesh, self%rock, self%matrix)
          if (scene%has_points()) call hold_points(scene, mesh, self%matrix, self%weight)
          call find_connections(mesh, self%connections)
          call find_joints(mesh, self%sides, self%joints)
@@ -156,7 +166,8 @@ contains
 
       call timers%start(phase_assemble)
       call take_sides(self, scene)
-      call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ)
+     call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ, &
+                       self%layers%relief)
       if (self%joints%n > 0) call renew_outlets(mesh, self%sides, self%joints)
       call timers%stop(phase_assemble)
    end subroutine change_sides
@@ -190,6 +201,7 @@ contains
                    source=0.0_rk)
       end if
       state%unknowns(:2, :) = 0.0_rk
+      if (model%layers%n > 0) call model%layers%begin(state%unknowns, state%layer)
       allocate (state%pressure(n), source=pressure)
       allocate (state%contact(2, n), source=state_stick)
       allocate (state%void(n), state%injection(n), source=0.0_rk)
@@ -331,6 +343,11 @@ contains
 
       load = self%matrix%elastic_known
       load(3, :) = load(3, :) + dt*self%matrix%flow_known
+      if (self%layers%n > 0) then
+         associate (of_layers => load(:2, mesh%n_cells + 1:mesh%n_cells + self%layers%n))
+            of_layers = of_layers + dt*self%matrix%layer_known
+         end associate
+      end if
       load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - content
       if (allocated(self%source)) then
          fluid = self%source(3, :)
@@ -385,6 +402,7 @@ contains
       n = mesh%fracture%n_cells
       if (.not. abs(self%condensed%dt - dt) <= same_time*dt) then
          call timers%start(phase_factorize)
+         call self%layers%set_terms(dt, self%matrix)
          call self%condensed%factorize(mesh, self%matrix, dt, error)
          call timers%stop(phase_factorize)
          if (allocated(error)) return
@@ -393,6 +411,10 @@ contains
       allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
       call timers%start(phase_assemble)
       call find_load(self, mesh, paths%wells, dt, state%content, rhs, fluid)
+      if (self%layers%n > 0) then
+         call self%layers%set_given(self%sides)
+         call self%layers%add_load(state%unknowns, state%layer, rhs)
+      end if
       call timers%stop(phase_assemble)
       call timers%start(phase_solve)
       call self%condensed%condense(rhs, g, error)
@@ -418,6 +440,7 @@ contains
       call timers%stop(phase_solve)
       if (allocated(error)) return
       call timers%start(phase_assemble)
+      if (self%layers%n > 0) call self%layers%update(state%unknowns, state%layer)
       call corner_tractions(self%regions, state%unknowns, state%tractions)
       call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, &
                          state%tractions, state%content)
@@ -457,7 +480,12 @@ contains
                                       report%compressed, balance)
          end if
          if (allocated(fluid)) balance = balance - dt*sum(fluid)
-         if (self%drained) then
+         if (self%drained .and. self%layers%n > 0) then
+            report%rock_outflow = dt*boundary_outflow(mesh, self%regions, self%regions%flux, &
+                                                      self%regions%scalars_of(after%unknowns)) &
+                                  + self%layers%drained(after%layer)
+            balance = balance + report%rock_outflow
+         else if (self%drained) then
             allocate (outflow(mesh%n_cells))
             call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
             report%rock_outflow = dt*sum(outflow)

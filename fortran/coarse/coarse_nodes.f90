@@ -3,6 +3,7 @@ module coarse_nodes
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_fields, only: corner_gradients, displacement_gradients
+   use coarse_layout, only: layer_block
    use coarse_regions, only: regions_t
    use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_centre
@@ -46,14 +47,16 @@ contains
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
       real(rk), intent(in) :: at_corners(:, :, :, :)  !< of displacement_gradients [-]
       real(rk), intent(out) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
-      real(rk), allocatable :: weight(:)
+      real(rk), allocatable :: scalars(:), weight(:)
       integer(ik) :: r, v
 
       values = 0.0_rk
+      scalars = regions%scalars_of(unknowns)
       allocate (weight(mesh%n_nodes), source=0.0_rk)
       !$omp parallel do
       do r = 1, regions%n_regions
-         call extrapolate_around(mesh, rock, regions, unknowns, at_corners, r, values, weight)
+         call extrapolate_around(mesh, rock, regions, unknowns, scalars, at_corners, r, values, &
+                                 weight)
       end do
       !$omp end parallel do
       do v = 1, mesh%n_nodes
@@ -62,12 +65,13 @@ contains
    end subroutine extrapolate_to_nodes
 
    !> Add up what the cells of one region give at its nodes.
-   pure subroutine extrapolate_around(mesh, rock, regions, unknowns, at_corners, region, values, &
-                                      weight)
+   pure subroutine extrapolate_around(mesh, rock, regions, unknowns, scalars, at_corners, region, &
+                                      values, weight)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: scalars(:)  !< of regions%scalars_of [Pa]
       real(rk), intent(in) :: at_corners(:, :, :, :)  !< of displacement_gradients [-]
       integer(ik), intent(in) :: region
       real(rk), intent(inout) :: values(:, :)  !< (3, n_nodes) [m], [m], [Pa]
@@ -75,7 +79,7 @@ contains
       real(rk) :: flux(regions%flow_faces%length(region)), pressure_gradient(2), value(3)
       integer(ik) :: c, cell, k, v
 
-      call region_fluxes(regions, regions%flux, unknowns(3, :), region, flux)
+      call region_fluxes(regions, regions%flux, scalars, region, flux)
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
          do k = 1, 2
@@ -139,7 +143,7 @@ contains
       mean = 0.0_rk
       n = 0
       region = regions%region_of_node(node)
-      call region_fluxes(regions, regions%flux, unknowns(3, :), region, flux)
+      call region_fluxes(regions, regions%flux, regions%scalars_of(unknowns), region, flux)
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
          k = findloc(mesh%cell_nodes(:, cell), node, dim=1)
@@ -147,6 +151,11 @@ contains
          call corner_gradients(mesh, rock, regions, unknowns, tractions, cell, gradient)
          call corner_gradient(mesh, rock%resistivity, regions, flux, cell, k, pressure_gradient)
          call extrapolate(mesh, unknowns, cell, k, gradient(:, :, k), pressure_gradient, value)
+         if (mesh%n_layers > 0) then
+            ! The gradient is that of the rest of the cell.
+            if (mesh%cell_layer(cell) > 0) value(3) = value(3) - unknowns(3, cell) &
+                                             + unknowns(3, layer_block(mesh, mesh%cell_layer(cell)))
+         end if
          mean = mean + value
          n = n + 1
       end do

@@ -12,7 +12,8 @@ module coarse_regions
    use base_lists, only: inverted, lists_t
    use base_plane, only: norm2
    use coarse_elimination, only: response_t
-   use coarse_layout, only: block_count, end_block
+   use coarse_layout, only: at_component, block_count, end_block, end_of_block, &
+                            fracture_cell_of_block, layer_block
    use mesh_geometry, only: corner_geometry, split_by_kind
    use mesh_types, only: mesh_t
    implicit none(type, external)
@@ -36,6 +37,11 @@ module coarse_regions
       type(lists_t) :: faces  !< that carry a traction: of a fracture, the + side stands for both
       type(lists_t) :: flow_faces  !< that carry a flux: both sides of a fracture
       type(lists_t) :: blocks  !< cells first
+      !> With layers (coarse_layers), else unallocated: numbers of what the stencils of flow see,
+      !! first one for each block; in the block of a layer the scalars at the start (1) and the end
+      !! (2) of its face stand for the unknowns, their mean and half their difference
+      type(lists_t), allocatable :: scalars
+      integer(ik) :: layer_blocks(2) = 0  !< the first and the last block of layers
       integer(ik), allocatable :: cell_count(:)  !< (n_regions) how many of the blocks are cells
       !> (n_regions) x, y of the tractions [Pa] on the faces, then rotations [-] of the nodes
       type(response_t), allocatable :: traction(:)
@@ -50,6 +56,8 @@ module coarse_regions
       procedure :: traction_count
       procedure :: at_traction
       procedure :: at_rotation
+      procedure :: scalar_count
+      procedure :: scalars_of
    end type regions_t
 
 contains
@@ -96,8 +104,69 @@ contains
       end do
       regions%faces = inverted(ends, n)
       call find_corners(mesh, regions)
+      if (mesh%n_layers > 0) call find_scalars(mesh, regions)
       allocate (regions%traction(n), regions%flux(n))
    end subroutine find_regions
+
+   !> Numbers of the unknowns of flow around each vertex, where there are layers: next to a layer
+   !! the pressure at its outer end instead of that at its face, and the pressure of the rest of its
+   !! cell.
+   subroutine find_scalars(mesh, regions)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(inout) :: regions
+      type(lists_t) :: scalars
+      integer(ik) :: b, f, j, n, r
+
+      allocate (scalars%first(regions%n_regions + 1))
+      allocate (scalars%item(size(regions%blocks%item) + 2*mesh%n_layers))
+      n = 0
+      do r = 1, regions%n_regions
+         scalars%first(r) = n + 1
+         do b = regions%blocks%first(r), regions%blocks%last(r)
+            n = n + 1
+            scalars%item(n) = of_block(regions%blocks%item(b), r)
+         end do
+         do j = 1, regions%flow_faces%length(r)
+            f = regions%flow_faces%at(r, j)
+            if (mesh%face_side(f) == 0 .or. mesh%face_layer(f) == 0) cycle
+            n = n + 1
+            scalars%item(n) = outer_end(f, r)
+         end do
+      end do
+      scalars%first(regions%n_regions + 1) = n + 1
+      scalars%item = scalars%item(:n)
+      regions%scalars = scalars
+      regions%layer_blocks = layer_block(mesh, [1_ik, mesh%n_layers])
+
+   contains
+
+      !> The unknown for a block.
+      pure integer(ik) function of_block(block, region)
+         integer(ik), intent(in) :: block, region
+
+         of_block = at_component(block, 3_ik)
+         if (block <= mesh%n_cells) then
+            associate (layer => mesh%cell_layer(block))
+               if (layer > 0) of_block = at_component(layer_block(mesh, layer), 3_ik)
+            end associate
+         else
+            associate (face => mesh%fracture%cell_faces(end_of_block(mesh, block), &
+                                                        fracture_cell_of_block(mesh, block)))
+               if (mesh%face_layer(face) > 0) of_block = outer_end(face, region)
+            end associate
+         end if
+      end function of_block
+
+      !> The unknown at the outer end of a layer, at the end of its face at the vertex.
+      pure integer(ik) function outer_end(face, region)
+         integer(ik), intent(in) :: face, region
+
+         outer_end = at_component(layer_block(mesh, mesh%face_layer(face)), &
+                                  merge(1_ik, 2_ik, &
+                                        regions%region_of_node(mesh%face_nodes(1, face)) == region))
+      end function outer_end
+
+   end subroutine find_scalars
 
    !> Which corners of cells share a rotation: those at one node, and where several stiffnesses meet
    !! there, of one stiffness.
@@ -197,6 +266,36 @@ contains
          region = regions%region_of_node(nodes(minloc(distance, dim=1)))
       end associate
    end function fracture_end_region
+
+   !> How many unknowns the stencil of flow around a vertex sees.
+   pure integer(ik) function scalar_count(self, region)
+      class(regions_t), intent(in) :: self
+      integer(ik), intent(in) :: region
+
+      if (allocated(self%scalars)) then
+         scalar_count = self%scalars%length(region)
+      else
+         scalar_count = self%blocks%length(region)
+      end if
+   end function scalar_count
+
+   !> The values among which the stencils of flow find those around a vertex: the pressures of the
+   !! blocks, or with layers all unknowns.
+   pure function scalars_of(self, unknowns) result(values)
+      class(regions_t), intent(in) :: self
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), allocatable :: values(:)
+      integer(ik) :: block
+
+      if (allocated(self%scalars)) then
+         values = reshape(unknowns, [size(unknowns)])
+         do block = self%layer_blocks(1), self%layer_blocks(2)
+            values(3*block - 2:3*block - 1) = unknowns(1, block) + [1, -1]*unknowns(2, block)
+         end do
+      else
+         values = unknowns(3, :)
+      end if
+   end function scalars_of
 
    !> Number of tractions and rotations of all regions.
    pure integer(ik) function traction_count(self)

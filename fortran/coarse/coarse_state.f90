@@ -25,6 +25,8 @@ module coarse_state
       real(rk), allocatable :: viscous(:)
       !> (n) resistance between fluid and rock on each side, times the rock's mobility [-]
       real(rk), allocatable :: leak_resistance(:)
+      !> (2, n) whether the side has a layer (coarse_layers); unallocated: none has
+      logical, allocatable :: has_layer(:, :)
       real(rk), allocatable :: skin(:)  !< (n) on each face; unallocated: none has any [Pa s/m]
       real(rk), allocatable :: injection(:)  !< Q prescribed for the present step [m2/s]
       !> (n) pressure in situ, to which pressures are relative (coarse_in_situ); unallocated: 0 [Pa]
@@ -49,6 +51,8 @@ module coarse_state
       real(rk) :: time = 0.0_rk  !< [s]
       !> (3, n_blocks) in blocks as in coarse_layout [m], [m], [Pa]
       real(rk), allocatable :: unknowns(:, :)
+      !> (nodes, layers) of the inner nodes of layers (coarse_layers); unallocated: none [Pa]
+      real(rk), allocatable :: layer(:, :)
       real(rk), allocatable :: content(:)  !< (n_cells) fluid content above the initial state [m2]
       real(rk), allocatable :: tractions(:)  !< of coarse_fields' corner_tractions [Pa]
       ! Fracture cells; at their two ends where the law of contact is fulfilled:

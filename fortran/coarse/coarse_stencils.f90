@@ -25,12 +25,14 @@
 module coarse_stencils
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_lists, only: inverted, lists_t
    use base_plane, only: norm2
    use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, fix_unknown, local_system_t, new_local_system, &
                                  response_t, share_t
    use coarse_in_situ, only: in_situ_state_t
-   use coarse_layout, only: at_component, end_of_block, fracture_cell_of_block
+   use coarse_layout, only: at_component, bulk_count, end_block, end_of_block, &
+                            fracture_cell_of_block, layer_block
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: find_regions, fracture_end_region, regions_t, traction_face
    use coarse_rock, only: rock_t, solid_t
@@ -55,7 +57,8 @@ module coarse_stencils
 contains
 
    !> Discretize Biot's equations on the mesh: responses in the regions and the global matrix.
-   subroutine discretize(mesh, rock, sides, regions, matrix, error, in_situ)
+   subroutine discretize(mesh, rock, sides, regions, matrix, error, in_situ, &
+                         relief)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
@@ -63,6 +66,7 @@ contains
       type(matrix_t), intent(out) :: matrix
       type(error_t), allocatable, intent(out) :: error
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
+      real(rk), intent(in), optional :: relief(:)  !< (layers) of coarse_layers [Pa s]
       type(stencil_t), allocatable :: stencil(:)
       type(solid_t) :: solid
       integer(ik) :: c, first, i, k, n
@@ -75,7 +79,7 @@ contains
          !$omp parallel do
          do k = 1, n, slice
             call find_stencils(mesh, rock, sides, regions, first + k - 1, &
-                               stencil(k:min(k + slice - 1, n)), in_situ)
+                               stencil(k:min(k + slice - 1, n)), in_situ, relief)
          end do
          !$omp end parallel do
          do i = 1, n
@@ -97,7 +101,8 @@ contains
    end subroutine discretize
 
    !> Update the values of the boundary conditions in the right-hand side; their kinds remain.
-   subroutine renew_sides(mesh, rock, sides, regions, matrix, error, in_situ)
+   subroutine renew_sides(mesh, rock, sides, regions, matrix, error, in_situ, &
+                          relief)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
@@ -105,16 +110,18 @@ contains
       type(matrix_t), intent(inout) :: matrix
       type(error_t), allocatable, intent(out) :: error
       type(in_situ_state_t), intent(in), optional :: in_situ  !< beyond which the loads count
+      real(rk), intent(in), optional :: relief(:)  !< (layers) of coarse_layers [Pa s]
       type(stencil_t) :: stencil(1)
       integer(ik) :: r
 
       matrix%elastic_known = 0.0_rk
       matrix%flow_known = 0.0_rk
+      if (allocated(matrix%layer_known)) matrix%layer_known = 0.0_rk
       do r = 1, regions%n_regions
          associate (faces => regions%faces)
             if (.not. any(mesh%face_side(faces%item(faces%first(r):faces%last(r))) > 0)) cycle
          end associate
-         call find_stencils(mesh, rock, sides, regions, r, stencil, in_situ)
+         call find_stencils(mesh, rock, sides, regions, r, stencil, in_situ, relief)
          if (stencil(1)%info /= 0) then
             call refuse_place(mesh%xy(:, regions%nodes%at(r, 1_ik)), error)
             return
@@ -124,7 +131,7 @@ contains
    end subroutine renew_sides
 
    !> Stress and flow around vertices that follow each other.
-   subroutine find_stencils(mesh, rock, sides, regions, first, stencil, in_situ)
+   subroutine find_stencils(mesh, rock, sides, regions, first, stencil, in_situ, relief)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
@@ -132,6 +139,7 @@ contains
       integer(ik), intent(in) :: first  !< region
       type(stencil_t), intent(out) :: stencil(:)
       type(in_situ_state_t), intent(in), optional :: in_situ
+      real(rk), intent(in), optional :: relief(:)  !< (layers) [Pa s]
       type(local_system_t) :: local
       real(rk), allocatable :: doubled(:)
       real(rk) :: given(size(sides))  ! [Pa] or [m/s]
@@ -146,7 +154,7 @@ contains
             if (info /= 0) cycle
             call divide_rotations(doubled, regions%traction(r))
             call set_flux_equations(mesh, rock%resistivity, sides%pressure_given, given, regions, &
-                                    r, local)
+                                    r, local, relief)
             call eliminate(local, regions%flux(r), flow, info)
          end associate
       end do
@@ -169,9 +177,11 @@ contains
       type(matrix_t), intent(inout) :: matrix
       integer(ik), allocatable :: last_row(:), found(:)
       integer(ik) :: block, i, k, n, r, side
+      type(lists_t) :: coupled  ! blocks that layers couple
 
       matrix%n_blocks = regions%n_blocks
-      matrix%n_cells = mesh%n_cells
+      matrix%n_cells = bulk_count(mesh)
+      if (mesh%n_layers > 0) coupled = blocks_coupled(mesh, regions)
       allocate (matrix%columns%first(matrix%n_blocks + 1))
       allocate (last_row(matrix%n_blocks), source=0_ik)
       allocate (found(20*matrix%n_blocks))
@@ -192,15 +202,110 @@ contains
                found(n) = block
             end do
          end do
+         if (mesh%n_layers > 0) then
+            do k = coupled%first(i), coupled%last(i)
+               block = coupled%item(k)
+               if (last_row(block) == i) cycle
+               last_row(block) = i
+               n = n + 1
+               if (n + 1 > size(found)) found = [found, found]
+               found(n) = block
+            end do
+         end if
          n = n + 1
          found(n) = i
       end do
       matrix%columns%first(matrix%n_blocks + 1) = n + 1
       matrix%columns%item = found(:n)
+      if (mesh%n_layers > 0) call number_layer_entries(mesh, coupled, matrix)
       allocate (matrix%elastic(3, 3, n), matrix%flow(n), source=0.0_rk)
       allocate (matrix%elastic_known(3, matrix%n_blocks), source=0.0_rk)
       allocate (matrix%flow_known(matrix%n_blocks), matrix%storage(mesh%n_cells), source=0.0_rk)
    end subroutine find_pattern
+
+   !> Blocks of smaller number, or the same, that layers couple with each block: those of one cell
+   !! and its layers, and those that share a stencil of flow.
+   function blocks_coupled(mesh, regions) result(coupled)
+      type(mesh_t), intent(in) :: mesh
+      type(regions_t), intent(in) :: regions
+      type(lists_t) :: coupled
+      integer(ik), allocatable :: pair(:, :), block(:)
+      integer(ik) :: c, k, l, n, r
+
+      allocate (pair(2, 1000))
+      n = 0
+      do r = 1, regions%n_regions
+         block = (regions%scalars%of(r) + 2)/3
+         if (.not. any(block > mesh%n_cells .and. block <= bulk_count(mesh))) cycle
+         call add_pairs(block)
+      end do
+      do c = 1, mesh%n_cells
+         if (mesh%cell_layer(c) == 0) cycle
+         block = [c]
+         do k = 1, 3
+            associate (f => mesh%cell_faces(k, c))
+               l = mesh%face_layer(f)
+               if (l == 0) cycle
+               block = [block, layer_block(mesh, l)]
+               associate (cell => mesh%face_fracture_cell(f))
+                  if (cell == 0) cycle
+                  block = [block, end_block(mesh, cell, findloc(mesh%fracture%cell_faces(:, cell), &
+                                                                f, dim=1, kind=ik))]
+               end associate
+            end associate
+         end do
+         call add_pairs(block)
+      end do
+      coupled = inverted(pair(1:1, :n), regions%n_blocks)
+      coupled%item = pair(2, coupled%item)
+
+   contains
+
+      !> Add all pairs of some blocks.
+      subroutine add_pairs(blocks)
+         integer(ik), intent(in) :: blocks(:)
+         integer(ik) :: a, b
+
+         do a = 1, size(blocks, kind=ik)
+            do b = 1, size(blocks, kind=ik)
+               if (blocks(b) > blocks(a)) cycle
+               if (n == size(pair, 2)) call enlarge()
+               n = n + 1
+               pair(:, n) = [blocks(a), blocks(b)]
+            end do
+         end do
+      end subroutine add_pairs
+
+      subroutine enlarge()
+         integer(ik), allocatable :: larger(:, :)
+
+         allocate (larger(2, 2*n))
+         larger(:, :n) = pair(:, :n)
+         call move_alloc(larger, pair)
+      end subroutine enlarge
+
+   end function blocks_coupled
+
+   !> Number the entries that layers add to.
+   subroutine number_layer_entries(mesh, coupled, matrix)
+      type(mesh_t), intent(in) :: mesh
+      type(lists_t), intent(in) :: coupled
+      type(matrix_t), intent(inout) :: matrix
+      integer(ik) :: entry, i, k, n
+
+      allocate (matrix%of_layers(size(matrix%columns%item)), source=0_ik)
+      n = 0
+      do i = 1, matrix%n_blocks
+         do k = coupled%first(i), coupled%last(i)
+            entry = matrix%entry_at(i, coupled%item(k))
+            if (matrix%of_layers(entry) > 0) cycle
+            n = n + 1
+            matrix%of_layers(entry) = n
+         end do
+      end do
+      allocate (matrix%layer_flow(3, 3, n), matrix%layer_terms(3, 3, n), source=0.0_rk)
+      allocate (matrix%layer_known(2, mesh%n_layers), source=0.0_rk)
+   end subroutine number_layer_entries
 
    !> Add the contributions of one region to the matrix.
    pure subroutine add_region(regions, region, stencil, matrix)
@@ -224,10 +329,57 @@ contains
                                                 + stencil%elastic%matrix(at_a + i, at_b + j)
                end do
             end do
-            matrix%flow(entry) = matrix%flow(entry) + stencil%flow%matrix(a, b)
+            if (.not. allocated(regions%scalars)) then
+               matrix%flow(entry) = matrix%flow(entry) + stencil%flow%matrix(a, b)
+            end if
          end do
       end do
+      if (allocated(regions%scalars)) call add_layered_flow(regions, region, stencil, matrix)
    end subroutine add_region
+
+   !> The flow where there are layers.
+   pure subroutine add_layered_flow(regions, region, stencil, matrix)
+      type(regions_t), intent(in) :: regions
+      integer(ik), intent(in) :: region
+      type(stencil_t), intent(in) :: stencil
+      type(matrix_t), intent(inout) :: matrix
+      integer(ik) :: a, b, entry, i, j
+      integer(ik) :: col(2), row(2)
+      real(rk) :: sign_col(2), sign_row(2)
+
+      do b = 1, regions%scalars%length(region)
+         call unknowns_of(regions%scalars%at(region, b), col, sign_col)
+         do a = 1, regions%scalars%length(region)
+            call unknowns_of(regions%scalars%at(region, a), row, sign_row)
+            if ((col(1) + 2)/3 > (row(1) + 2)/3) cycle
+            entry = matrix%entry_at((row(1) + 2)/3, (col(1) + 2)/3)
+            if (matrix%of_layers(entry) > 0) then
+               do j = 1, count(col > 0)
+                  do i = 1, count(row > 0)
+                     call matrix%add_layer_flow(row(i), col(j), sign_row(i)*sign_col(j) &
+                                                *stencil%flow%matrix(a, b))
+                  end do
+               end do
+            else
+               matrix%flow(entry) = matrix%flow(entry) + stencil%flow%matrix(a, b)
+            end if
+         end do
+      end do
+   end subroutine add_layered_flow
+
+   !> The unknowns that add up to a scalar of the stencils of flow, with their signs.
+   pure subroutine unknowns_of(scalar, number, sign)
+      integer(ik), intent(in) :: scalar  !< of regions%scalars
+      integer(ik), intent(out) :: number(2)  !< the second is 0 for a single one
+      real(rk), intent(out) :: sign(2)
+
+      number = [scalar, 0_ik]
+      sign = 1.0_rk
+      if (modulo(scalar, 3_ik) == 0) return
+      ! At an end of a layer's face
+      number = 3*((scalar + 2)/3) - [2_ik, 1_ik]
+      if (modulo(scalar, 3_ik) == 2) sign(2) = -1.0_rk
+   end subroutine unknowns_of
 
    !> Add the contributions of the boundary data of one region to the right-hand side.
    pure subroutine add_known(regions, region, stencil, matrix)
@@ -242,7 +394,22 @@ contains
          row = regions%blocks%at(region, a)
          matrix%elastic_known(:, row) = matrix%elastic_known(:, row) &
                                         + stencil%elastic%known(at:at + 2)
-         matrix%flow_known(row) = matrix%flow_known(row) + stencil%flow%known(a)
+         if (.not. allocated(regions%scalars)) then
+            matrix%flow_known(row) = matrix%flow_known(row) + stencil%flow%known(a)
+         end if
+      end do
+      if (.not. allocated(regions%scalars)) return
+      do a = 1, regions%scalars%length(region)
+         at = regions%scalars%at(region, a)
+         row = (at + 2)/3
+         if (modulo(at, 3_ik) == 0) then
+            matrix%flow_known(row) = matrix%flow_known(row) + stencil%flow%known(a)
+         else
+            associate (known => matrix%layer_known(:, row - matrix%n_cells &
+                                                   + size(matrix%layer_known, 2, kind=ik)))
+               known = known + [1, 3 - 2*(at - 3*row + 3)]*stencil%flow%known(a)
+            end associate
+         end if
       end do
    end subroutine add_known
 

@@ -70,6 +70,11 @@ module mesh_types
       integer(ik), allocatable :: face_side(:)  !< (n_faces) side of the outer boundary; 0 elsewhere
       integer(ik), allocatable :: face_fracture_cell(:)  !< (n_faces) fracture cell; 0 elsewhere
       type(fracture_mesh_t) :: fracture
+      ! Faces next to which pressures are resolved within the cell (coarse_layers):
+      integer(ik) :: n_layers = 0
+      integer(ik), allocatable :: layer_face(:)  !< (n_layers); unallocated: none
+      integer(ik), allocatable :: face_layer(:)  !< (n_faces) its layer; 0 elsewhere
+      integer(ik), allocatable :: cell_layer(:)  !< (n_cells) the first layer of the cell, or 0
    end type mesh_t
 
    !> From an old mesh to a new one that differs in a patch only.

@@ -344,6 +344,7 @@ contains
          call exchange(record, "newton_max", discretization%newton_max)
          call exchange(record, "newton_tolerance", discretization%newton_tolerance)
          call exchange(record, "condensation", discretization%condensation)
+         call exchange(record, "layers", discretization%layers)
       case ("fe")
          call exchange(record, "size_fracture", discretization%size_fracture, nothing=0.0_rk)
          call exchange(record, "size_boundary", discretization%size_boundary)

@@ -406,6 +406,9 @@ module scene_parameter_table
          choices="auto|full|sparse", &
          meaning="Solution of the fracture equations: condensation of the rock onto a full "// &
                  "matrix, or one sparse system; `auto` selects the cheaper one"), &
+      parameter_t("coarse", "layers", kind_choice, default="'auto'", choices="auto|off", &
+         meaning="Layers of fluid pressure thinner than a cell, next to fractures and drained "// &
+                 "sides: resolved where the first step may contain one, or not"), &
       parameter_t("fine", "window", unit="m", range=positive, derived=.true., choices="body", &
          absent="5 fracture lengths, or 'body'", &
          meaning="Edge l of the square window around a tip, more than 2 size_ratio dH; or the "// &

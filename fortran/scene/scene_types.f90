@@ -207,6 +207,8 @@ module scene_types
       integer(ik) :: newton_max = 30  !< largest number of iterations before a step is cut
       real(rk) :: newton_tolerance = 1.0e-9_rk  !< relative residual
       character(len=name_length) :: condensation = "auto"  !< or "full", "sparse"
+      !> "auto": layers thinner than a cell are resolved; or "off"
+      character(len=name_length) :: layers = "auto"
       logical :: chosen = .false.  !< the scene leaves some of the sizes open (scene_sizes)
    end type discretization_t
 

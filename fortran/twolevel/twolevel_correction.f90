@@ -9,7 +9,7 @@ module twolevel_correction
    use base_plane, only: norm2
    use coarse_fields, only: corner_tractions
    use coarse_nodes, only: nodal_fields
-   use coarse_layout, only: block_count, end_block
+   use coarse_layout, only: block_count, end_block, layer_block
    use coarse_state, only: state_t
    use growth_tip, only: tip_t
    use mesh_geometry, only: cell_centre
@@ -67,12 +67,16 @@ contains
       type(tip_t), intent(in) :: tips(:)
       type(mesh_t), intent(in) :: mesh
       integer(ik), allocatable :: speaker(:)  !< (blocks)
-      integer(ik) :: cell
+      integer(ik) :: cell, layer
 
       associate (fracture => mesh%fracture)
          allocate (speaker(block_count(mesh)))
          do cell = 1, mesh%n_cells
             speaker(cell) = nearest_window(windows, tips, spread(cell_centre(mesh, cell), 2, 2))
+         end do
+         do layer = 1, mesh%n_layers
+            speaker(layer_block(mesh, layer)) = &
+               speaker(mesh%face_cells(1, mesh%layer_face(layer)))
          end do
          do cell = 1, fracture%n_cells
             speaker(end_block(mesh, cell, [1_ik, 2_ik])) = &

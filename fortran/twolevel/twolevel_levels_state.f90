@@ -124,7 +124,7 @@ contains
       type(part_t), allocatable :: list(:)
 
       list = [part_t("time", [state%time]), &
-              part_t("rock", [flat(state%unknowns), numbers(state%content), &
+              part_t("rock", [flat(state%unknowns), flat(state%layer), numbers(state%content), &
                               numbers(state%tractions)]), &
               part_t("jumps", [cube(state%jump), flat(state%slip_before), flat(state%slip_path), &
                                flat(state%opened), flat(state%opened_before)]), &

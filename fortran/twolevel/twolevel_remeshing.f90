@@ -5,9 +5,10 @@ submodule(twolevel_state) twolevel_remeshing
    use base_plane, only: norm2
    use base_timers, only: phase_remesh, phase_transfer
    use base_tolerances, only: same_place
-   use coarse_model, only: rest_fluid
+   use coarse_model, only: profiles_t, rest_fluid
    use mesh_builder, only: remesh
    use mesh_types, only: mesh_map_t
+   use twolevel_setup, only: choose_first_step
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
    use twolevel_wells, only: transfer_shares
@@ -45,6 +46,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(coarse_problem_t), allocatable :: problem
       type(mesh_map_t) :: map
+      type(profiles_t) :: profiles
       real(rk) :: radius
       integer(ik) :: i, k, nearest
 
@@ -65,6 +67,9 @@ contains
       call timers%stop(phase_remesh)
       if (allocated(error)) return
       call timers%start(phase_transfer)
+      associate (layers => self%problem%model%layers, state => self%now%coarse)
+         if (layers%n > 0) profiles = layers%profiles(state%unknowns, state%layer)
+      end associate
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
       if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
@@ -72,13 +77,42 @@ contains
       call move_alloc(problem, self%problem)
       call self%windows%coarse_changed()
       call self%reference%coarse_changed()
+      call choose_first_step(self%scene, self%problem%model%first_step)
       call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
       if (allocated(error)) return
+      call transfer_layers(self%problem, profiles, map, self%now%coarse)
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
       self%now%has_new_mesh = .true.
    end subroutine remesh_coarse
+
+   !> Transfer the pressures in layers to a new coarse mesh, after all else.
+   subroutine transfer_layers(problem, profiles, map, state)
+      type(coarse_problem_t), intent(in) :: problem  !< with the new mesh
+      type(profiles_t), intent(in) :: profiles  !< before
+      type(mesh_map_t), intent(in) :: map
+      type(state_t), intent(inout) :: state
+
+      associate (layers => problem%model%layers, mesh => problem%mesh)
+         if (layers%n == 0) return
+         call insert_layers(mesh%n_cells, layers%n, state%unknowns)
+         call layers%take_profiles(profiles, map%cell_old, map%fracture_cell_old, state%unknowns, &
+                                   state%layer)
+      end associate
+   end subroutine transfer_layers
+
+   !> Insert the blocks of layers after those of the cells.
+   pure subroutine insert_layers(n_cells, n_layers, unknowns)
+      integer(ik), intent(in) :: n_cells, n_layers
+      real(rk), allocatable, intent(inout) :: unknowns(:, :)  !< (3, blocks)
+      real(rk), allocatable :: with_layers(:, :)
+
+      allocate (with_layers(3, size(unknowns, 2) + n_layers), source=0.0_rk)
+      with_layers(:, :n_cells) = unknowns(:, :n_cells)
+      with_layers(:, n_cells + n_layers + 1:) = unknowns(:, n_cells + 1:)
+      call move_alloc(with_layers, unknowns)
+   end subroutine insert_layers
 
    !> Transfer cells, wells and state to a new coarse mesh.
    subroutine transfer_levels(scene, old, map, new, now)

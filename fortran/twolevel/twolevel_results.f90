@@ -136,6 +136,10 @@ contains
             end associate
             row%displacement(:, i) = value(:2)
             row%pressure(i) = value(3)
+            if (allocated(state%layer)) then
+               call model%layers%find_pressure(mesh, state%unknowns, state%layer, xy(:, i), &
+                                               row%pressure(i))
+            end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             if (.not. allocated(model%in_situ)) cycle
             ! The state in situ is exact at the point itself.

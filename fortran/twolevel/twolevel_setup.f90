@@ -10,10 +10,11 @@ module twolevel_setup
    use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
+   use twolevel_stepping, only: first_step
    implicit none(type, external)
    private
 
-   public :: coarse_spec, first_cells, keep_above_zero, pressure_scale, rest_joints, rules_of_scene
+   public :: choose_first_step, coarse_spec, first_cells, keep_above_zero, pressure_scale, rest_joints, rules_of_scene
 
    !> Relative deficit of K_eq within which tips grow along with the first: the two methods for the
    !! intensities differ by about as much [-].
@@ -24,6 +25,14 @@ module twolevel_setup
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
 
 contains
+
+   !> Set the first step of the run, which determines where layers are resolved.
+   subroutine choose_first_step(scene, first)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(inout) :: first  !< [s]
+
+      if (scene%discretization%layers == "auto") first = first_step(scene%time)
+   end subroutine choose_first_step
 
    !> Replace a toughness of 0, or next to it, by one that changes nothing that a run resolves: K_eq
    !! over it is a finite number, viscosity has its limit without toughness (coarse_tip_layer), and

@@ -15,7 +15,7 @@ submodule(twolevel_state) twolevel_simulation
    use twolevel_stepping, only: refinement_t
    use twolevel_refinement, only: find_refinements, note_uncertain_tips, refine_windows
    use twolevel_schedule, only: follow_sides
-   use twolevel_setup, only: coarse_spec, first_cells, keep_above_zero, &
+   use twolevel_setup, only: choose_first_step, coarse_spec, first_cells, keep_above_zero, &
                               pressure_scale, rest_joints, rules_of_scene
    use twolevel_wells, only: share_wells
    implicit none(type, external)
@@ -62,6 +62,7 @@ contains
          if (allocated(error)) return
          call first_cells(self%scene, mesh%fracture, problem%model%cells)
          call share_wells(self%scene%injections, mesh%fracture, problem%share)
+         call choose_first_step(self%scene, problem%model%first_step)
          call problem%model%set_mesh(mesh, self%scene, timers, error)
          if (allocated(error)) return
          call problem%feed_wells(self%scene, error)

@@ -33,8 +33,8 @@ module twolevel_stepping
    implicit none(type, external)
    private
 
-   public :: improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t, trial_t
-   public :: withdraw_edge, withdraw_elements
+   public :: first_step, improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t
+   public :: trial_t, withdraw_edge, withdraw_elements
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
@@ -129,6 +129,16 @@ module twolevel_stepping
    end type stepper_t
 
 contains
+
+   !> The first step of a run, and the shortest of those without growth, limits of wells and errors
+   !! that cut it [s].
+   real(rk) function first_step(time)
+      type(time_t), intent(in) :: time
+      type(stepper_t) :: stepper
+
+      call stepper%begin(time)
+      first_step = stepper%next
+   end function first_step
 
    !> Set the control from the time settings of the scene.
    subroutine begin(self, time)

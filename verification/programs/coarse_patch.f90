@@ -47,7 +47,7 @@ contains
 
    subroutine solve(scene, mesh, model, state)
       type(scene_t), intent(in) :: scene
-      type(mesh_t), intent(in) :: mesh
+      type(mesh_t), intent(inout) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
       type(timers_t) :: timers

@@ -84,7 +84,7 @@ contains
    end subroutine make_cells
 
    subroutine start(mesh, scene, friction, dilation, model, state)
-      type(mesh_t), intent(in) :: mesh
+      type(mesh_t), intent(inout) :: mesh
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: friction, dilation
       type(coarse_model_t), intent(inout) :: model

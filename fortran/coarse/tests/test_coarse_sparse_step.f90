@@ -96,7 +96,7 @@ contains
    end subroutine compare
 
    subroutine start(mesh, scene, model, state)
-      type(mesh_t), intent(in) :: mesh
+      type(mesh_t), intent(inout) :: mesh
       type(scene_t), intent(in) :: scene
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state

@@ -241,6 +241,7 @@ contains
          if (d%rosette_sectors /= e%rosette_sectors .or. d%newton_max /= e%newton_max) return
          if (d%face_condition /= e%face_condition) return
          if (d%condensation /= e%condensation) return
+         if (d%layers /= e%layers) return
          if (d%window_is_body .neqv. e%window_is_body) return
       end associate
       associate (g => a%growth, h => b%growth)
