@@ -115,12 +115,16 @@ private:
 
     // Rounding to fewer digits removes the rounding errors of the given places and of the sizes,
     // which differ between units of length, so that gmsh decides alike. Only gmsh sees it.
-    static Vec2 rounded_place(Vec2 p) {
+    Vec2 rounded_place(Vec2 p) const {
+        if (!size_.is_scale_free())
+            return p;
         constexpr double steps = 68719476736.0; // 2^36 in the region's extent
         return {std::round(p.x * steps) / steps, std::round(p.y * steps) / steps};
     }
 
-    static double rounded_size(double size) { return static_cast<float>(size); }
+    double rounded_size(double size) const {
+        return size_.is_scale_free() ? static_cast<float>(size) : size;
+    }
 
     int point(int node) {
         const auto [entry, is_new] = point_of_node_.try_emplace(node, 0);
