@@ -63,6 +63,8 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
         mesh.size.set_foci(specification.foci);
     }
+    if (mesh.size.follows_other_mesh() || is_for_elements(specification))
+        mesh.size.make_scale_free();
 
     std::vector<RosettePlan> plans;
     if (specification.rosette_sectors > 0)
@@ -74,7 +76,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
             mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints});
     // Cells between fractures that meet, or almost do, must not be much longer than what is left
     // for them.
-    if (mesh.size.follows_other_mesh() || is_for_elements(specification) ||
+    if (mesh.size.is_scale_free() ||
         (!specification.is_window &&
          (!joints_of(graph).empty() || has_near_ends(graph, domain, mesh.size))))
         limit_sizes_in_narrow_places(graph, domain, mesh.size);

@@ -79,7 +79,7 @@ public:
     RegionMesher(const Region& region, const SizeField& size, std::vector<Vec2>& xy,
                  double coverage)
         : region_(region), size_(size), xy_(xy), scaling_(scaling_of(region.loops.at(0), xy)),
-          limit_(scaled_area(), coverage), steps_(steps_of_places()) {}
+          limit_(scaled_area(), coverage) {}
 
     std::vector<Triangle> run() {
         build_model();
@@ -101,10 +101,6 @@ public:
     }
 
 private:
-    // Digits of places beyond the shortest given edge, of all places, and of sizes.
-    static constexpr int place_bits = 16, most_bits = 36, size_bits = 18;
-    static constexpr double untied = 1.1; // edges that are a power of 2 are no tie
-
     static constexpr const char* no_end =
         "gmsh was stopped: it tried far more nodes than the cell sizes require";
 
@@ -120,27 +116,14 @@ private:
     // Rounding to fewer digits removes the rounding errors of the given places and of the sizes,
     // which differ between units of length, so that gmsh decides alike. Only gmsh sees it.
     Vec2 rounded_place(Vec2 p) const {
-        return {std::round(p.x * steps_) / steps_, std::round(p.y * steps_) / steps_};
+        if (!size_.is_scale_free())
+            return p;
+        constexpr double steps = 68719476736.0; // 2^36 in the region's extent
+        return {std::round(p.x * steps) / steps, std::round(p.y * steps) / steps};
     }
 
-    static double rounded_size(double size) {
-        int exponent = 0;
-        const double mantissa = std::frexp(size, &exponent);
-        return std::ldexp(std::round(std::ldexp(mantissa, size_bits)), exponent - size_bits);
-    }
-
-    // So many steps in the region's extent that places move by little of the shortest given edge.
-    double steps_of_places() const {
-        double shortest = 1.0;
-        const auto see = [&](int a, int b) {
-            shortest = std::min(shortest, scaling_.factor * distance(xy_[a], xy_[b]));
-        };
-        for (const std::vector<int>& loop : region_.loops)
-            for (std::size_t k = 0; k < loop.size(); ++k)
-                see(loop[k], loop[(k + 1) % loop.size()]);
-        for (const auto& edge : region_.embedded)
-            see(edge[0], edge[1]);
-        return std::ldexp(1.0, std::min(most_bits, place_bits - std::ilogb(untied * shortest)));
+    double rounded_size(double size) const {
+        return size_.is_scale_free() ? static_cast<float>(size) : size;
     }
 
     int point(int node) {
@@ -222,7 +205,6 @@ private:
     std::vector<Vec2>& xy_;
     const Scaling scaling_;
     WorkLimit limit_;
-    const double steps_;
     std::unordered_map<int, int> point_of_node_;
     std::vector<int> node_of_point_;
     std::unordered_map<std::size_t, int> node_of_tag_;

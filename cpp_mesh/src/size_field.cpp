@@ -14,8 +14,7 @@ constexpr double reach = 0.5;
 // How far outside a disc cells grow by its slope, in radii, before they grow faster.
 constexpr double near_part = 2.0;
 
-// Numbers this near to a tie are on one side of it whatever their rounding errors: the same body in
-// another unit of length is to get the same mesh.
+// Numbers this near to a tie are on one side of it whatever their rounding errors.
 constexpr double tie_margin = 1e-9;
 
 // The farthest point is looked for on a grid: sizes depend on it only weakly.
@@ -137,8 +136,9 @@ CellCount count_cells_evenly(Vec2 a, Vec2 b, const SizeField& size) {
     double smallest_seen = size(a);
     for (int k = 1; k <= 8; ++k)
         smallest_seen = std::min(smallest_seen, size(along(a, b, 0.125 * k)));
+    const double nudge = size.is_scale_free() ? tie_margin : 0.0;
     const int n_samples = static_cast<int>(
-        std::clamp(std::ceil(4.0 * whole / smallest_seen * (1.0 - tie_margin)), 16.0, 1024.0));
+        std::clamp(std::ceil(4.0 * whole / smallest_seen * (1.0 - nudge)), 16.0, 1024.0));
     CellCount count{{0.0}, {0.0}, true};
     double previous = size(a), smallest = previous, largest = previous;
     for (int k = 1; k <= n_samples; ++k) {
@@ -164,7 +164,8 @@ std::vector<double> divide_segment(Vec2 a, Vec2 b, const SizeField& size) {
     if (!count.is_resolved)
         count = count_cells(a, b, size);
     const double total = count.cells.back();
-    const int n = std::max(1, static_cast<int>(std::lround(total * (1.0 + tie_margin))));
+    const double nudge = size.is_scale_free() ? tie_margin : 0.0;
+    const int n = std::max(1, static_cast<int>(std::lround(total * (1.0 + nudge))));
     std::vector<double> t(n + 1);
     std::size_t k = 0;
     for (int i = 0; i <= n; ++i) {

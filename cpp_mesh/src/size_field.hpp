@@ -55,6 +55,10 @@ public:
     void add(const SizeSource& source) { sources_.push_back(source); }
     void add(const SizeDisc& disc) { discs_.push_back(disc); }
     void set_foci(SizeFoci foci) { foci_ = std::move(foci); }
+    // Decisions must not depend on rounding errors: the same body in another unit of length is to
+    // get the same mesh.
+    void make_scale_free() { is_scale_free_ = true; }
+    bool is_scale_free() const { return is_scale_free_; }
     void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
 
     // What this field has and another one lacks; without limit elsewhere.
@@ -67,6 +71,7 @@ private:
     std::shared_ptr<const NodalSizes> wanted_;
     double slope_ = 0.0;
     double largest_ = 0.0;
+    bool is_scale_free_ = false;
 };
 
 // Parameters 0 = t0 < ... < tn = 1 that divide the segment a-b into cells of the wanted size.

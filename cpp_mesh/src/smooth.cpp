@@ -6,10 +6,6 @@ namespace {
 
 constexpr int sweeps = 3;
 
-// A place is better if the worst shape is so by more than rounding: in symmetric places it is often
-// the same.
-constexpr double better = 1.0 + 1e-6;
-
 double worst_shape_around(const PlaneMesh& mesh, const EdgeTable& edges, int node) {
     double worst = 1.0;
     for (const int* c = edges.begin(node); c != edges.end(node); ++c) {
@@ -42,7 +38,7 @@ void smooth(PlaneMesh& mesh, const std::vector<int>& nodes) {
             const Vec2 before = mesh.xy[node];
             const double quality = worst_shape_around(mesh, edges, node);
             mesh.xy[node] = (0.5 / n_cells) * sum; // each neighbour is in two cells
-            if (!(worst_shape_around(mesh, edges, node) > better * quality))
+            if (!(worst_shape_around(mesh, edges, node) > quality))
                 mesh.xy[node] = before;
         }
     }
