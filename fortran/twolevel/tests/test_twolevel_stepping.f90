@@ -267,8 +267,8 @@ contains
       call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
 
-   !> Steps after one in which tips grew too far do not cross its end unless they halve the time that
-   !! is left four times; then the rest is taken in one step. Noticeable growth, or a jump, ends this.
+   !> Steps after one in which tips grew too far halve the time to its end; after four of them the
+   !! rest is taken in one step. Noticeable growth, or a jump, ends this.
    subroutine test_approach()
       type(stepper_t) :: stepper
       type(trial_t) :: too_far, little
