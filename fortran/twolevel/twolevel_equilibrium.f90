@@ -54,6 +54,10 @@ module twolevel_equilibrium
    !! is evaluated again in the last try only [-].
    real(rk), parameter :: lack_of_far = 0.1_rk
 
+   !> New segments that a tip may begin in a step without a jump. The step control aims at less than
+   !! one; a step that is a little longer need not be tried again.
+   integer, parameter :: segments_max = 2
+
    !> Position from which the search on a new segment starts, over the length of the segment: the
    !! mesh of its full length can be moved there, but not much farther back [-].
    real(rk), parameter :: first_place = 0.4_rk
@@ -66,7 +70,7 @@ module twolevel_equilibrium
       ! Data of the tries
       real(rk), allocatable :: unmoved(:)  !< (tips) excess in the first try [-]
       integer(ik), allocatable :: kind(:)  !< (tips) number of the tip group, from 1
-      logical, allocatable :: has_begun(:)  !< (tips) the tip has begun a new segment
+      integer, allocatable :: begun(:)  !< (tips) number of new segments that the tip has begun
       type(previous_try_t) :: previous_try
       type(advances_t) :: advances  !< search for the positions of the tips on their segments
       logical :: is_over = .false.  !< the tries have ended
@@ -75,7 +79,7 @@ module twolevel_equilibrium
 contains
 
    !> Try a step from the last stored state: find the state at its end, and the tip positions in
-   !! equilibrium. A step in which a tip would advance by more than one new segment goes too far,
+   !! equilibrium. A step in which a tip would begin more than two new segments goes too far,
    !! unless tips may jump: then the step is so short that the time of the jump within the step does
    !! not matter, or it is the last try, which consists of unstable growth until its arrest. Nothing
    !! is accepted here. A step in which the intensities of a tip that grows, or might grow, are not
@@ -121,7 +125,7 @@ contains
       search%is_last = is_last
       search%may_jump = may_jump
       allocate (search%kind(size(tips)))
-      allocate (search%has_begun(size(tips)), source=.false.)
+      allocate (search%begun(size(tips)), source=0)
       associate (toughness => rules%toughness, segment => now%segment)
          call now%groups%find_groups(tips%excess(toughness), tips%relative_error(toughness), &
                                      segment%gain, tips%arrested, &
@@ -257,7 +261,7 @@ contains
       stops = wants .and. self%has_gained()
       if (.not. any(stops)) return
       wants = wants .and. .not. stops
-      trial%goes_too_far = any(stops .and. search%has_begun) .and. .not. search%may_jump
+      trial%goes_too_far = any(stops .and. search%begun > 0) .and. .not. search%may_jump
       stops = stops .and. self%tip%excess(self%rules%toughness) > tolerance &
               .and. .not. search%is_last
       trial%gains_all = any(stops)
@@ -280,7 +284,7 @@ contains
       type(trial_t), intent(inout) :: trial
 
       if (.not. search%may_jump) then
-         trial%goes_too_far = any(joins .and. search%has_begun)
+         trial%goes_too_far = any(joins .and. search%begun > 0)
          trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
                                          self%rules%toughness, at_joints), mask=joins)
          trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
@@ -316,7 +320,7 @@ contains
          end if
          ! A tip that stays at the end of its segment for a part of the step is slower than it will
          ! be: where viscosity decides, its excess says little.
-         if (any(wants .and. (search%has_begun .or. &
+         if (any(wants .and. (search%begun >= segments_max .or. &
                               (self%tip%excess(toughness) > excess_max .and. &
                                .not. is_viscous(self%tip))))) then
             trial%jumps = .true.
@@ -346,7 +350,7 @@ contains
       end do
       if (.not. search%may_jump) call keep_together(self%now%segment, search%kind)
       ! Without the tips whose whole segment is a ligament.
-      search%has_begun = search%has_begun .or. (wants .and. .not. self%now%segment%stays())
+      where (wants .and. .not. self%now%segment%stays()) search%begun = search%begun + 1
       search%previous_try = previous_try_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted

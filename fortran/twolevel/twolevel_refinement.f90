@@ -5,9 +5,9 @@
 !! The larger part of the error estimate determines the refinement. The error of the window itself
 !! requires smaller elements. The error of the coarse level, which enters through the displacement
 !! on the edge, requires a larger window, and finally the body as one window for all tips. A window
-!! keeps its refined size and elements, and moves with its tip. A refinement that has not reduced the
-!! error is taken back, and not followed by another one of its kind: the two levels then differ by
-!! something else, such as the history of slip on faces of a new kink. The windows of the loaded
+!! keeps its refined size and elements, and moves with its tip. A refinement that has not reduced
+!! the error is taken back, and not followed by another one of its kind: the two levels then differ
+!! by something else, such as the history of slip on faces of a new kink. The windows of the loaded
 !! tips together are not enlarged beyond the area of the body.
 !!
 !! An error of K_eq is an error of the pressure at which the tip reaches its toughness, and of the

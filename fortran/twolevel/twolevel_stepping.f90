@@ -21,6 +21,9 @@
 !! before it that bring little growth halve the time that is left, and do not cross it, since growth
 !! that is about to become unstable gives no other notice.
 !!
+!! After a step whose equations were not solved, steps become longer slowly: what hinders the
+!! iteration mostly lasts.
+!!
 !! No step is cut to less than a 64th of the shortest step; a step of this length is accepted with
 !! any time error. A run ends if hundreds of steps in succession are cut to nearly this length.
 !!
@@ -105,6 +108,9 @@ module twolevel_stepping
       !> time left to the end of the last step in which tips advanced too far [s]
       real(rk) :: left_in_vain = huge(1.0_rk)
       integer :: halvings = 0  !< number of steps that have halved it
+      !> longest next step, after one whose equations were not solved [s]
+      real(rk) :: solvable = huge(1.0_rk)
+      integer :: solved = 0  !< number of steps since
       !> length of a step within which the time of a jump does not matter [s]
       real(rk) :: moment = 0.0_rk
       integer :: in_vain = 0  !< cuts of the present step after which tips still advanced too far
@@ -187,6 +193,10 @@ contains
          self%left_in_vain = dt
          self%halvings = 0
       end if
+      if (.not. trial%converged) then
+         self%solvable = 0.5_rk*dt
+         self%solved = 0
+      end if
       least = min(dt, floor_share*self%shortest)
       if (trial%converged .and. trial%onset < 1.0_rk) then
          call cut_to(max(0.01_rk, trial%onset), 0.5_rk*self%shortest, self%onset_cuts, dt)
@@ -257,6 +267,7 @@ contains
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
          call approach(self, trial, dt)
+         call lengthen_slowly(self)
       else
          power = 1
          if (trial%advance > 0.0_rk) power = max(-1, min(1, powers(self, trial)))
@@ -293,6 +304,19 @@ contains
       self%next = min(self%next, merge(0.5_rk, 1.0_rk, self%halvings <= most_halvings .and. &
                                        self%left_in_vain > self%moment)*self%left_in_vain)
    end subroutine approach
+
+   !> Limit the next step after one whose equations were not solved; after several steps it is free.
+   pure subroutine lengthen_slowly(self)
+      class(stepper_t), intent(inout) :: self
+      integer, parameter :: several = 4
+      real(rk), parameter :: longer = sqrt(2.0_rk)  ! than the step before [-]
+
+      if (.not. self%solvable < huge(1.0_rk)) return
+      self%next = min(self%next, self%solvable)
+      self%solvable = longer*self%solvable
+      self%solved = self%solved + 1
+      if (self%solved >= several) self%solvable = huge(1.0_rk)
+   end subroutine lengthen_slowly
 
    !> Whether the next step ends where tips have been found to advance too far.
    pure logical function expects_jump(self)

@@ -8,6 +8,7 @@ module twolevel_window_total
    use report_rows, only: event_window
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_state, only: two_levels_t
+   use twolevel_window, only: window_t
    implicit none(type, external)
    private
 
@@ -32,15 +33,31 @@ contains
                    int(considerable*self%compared_unknowns, ik))) return
       self%compared_unknowns = n
       call timers%start(phase_tips)
-      call self%windows%count_body(self%scene, self%network, self%now%windows%tip, n_body, error)
+      call count_unknowns(self, n_body, error)
       call timers%stop(phase_tips)
       if (allocated(error) .or. n <= n_body) return
       call self%windows%share_body(self%now%windows%tip)
-      call self%chronicle%add_event(self%now%coarse%time, event_window, "the body as one window "// &
-                                    "for all tips: it has fewer unknowns than their windows")
+      call self%chronicle%add_event(self%now%coarse%time, event_window, "the body as one "// &
+                                    "window for all tips: fewer unknowns than in their windows")
       if (.not. allocated(self%now%coarse%tractions)) return
       call self%evaluate(timers, error)
       if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
    end subroutine limit_windows
+
+   !> Number of unknowns of the body as one window for all tips, with elements as small as those of
+   !! their windows.
+   subroutine count_unknowns(self, n, error)
+      class(two_levels_t), intent(in) :: self
+      integer(ik), intent(out) :: n
+      type(error_t), allocatable, intent(out) :: error
+      type(window_t) :: body
+      integer(ik) :: i
+
+      n = 0
+      body%is_body = .true.
+      body%serves = [(i, i=1, size(self%tip, kind=ik))]
+      call body%build(self%scene, self%network, self%now%windows%tip, .false., error)
+      if (.not. allocated(error)) n = 2*body%model%mesh%n_nodes
+   end subroutine count_unknowns
 
 end module twolevel_window_total

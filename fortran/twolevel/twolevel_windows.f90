@@ -65,7 +65,6 @@ module twolevel_windows
       procedure :: has_to_mesh
       procedure :: mesh_again
       procedure :: take_body
-      procedure, nopass :: count_body
       procedure :: share_body
       procedure :: all_in_body
       procedure :: n_unknowns
@@ -448,25 +447,6 @@ contains
       call forget_mesh(self%slot(own)%window)
       call self%mesh_again(tip, seen)
    end subroutine take_body
-
-   !> Number of unknowns of the body as one window for all tips, with elements as small as those of
-   !! their windows.
-   subroutine count_body(scene, network, seen, n_unknowns, error)
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(window_tip_t), intent(in) :: seen(:)  !< (tips)
-      integer(ik), intent(out) :: n_unknowns
-      type(error_t), allocatable, intent(out) :: error
-      type(window_t) :: body
-      integer(ik) :: i
-
-      n_unknowns = 0
-      body%is_body = .true.
-      body%serves = [(i, i=1, size(seen, kind=ik))]
-      call body%build(scene, network, seen, .false., error)
-      if (allocated(error)) return
-      n_unknowns = 2*body%model%mesh%n_nodes
-   end subroutine count_body
 
    !> Evaluate all tips in the body from now on, with elements as small as those of their windows.
    pure subroutine share_body(self, seen)

@@ -23,6 +23,7 @@ program test_twolevel_stepping
    call test_onset()
    call test_too_far()
    call test_approach()
+   call test_unsolved()
    call test_sudden()
    call test_headway()
    call test_limits_of_wells()
@@ -266,8 +267,8 @@ contains
       call checks%is_close(dt, 0.5_rk*stepper%shortest, 1.0e-12_rk, "and no farther")
    end subroutine test_too_far
 
-   !> Steps after one in which tips grew too far do not cross its end unless they halve the time that
-   !! is left four times; then the rest is taken in one step. Noticeable growth, or a jump, ends this.
+   !> Steps after one in which tips grew too far halve the time to its end; after four of them the
+   !! rest is taken in one step. Noticeable growth, or a jump, ends this.
    subroutine test_approach()
       type(stepper_t) :: stepper
       type(trial_t) :: too_far, little
@@ -298,6 +299,28 @@ contains
       call stepper%step_done(trial_t(converged=.true., jumps=.true.), dt)
       call checks%is_close(stepper%next, 128.0_rk, 1.0e-12_rk, "the jump is over")
    end subroutine test_approach
+
+   !> After a step that was not solved the next four become longer by the root of two at most.
+   subroutine test_unsolved()
+      type(stepper_t) :: stepper
+      type(trial_t) :: failed
+      real(rk) :: dt
+      logical :: is_too_short
+      integer :: k
+
+      failed%reason = "a reason"
+      call stepper%begin(chosen)
+      dt = 64.0_rk
+      call stepper%cut(failed, dt, is_too_short)
+      call checks%is_close(dt, 32.0_rk, 0.0_rk, "half")
+      do k = 1, 4
+         call stepper%step_done(trial_t(converged=.true.), dt)
+         call checks%is_close(stepper%next, 32.0_rk*sqrt(2.0_rk)**(k - 1), 1.0e-12_rk, "slowly")
+         dt = stepper%next
+      end do
+      call stepper%step_done(trial_t(converged=.true.), dt)
+      call checks%is_close(stepper%next, 4.0_rk*dt, 1.0e-12_rk, "as usual then")
+   end subroutine test_unsolved
 
    !> Whatever the time errors, no step is shorter than a 64th of the shortest step, except up to a
    !! switch. Three hundred steps cut to this length count as no progress in time; a longer step, or
