@@ -29,7 +29,7 @@ module twolevel_errors
    !> error of a tip position, over the length of the coarse cell at the tip [-]
    real(rk), parameter :: share = 0.1_rk
    !> the same of a bent wing, times the number of its cells [-]
-   real(rk), parameter :: share_of_bent = 1.3_rk
+   real(rk), parameter :: share_of_bent = 2.0_rk
 
    !> Error of K_eq of a tip in a step, and the data to convert it into an error of the position.
    type :: tip_excess_t
