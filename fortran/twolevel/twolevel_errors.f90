@@ -15,9 +15,10 @@
 !!
 !! A wing that is bent from its fracture and short over its cells opens by the slip of the fracture:
 !! its length has an error of up to a cell, which falls with one over the number of its cells
-!! (measured at 45 degrees, wings of 1 to 5 cells against cells a quarter as large, with and without
-!! leak-off: 0.9 to 0.3 cells; verification/reservoir_scale/stated_errors.py). Layers of viscous flow
-!! at a tip need finer cells; their error is not included.
+!! (measured at 45 degrees, wings of 1 to 5 cells against cells a quarter as large, with and
+!! without leak-off: 0.9 to 0.3 cells; verification/reservoir_scale/stated_errors.py).
+!!
+!! Layers of viscous flow at a tip need finer cells; their error is not included.
 module twolevel_errors
    use base_kinds, only: rk
    use twolevel_time_error, only: accumulated_error_t
