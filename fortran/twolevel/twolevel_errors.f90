@@ -15,9 +15,10 @@
 !!
 !! A wing that is bent from its fracture and short over its cells opens by the slip of the fracture:
 !! its length has an error of up to a cell, which falls with one over the number of its cells
-!! (measured at 45 degrees, wings of 1 to 5 cells against cells a quarter as large, with and without
-!! leak-off: 0.9 to 0.3 cells; verification/reservoir_scale/stated_errors.py). Layers of viscous flow
-!! at a tip need finer cells; their error is not included.
+!! (measured at 45 degrees, wings of 1 to 5 cells against cells a quarter as large, with and
+!! without leak-off: 0.9 to 0.3 cells; verification/reservoir_scale/stated_errors.py).
+!!
+!! Layers of viscous flow at a tip need finer cells; their error is not included.
 !!
 !! Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
 !! their signs.
@@ -42,7 +43,7 @@ module twolevel_errors
    !> error of a tip position, over the length of the coarse cell at the tip [-]
    real(rk), parameter :: share = 0.1_rk
    !> the same of a bent wing, times the number of its cells [-]
-   real(rk), parameter :: share_of_bent = 1.3_rk
+   real(rk), parameter :: share_of_bent = 2.0_rk
 
    !> Error of K_eq of a tip in a step, and the data to convert it into an error of the position.
    type :: tip_excess_t

@@ -65,15 +65,20 @@ contains
    end subroutine find_tip_layers
 
    !> Set the driving force to zero at tips that were open before the step and that the suction of
-   !! the viscous fluid closes: such a tip is too far ahead, whatever its faces slip.
+   !! the viscous fluid closes: such a tip is too far ahead, whatever its faces slip. It waits until
+   !! it opens again. Open is a tip with more opening than sliding.
    subroutine close_tips(self)
       class(two_levels_t), intent(inout) :: self
+      logical :: was_closed, was_open
       integer(ik) :: i
 
       do i = 1, size(self%tip, kind=ik)
-         associate (tip => self%tip(i), before => self%last%front%tip(i)%intensity)
-            if (.not. (is_viscous(tip) .and. before%k1 > abs(before%k2))) cycle
-            if (.not. tip%intensity%k1 > 0.0_rk) tip%drive%intensity = 0.0_rk
+         associate (tip => self%tip(i), before => self%last%front%tip(i))
+            if (.not. tip%is_free .or. tip%intensity%k1 > abs(tip%intensity%k2)) cycle
+            was_open = before%intensity%k1 > abs(before%intensity%k2)
+            was_closed = .not. before%drive%intensity > 0.0_rk .and. &
+                         abs(before%intensity%k2) > 0.0_rk
+            if (was_closed .or. (was_open .and. is_viscous(tip))) tip%drive%intensity = 0.0_rk
          end associate
       end do
    end subroutine close_tips
