@@ -93,8 +93,8 @@ contains
    end subroutine check_bond
 
    subroutine check_others()
-      call refuse(good, 9, "  toughness=0.0 /", ":9: &fracture: toughness is 0.0 but must be a "// &
-                  "finite number greater than 0.0 [Pa m^1/2]"//doc)
+      call refuse(good, 9, "  toughness=-1.0 /", ":9: &fracture: toughness is -1.0 but must be "// &
+                  "a finite number at least 0.0 [Pa m^1/2]"//doc)
       call refuse(good, 3, "  /", ":9: &fracture: toughness is given, but that of &material, "// &
                   "which other tips have, is missing"//doc)
       call refuse(good, 9, "  skin=-1.0e9 /", ":9: &fracture: skin is -1.0e9 but must be a "// &
