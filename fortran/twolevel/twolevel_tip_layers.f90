@@ -66,7 +66,8 @@ contains
 
    !> Set the driving force to zero at tips that were open before the step and that the suction of
    !! the viscous fluid closes: such a tip is too far ahead, whatever its faces slip. It waits until
-   !! it opens again. Open is a tip with more opening than sliding.
+   !! it opens again. Open is a tip with more opening than sliding. Where the toughness is no scale
+   !! for K, so small a K tells nothing.
    subroutine close_tips(self)
       class(two_levels_t), intent(inout) :: self
       logical :: was_closed, was_open
@@ -75,6 +76,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i), before => self%last%front%tip(i))
             if (.not. tip%is_free .or. tip%intensity%k1 > abs(tip%intensity%k2)) cycle
+            if (tip%least_scale > self%rules%toughness) cycle
             was_open = before%intensity%k1 > abs(before%intensity%k2)
             was_closed = .not. before%drive%intensity > 0.0_rk .and. &
                          abs(before%intensity%k2) > 0.0_rk
