@@ -1,10 +1,13 @@
-!> The windows of all loaded tips together are not larger than the body as one window: where they
-!! would have more unknowns, all tips take the body. This is decided in accepted states, and again
-!! only when the windows have grown considerably, since it costs a mesh of the body.
+!> The windows of the tips that are evaluated in each try of a step are together not larger than the
+!! body as one window: where they would have more unknowns, all tips take the body. This is decided
+!! in accepted states, and again only when the windows have grown considerably, since it costs a
+!! mesh of the body. Windows of tips far below their toughness do not count: they are evaluated once
+!! per step, the body in each try.
 module twolevel_window_total
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: phase_tips, timers_t
+   use growth_tip, only: tip_t
    use report_rows, only: event_window
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_state, only: two_levels_t
@@ -24,10 +27,18 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: far = 0.3_rk  ! lack of toughness, error included [-]
+      type(tip_t) :: tips(size(self%tip))
       integer(ik) :: n, n_body
 
       if (.not. self%scene%growth%intensities .or. .not. self%has_reference()) return
-      n = self%windows%n_unknowns(self%tip)
+      tips = self%tip
+      associate (toughness => self%rules%toughness)
+         where (tips%excess(toughness) + tips%relative_error(toughness) < -far)
+            tips%is_carried = .true.
+         end where
+      end associate
+      n = self%windows%n_unknowns(tips)
       ! The reference has larger elements than the windows, and so fewer unknowns than the body.
       if (n <= max(self%reference%n_unknowns(self%tip), &
                    int(considerable*self%compared_unknowns, ik))) return

@@ -275,7 +275,7 @@ contains
       do n = 1, 2
          window = merge(0.15_rk, 0.6_rk, n == 1)
          scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
-         scene%material%toughness = 10.0_rk*usual_toughness
+         scene%material%toughness = usual_toughness
          scene%initial%pressure = pressure
          scene%discretization%size_fracture = 0.02_rk
          scene%discretization%window = window
