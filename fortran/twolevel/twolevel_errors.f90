@@ -51,9 +51,9 @@ module twolevel_errors
       real(rk) :: error = 0.0_rk  !< error of K_eq, over K_IC [-]
       real(rk) :: slope = -1.0_rk  !< derivative of K_eq/K_IC along the path, < 0 [1/m]
       real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
-      real(rk) :: jump = 0.0_rk  !< length of a jump that is uncertain in time (twolevel_jumps) [m]
       real(rk) :: wing = 0.0_rk  !< distance of the tip from where it began to grow [m]
       real(rk) :: bend = 0.0_rk  !< sine of the angle of this wing with its fracture [-]
+      real(rk) :: jump = 0.0_rk  !< length of a jump that is uncertain in time (twolevel_jumps) [m]
    end type tip_excess_t
 
    !> Estimated errors, and the data of the last tries and of the last step.
