@@ -7,7 +7,7 @@ module twolevel_state
    use base_timers, only: phase_mesh, phase_remesh, phase_tips, phase_transfer, timers_t
    use mesh_geometry, only: cell_area
    use coarse_in_situ, only: in_situ_state_t
-   use coarse_model, only: new_state, profiles_t, rest_fluid
+   use coarse_model, only: give_back, new_state, no_profiles, profiles_t, rest_fluid
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use growth_front, only: growth_rules_t
    use growth_network, only: fracture_length, network_of_scene
@@ -562,7 +562,13 @@ contains
       if (allocated(error)) return
       call timers%start(phase_transfer)
       associate (layers => self%problem%model%layers, state => self%now%coarse)
-         if (layers%n > 0) profiles = layers%profiles(state%unknowns, state%layer)
+         if (layers%n > 0) then
+            profiles = layers%profiles(state%unknowns, state%layer)
+            call layers%set_apart(map%cell_old, map%fracture_cell_old, state%unknowns, &
+                                  state%content, profiles)
+         else
+            profiles = no_profiles()
+         end if
       end associate
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
@@ -597,10 +603,14 @@ contains
       type(state_t), intent(inout) :: state
 
       associate (layers => problem%model%layers, mesh => problem%mesh)
-         if (layers%n == 0) return
+         if (layers%n == 0) then
+            call give_back(profiles, spread(.false., 1, size(profiles%cell)), mesh, &
+                           map%fracture_cell_old, state%content)
+            return
+         end if
          call insert_layers(mesh%n_cells, layers%n, state%unknowns)
-         call layers%take_profiles(profiles, map%cell_old, map%fracture_cell_old, state%unknowns, &
-                                   state%layer)
+         call layers%take_profiles(profiles, mesh, map%cell_old, map%fracture_cell_old, &
+                                   state%unknowns, state%layer, state%content)
       end associate
    end subroutine transfer_layers
 
