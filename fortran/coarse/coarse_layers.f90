@@ -653,10 +653,11 @@ contains
       end do
    end subroutine set_apart
 
-   !> Give the layers of a new mesh those before at the same faces: the same pressures beyond that of
-   !! the rest of the cell at the same distances from the face, and their content. Other layers have
-   !! the pressure of their cell.
-   subroutine take_profiles(self, before, mesh, cell_old, fracture_cell_old, unknowns, inner, content)
+   !> Give the layers of a new mesh those before at the same faces: the same pressures beyond that
+   !! of the rest of the cell at the same distances from the face, and their content. Other layers
+   !! have the pressure of their cell.
+   subroutine take_profiles(self, before, mesh, cell_old, fracture_cell_old, unknowns, inner, &
+                            content)
       class(layers_t), intent(in) :: self
       type(profiles_t), intent(in) :: before  !< set apart
       type(mesh_t), intent(in) :: mesh  !< new
