@@ -30,7 +30,7 @@ module coarse_layers
    implicit none(type, external)
    private
 
-   public :: layers_t, place_layers, profiles_t
+   public :: give_back, layers_t, no_profiles, place_layers, profiles_t
 
    type :: layers_t
       integer(ik) :: n = 0
@@ -67,6 +67,7 @@ module coarse_layers
       procedure :: find_pressure
       procedure :: profiles
       procedure :: take_profiles
+      procedure :: set_apart
    end type layers_t
 
    !> Pressures in the layers, for their transfer to another mesh.
@@ -75,6 +76,8 @@ module coarse_layers
       integer(ik), allocatable :: n(:)  !< nodes
       real(rk), allocatable :: place(:, :)  !< distance of the nodes from the face [m]
       real(rk), allocatable :: value(:, :)  !< (nodes, and then that of the rest of the cell) [Pa]
+      !> Content beyond that at the pressure of the rest of the cell, of layers that are kept [m2]
+      real(rk), allocatable :: excess(:)
    end type profiles_t
 
    !> A layer is at most this part of the distance of the centre of the cell from the face, and
@@ -572,6 +575,12 @@ contains
       found = (1.0_rk - t)*value(k) + t*value(k + 1)
    end function between_nodes
 
+   !> Those of a state without layers.
+   pure type(profiles_t) function no_profiles() result(none)
+      allocate (none%cell(0), none%face_of_cell(0), none%fracture_cell(0), none%side(0))
+      allocate (none%excess(0))
+   end function no_profiles
+
    !> The pressures in the layers of a state.
    pure function profiles(self, unknowns, inner) result(found)
       class(layers_t), intent(in) :: self
@@ -611,38 +620,80 @@ contains
 
    end function profiles
 
-   !> Give the layers of a new mesh the pressures of those before at the same faces: the same
-   !! pressures at the same distances from the face, the rest so that the mean remains that of the
-   !! cell. Other layers have the pressure of their cell.
-   subroutine take_profiles(self, before, cell_old, fracture_cell_old, unknowns, inner)
+   !> Take the excess of the layers at faces that are kept on another mesh out of their cells, which
+   !! keep the pressure of their rest: it is not transferred by areas.
+   pure subroutine set_apart(self, cell_old, fracture_cell_old, unknowns, content, found)
       class(layers_t), intent(in) :: self
-      type(profiles_t), intent(in) :: before
+      integer(ik), intent(in) :: cell_old(:)  !< (new cells) the same cell before; 0: none
+      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      real(rk), intent(inout) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
+      type(profiles_t), intent(inout) :: found  !< of `profiles`
+      real(rk) :: excess
+      integer(ik) :: i, k, l
+      logical :: is_kept
+
+      allocate (found%excess(self%n), source=0.0_rk)
+      do k = 1, size(self%cells, kind=ik)
+         do i = 1, self%of_cell%length(k)
+            l = self%of_cell%at(k, i)
+            if (self%fracture_cell(l) > 0) then
+               is_kept = any(fracture_cell_old == self%fracture_cell(l))
+            else
+               is_kept = any(cell_old == self%cell(l))
+            end if
+            if (.not. is_kept) cycle
+            associate (chain => self%chain(l), n => self%chain(l)%n, cell => self%cell(l))
+               excess = dot_product(chain%volume, found%value(:n, l) - found%value(n + 1, l))
+               found%excess(l) = self%storage(k)*excess
+               content(cell) = content(cell) - found%excess(l)
+               unknowns(3, cell) = unknowns(3, cell) - excess/self%volume(k)
+            end associate
+         end do
+      end do
+   end subroutine set_apart
+
+   !> Give the layers of a new mesh those before at the same faces: the same pressures beyond that
+   !! of the rest of the cell at the same distances from the face, and their content. Other layers
+   !! have the pressure of their cell.
+   subroutine take_profiles(self, before, mesh, cell_old, fracture_cell_old, unknowns, inner, &
+                            content)
+      class(layers_t), intent(in) :: self
+      type(profiles_t), intent(in) :: before  !< set apart
+      type(mesh_t), intent(in) :: mesh  !< new
       integer(ik), intent(in) :: cell_old(:)  !< (n_cells) the same cell before; 0: none
       integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
       real(rk), intent(inout) :: unknowns(:, :)  !< (3, n_blocks); those of the layers are set
       real(rk), allocatable, intent(out) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
       real(rk) :: value(self%n_nodes)
-      real(rk) :: content
+      real(rk) :: excess, rest
+      logical :: is_taken(size(before%cell))
       integer(ik) :: i, k, l, old
 
+      is_taken = .false.
       call self%begin(unknowns, inner)
       do k = 1, size(self%cells, kind=ik)
-         content = self%volume(k)*unknowns(3, self%cells(k))
+         excess = 0.0_rk
+         rest = unknowns(3, self%cells(k))
          do i = 1, self%of_cell%length(k)
             l = self%of_cell%at(k, i)
-            associate (chain => self%chain(l), n => self%chain(l)%n)
-               value = unknowns(3, self%cells(k))
-               old = same_layer(l)
-               if (old > 0) value(:n) = interpolated(before%place(:before%n(old), old), &
-                                                     before%value(:before%n(old) + 1, old), &
-                                                     chain%place)
-               inner(:n - 1, l) = value(:n - 1)
-               unknowns(1, (self%at(2, l) + 2)/3) = value(n)
-               content = content - dot_product(chain%volume, value(:n))
+            old = same_layer(l)
+            if (old == 0) cycle
+            is_taken(old) = .true.
+            content(self%cells(k)) = content(self%cells(k)) + before%excess(old)
+            associate (chain => self%chain(l), n => self%chain(l)%n, m => before%n(old))
+               value(:n) = interpolated(before%place(:m, old), &
+                                        before%value(:m + 1, old) - before%value(m + 1, old), &
+                                        chain%place)
+               excess = excess + dot_product(chain%volume, value(:n))
+               inner(:n - 1, l) = rest + value(:n - 1)
+               unknowns(1, (self%at(2, l) + 2)/3) = rest + value(n)
             end associate
          end do
-         unknowns(3, (self%at(2, self%of_cell%at(k, 1_ik)) + 2)/3) = content/self%rest(k)
+         unknowns(3, self%cells(k)) = rest + excess/self%volume(k)
       end do
+      call give_back(before, is_taken, mesh, fracture_cell_old, content)
 
    contains
 
@@ -651,19 +702,36 @@ contains
          integer(ik), intent(in) :: l
 
          same_layer = 0
-         if (.not. allocated(before%cell)) return
-         if (cell_old(self%cell(l)) > 0) then
+         if (self%fracture_cell(l) > 0) then
+            if (fracture_cell_old(self%fracture_cell(l)) == 0) return
+            same_layer = findloc(before%fracture_cell == fracture_cell_old(self%fracture_cell(l)) &
+                                 .and. before%side == self%side(l), .true., dim=1)
+         else if (cell_old(self%cell(l)) > 0) then
             same_layer = findloc(before%cell == cell_old(self%cell(l)) .and. &
                                  before%face_of_cell == self%face_of_cell(l), .true., dim=1)
-            if (same_layer > 0) return
          end if
-         if (self%fracture_cell(l) == 0) return
-         if (fracture_cell_old(self%fracture_cell(l)) == 0) return
-         same_layer = findloc(before%fracture_cell == fracture_cell_old(self%fracture_cell(l)) &
-                              .and. before%side == self%side(l), .true., dim=1)
       end function same_layer
 
    end subroutine take_profiles
+
+   !> Give the content of layers whose face has none on the new mesh to the cell there.
+   pure subroutine give_back(before, is_taken, mesh, fracture_cell_old, content)
+      type(profiles_t), intent(in) :: before
+      logical, intent(in) :: is_taken(:)  !< layers that the new mesh has
+      type(mesh_t), intent(in) :: mesh  !< new
+      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
+      integer(ik) :: at, old
+
+      do old = 1, size(is_taken, kind=ik)
+         if (is_taken(old) .or. .not. abs(before%excess(old)) > 0.0_rk) cycle
+         at = findloc(fracture_cell_old, before%fracture_cell(old), dim=1)
+         if (at == 0) cycle
+         associate (cell => mesh%face_cells(1, mesh%fracture%cell_faces(before%side(old), at)))
+            content(cell) = content(cell) + before%excess(old)
+         end associate
+      end do
+   end subroutine give_back
 
    !> Linear interpolation between nodes; the first value holds up to the first node, the last one,
    !! of the rest of the cell, beyond the last node.

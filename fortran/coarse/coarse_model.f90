@@ -15,7 +15,7 @@ module coarse_model
    use coarse_fractures, only: flow_paths_t, newton_settings_t
    use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
-   use coarse_layers, only: layers_t, place_layers, profiles_t
+   use coarse_layers, only: give_back, layers_t, no_profiles, place_layers, profiles_t
    use coarse_joints, only: find_joints, joints_t, renew_outlets
    use coarse_matrix, only: matrix_t
    use coarse_newton, only: fracture_problem_t, solve_fractures
@@ -34,7 +34,7 @@ module coarse_model
    implicit none(type, external)
    private
 
-   public :: coarse_model_t, new_state, profiles_t, rest_fluid
+   public :: coarse_model_t, give_back, new_state, no_profiles, profiles_t, rest_fluid
 
    !> Discretized body on one mesh.
    type, extends(fracture_problem_t) :: coarse_model_t

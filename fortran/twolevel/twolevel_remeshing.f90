@@ -5,7 +5,7 @@ submodule(twolevel_state) twolevel_remeshing
    use base_plane, only: norm2
    use base_timers, only: phase_remesh, phase_transfer
    use base_tolerances, only: same_place
-   use coarse_model, only: profiles_t, rest_fluid
+   use coarse_model, only: give_back, no_profiles, profiles_t, rest_fluid
    use mesh_builder, only: remesh
    use mesh_types, only: mesh_map_t
    use twolevel_setup, only: choose_first_step
@@ -68,7 +68,13 @@ contains
       if (allocated(error)) return
       call timers%start(phase_transfer)
       associate (layers => self%problem%model%layers, state => self%now%coarse)
-         if (layers%n > 0) profiles = layers%profiles(state%unknowns, state%layer)
+         if (layers%n > 0) then
+            profiles = layers%profiles(state%unknowns, state%layer)
+            call layers%set_apart(map%cell_old, map%fracture_cell_old, state%unknowns, &
+                                  state%content, profiles)
+         else
+            profiles = no_profiles()
+         end if
       end associate
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
@@ -95,10 +101,14 @@ contains
       type(state_t), intent(inout) :: state
 
       associate (layers => problem%model%layers, mesh => problem%mesh)
-         if (layers%n == 0) return
+         if (layers%n == 0) then
+            call give_back(profiles, spread(.false., 1, size(profiles%cell)), mesh, &
+                           map%fracture_cell_old, state%content)
+            return
+         end if
          call insert_layers(mesh%n_cells, layers%n, state%unknowns)
-         call layers%take_profiles(profiles, map%cell_old, map%fracture_cell_old, state%unknowns, &
-                                   state%layer)
+         call layers%take_profiles(profiles, mesh, map%cell_old, map%fracture_cell_old, &
+                                   state%unknowns, state%layer, state%content)
       end associate
    end subroutine transfer_layers
 
