@@ -16,7 +16,7 @@ submodule(twolevel_state) twolevel_simulation
    use twolevel_refinement, only: find_refinements, note_uncertain_tips, refine_windows
    use twolevel_schedule, only: follow_sides
    use twolevel_setup, only: choose_first_step, coarse_spec, first_cells, keep_above_zero, &
-                              pressure_scale, rest_joints, rules_of_scene
+                             pressure_scale, rest_joints, rules_of_scene
    use twolevel_wells, only: share_wells
    implicit none(type, external)
 

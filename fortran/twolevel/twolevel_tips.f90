@@ -52,7 +52,7 @@ contains
             if (.not. tips(i)%is_loaded()) cycle
             if (.not. any(active(windows%served_with(i)))) cycle
             call now%windows%tip(i)%note_jump(tip_jump(problem, now, tips(i)), tips(i)%xy, &
-                                                now%undrained)
+                                              now%undrained)
          end do
       end associate
    end subroutine find_tip_intensities

@@ -176,7 +176,7 @@ contains
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       call checks%no_error(error, "plate is held")
       call checks%is_true(real(model%constraints%n_dofs, rk) <= 5000.0_rk/finer**2, &
-                           "at most 5000 unknowns, or four times as many")
+                          "at most 5000 unknowns, or four times as many")
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "plate is solved")
       call intensity_of_tip(model, loads, displacement, 1_ik, dimensionless, error)
