@@ -14,7 +14,8 @@ module twolevel_setup
    implicit none(type, external)
    private
 
-   public :: choose_first_step, coarse_spec, first_cells, keep_above_zero, pressure_scale, rest_joints, rules_of_scene
+   public :: choose_first_step, coarse_spec, first_cells, keep_above_zero, pressure_scale
+   public :: rest_joints, rules_of_scene
 
    !> Relative deficit of K_eq within which tips grow along with the first: the two methods for the
    !! intensities differ by about as much [-].
