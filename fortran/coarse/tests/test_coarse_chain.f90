@@ -1,7 +1,7 @@
 !> Chains of volumes against closed forms of the half-space: a constant scalar at the face, a
 !! constant flux, and a constant supply to a face that stores too; steady flow, balance, symmetry.
 program test_coarse_chain
-   use base_kinds, only: ik, pi, rk
+   use base_kinds, only: pi, rk
    use coarse_chain, only: chain_t, new_chain, node_count
    use testing_checks, only: checks_t
    implicit none(type, external)
