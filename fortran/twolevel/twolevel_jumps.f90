@@ -23,6 +23,7 @@ module twolevel_jumps
       real(rk), allocatable, private :: remaining(:)  !< (tips) error of its time that is left [s]
       type(approach_t), allocatable, private :: rest(:)  !< (tips) K_eq since the last growth
       real(rk), allocatable, private :: speed(:)  !< (tips) in equilibrium in the last step [m/s]
+      real(rk), allocatable, private :: late(:)  !< (tips) error of the position over the speed [s]
       logical, allocatable, private :: jumps(:)  !< (tips) the tip has jumped in this step
    contains
       procedure :: begin
@@ -37,18 +38,17 @@ contains
       class(jumps_t), intent(out) :: self
       integer, intent(in) :: n  !< tips
 
-      allocate (self%length(n), self%remaining(n), self%speed(n), source=0.0_rk)
+      allocate (self%length(n), self%remaining(n), self%speed(n), self%late(n), source=0.0_rk)
       allocate (self%jumps(n), source=.false.)
       allocate (self%rest(n))
    end subroutine begin
 
    !> Report a step without equilibrium: the tips that have advanced in it, from where, how far, and
    !! the change of the well pressure.
-   subroutine note(self, tips, from, position_error, toughness, pressure, time, chronicle, summary)
+   subroutine note(self, tips, from, toughness, pressure, time, chronicle, summary)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: from(:, :)  !< (2, tips) positions before the step [m]
-      real(rk), intent(in) :: position_error(:)  !< (tips) errors of these positions [m]
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: pressure(2)  !< well pressure before and after the step [Pa]
       real(rk), intent(in) :: time  !< [s]
@@ -65,7 +65,7 @@ contains
          associate (tip => tips(i))
             if (.not. tip%advance > 0.0_rk) cycle
             error = self%rest(i)%uncertainty(tolerance*tip%scale_of(toughness))
-            if (self%speed(i) > 0.0_rk) error = position_error(i)/self%speed(i)
+            if (self%speed(i) > 0.0_rk) error = self%late(i)
             certainty = "time known to "//brief_text(error, 3)//" s"
            if (.not. error < huge(1.0_rk)) certainty = "time error unknown: K_eq was not increasing"
             call chronicle%add_event(time, event_growth_jump, "grows by "// &
@@ -82,10 +82,11 @@ contains
 
    !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps
    !! [m].
-   pure subroutine follow(self, tips, toughness, dt, time, error)
+   pure subroutine follow(self, tips, toughness, position_error, dt, time, error)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: position_error(:)  !< (tips) without jumps [m]
       real(rk), intent(in) :: dt, time  !< [s]
       real(rk), intent(out) :: error(:)  !< (tips) [m]
       real(rk) :: uncertainty(size(tips))
@@ -98,6 +99,7 @@ contains
       self%speed = 0.0_rk
       if (dt > 0.0_rk) where (.not. (rests .or. self%jumps)) self%speed = tips%advance/dt
       self%jumps = .false.
+      where (self%speed > 0.0_rk) self%late = position_error/self%speed
       call self%rest%follow(time, tips%drive%intensity, uncertainty, toughness)
       error = 0.0_rk
       where (self%remaining > 0.0_rk .or. &

@@ -204,7 +204,7 @@ contains
       type(levels_state_t), intent(inout) :: now
       type(jumps_t), intent(inout) :: jumps
       type(tip_excess_t) :: tips(size(front%tip))
-      real(rk) :: leaked
+      real(rk) :: leaked, position_error(size(front%tip))
       integer(ik) :: i
 
       leaked = 0.0_rk
@@ -217,7 +217,9 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
-         call jumps%follow(tip, toughness, dt, now%coarse%time, tips%jump)
+         position_error = 0.0_rk
+         if (allocated(now%stated_errors%tip)) position_error = now%stated_errors%tip
+         call jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump)
          do i = 1, size(tips, kind=ik)
             call find_wing(scene%fractures(tip(i)%fracture), tip(i), tips(i)%wing, tips(i)%bend)
          end do

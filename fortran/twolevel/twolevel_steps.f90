@@ -261,7 +261,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
    !> Report the tips that have advanced without equilibrium.
    subroutine note_jumps(self)
       class(two_levels_t), intent(inout) :: self
-      real(rk) :: error(size(self%tip)), from(2, size(self%tip)), pressure(2)
+      real(rk) :: from(2, size(self%tip)), pressure(2)
       integer :: i
 
       do i = 1, size(self%tip)
@@ -269,9 +269,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       end do
       pressure = [self%problem%well_pressure(self%scene, self%before), &
                   self%problem%well_pressure(self%scene, self%now%coarse)]
-      error = 0.0_rk
-      if (allocated(self%now%stated_errors%tip)) error = self%now%stated_errors%tip
-      call self%notes%jumps%note(self%tip, from, error, self%rules%toughness, pressure, &
+      call self%notes%jumps%note(self%tip, from, self%rules%toughness, pressure, &
                                  self%now%coarse%time, self%chronicle, self%summary)
    end subroutine note_jumps
 

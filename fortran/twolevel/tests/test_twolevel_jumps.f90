@@ -8,6 +8,7 @@ program test_twolevel_jumps
    implicit none(type, external)
 
    real(rk), parameter :: toughness = 1.0e6_rk  ! [Pa m^1/2]
+   real(rk), parameter :: position_error(2) = 3.0e-3_rk  ! [m]
 
    type(checks_t) :: checks
 
@@ -34,10 +35,10 @@ contains
    end subroutine set
 
    !> A jump of one of two tips by 0.1 m.
-   subroutine jump(jumps, tip, position_error, chronicle, summary)
+   subroutine jump(jumps, tip, is_known, chronicle, summary)
       type(jumps_t), intent(inout) :: jumps
       type(tip_t), intent(inout) :: tip(2)
-      real(rk), intent(in) :: position_error  !< [m]
+      logical, intent(in) :: is_known  !< the error of its time is
       type(chronicle_t), intent(inout) :: chronicle
       type(summary_t), intent(inout) :: summary
       real(rk) :: error(2)
@@ -45,12 +46,11 @@ contains
 
       tip(1)%advance = 0.1_rk
       tip(2)%advance = 0.0_rk
-      call jumps%note(tip, from, [position_error, position_error], toughness, &
-                      [3.0e6_rk, 2.0e6_rk], 10.0_rk, chronicle, summary)
+      call jumps%note(tip, from, toughness, [3.0e6_rk, 2.0e6_rk], 10.0_rk, chronicle, summary)
       call set(tip, 0.8_rk, 0.05_rk, 0.0_rk)
       tip(1)%advance = 0.1_rk
-      call jumps%follow(tip, toughness, 1.0e-3_rk, 10.0_rk, error)
-      call checks%is_close(error(1), merge(0.1_rk, 0.0_rk, position_error > 0.0_rk), 1.0e-15_rk, &
+      call jumps%follow(tip, toughness, position_error, 1.0e-3_rk, 10.0_rk, error)
+      call checks%is_close(error(1), merge(0.1_rk, 0.0_rk, is_known), 1.0e-15_rk, &
                            "right after the jump")
       call checks%is_close(error(2), 0.0_rk, 0.0_rk, "the other tip")
    end subroutine jump
@@ -70,19 +70,19 @@ contains
       call jumps%begin(2)
       do second = 1, 9
          call set(tip, 0.1_rk*second, 0.05_rk, 0.0_rk)
-         call jumps%follow(tip, toughness, 1.0_rk, real(second, rk), error)
+         call jumps%follow(tip, toughness, position_error, 1.0_rk, real(second, rk), error)
          call checks%is_close(maxval(error), 0.0_rk, 0.0_rk, "no jump so far")
       end do
-      call jump(jumps, tip, 1.0e-3_rk, chronicle, summary)
+      call jump(jumps, tip, .true., chronicle, summary)
       call checks%is_true(size(chronicle%events) == 1, "one event")
       call checks%is_true(chronicle%events(1)%kind == event_growth_jump, "kind")
       call checks%is_close(chronicle%events(1)%xy(1), 1.0_rk, 0.0_rk, "where it begins")
       call checks%is_true(summary%growth_jumps == 1, "one jump")
       call checks%is_close(summary%longest_jump, 0.1_rk, 0.0_rk, "longest jump")
       call set(tip, 0.8_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, 0.45_rk, 10.45_rk, error)
+      call jumps%follow(tip, toughness, position_error, 0.45_rk, 10.45_rk, error)
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "0.45 s later")
-      call jumps%follow(tip, toughness, 0.15_rk, 10.6_rk, error)
+      call jumps%follow(tip, toughness, position_error, 0.15_rk, 10.6_rk, error)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "0.6 s later")
    end subroutine test_rest
 
@@ -97,12 +97,12 @@ contains
       call chronicle%clear()
       call jumps%begin(2)
       call set(tip, 1.0_rk, 0.01_rk, 2.0e-3_rk)
-      call jumps%follow(tip, toughness, 2.0_rk, 2.0_rk, error)
-      call jump(jumps, tip, 3.0e-3_rk, chronicle, summary)
+      call jumps%follow(tip, toughness, position_error, 2.0_rk, 2.0_rk, error)
+      call jump(jumps, tip, .true., chronicle, summary)
       call set(tip, 0.8_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, 2.9_rk, 12.9_rk, error)
+      call jumps%follow(tip, toughness, position_error, 2.9_rk, 12.9_rk, error)
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "2.9 s later")
-      call jumps%follow(tip, toughness, 0.2_rk, 13.1_rk, error)
+      call jumps%follow(tip, toughness, position_error, 0.2_rk, 13.1_rk, error)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "3.1 s later")
    end subroutine test_speed
 
@@ -117,13 +117,13 @@ contains
       call chronicle%clear()
       call jumps%begin(2)
       call set(tip, 0.5_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, 1.0_rk, 1.0_rk, error)
-      call jump(jumps, tip, 0.0_rk, chronicle, summary)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 1.0_rk, error)
+      call jump(jumps, tip, .false., chronicle, summary)
       call set(tip, 0.94_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, 1.0_rk, 11.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 11.0_rk, error)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "below K_IC")
       call set(tip, 0.96_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, 1.0_rk, 12.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 12.0_rk, error)
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "K_IC within the error")
       call checks%is_close(error(2), 0.0_rk, 0.0_rk, "the other tip has not jumped")
    end subroutine test_next
