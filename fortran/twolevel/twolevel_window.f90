@@ -108,8 +108,8 @@ contains
       self%element_size = other%element_size
       self%times_larger = other%times_larger
       self%usual_edge = other%usual_edge
-      self%made = other%made
-      self%follows_other = .true.
+      if (allocated(other%made)) self%made = other%made
+      self%follows_other = allocated(self%made)
       self%sides = other%sides
       call self%model%take_order(other%model)
    end subroutine take_plan

@@ -270,7 +270,8 @@ contains
       logical :: follows
 
       call history%leave_mesh(slot%window%model%mesh)
-      if (allocated(slot%window%made) .and. .not. allocated(slot%kept)) then
+      ! Also where it is to be meshed again: the contact of the accepted state is on this mesh.
+      if (slot%window%model%mesh%n_nodes > 0 .and. .not. allocated(slot%kept)) then
          call move_alloc(slot%window, slot%kept)
          allocate (slot%window)
          call slot%window%take_plan(slot%kept)
