@@ -35,7 +35,8 @@ def test_a_run_ends_at_the_gain_asked_for(
     assert isinstance(reason, str)
     assert reason.endswith("has gained stop_gain")
     reached = numbers(out / "history.csv", "fracture_length_m")[-1]
-    error = max(numbers(out / "history.csv", "fracture_length_error_m")[-1], 0.0)
+    # Equal wings may part within their errors, which are stated with a fluid.
+    error = max(float(rows(out / "history.csv")[-1].get("fracture_length_error_m", 0.0)), 0.0)
     assert reached <= (length + ends * gain) * (1.0 + 1e-9)
     assert reached >= (length + ends * gain) * (1.0 - 1e-9) - error
     gained: dict[str, float] = {}

@@ -54,7 +54,7 @@ def test_a_toughness_below_the_scale(tmp_path: Path, toughness: float) -> None:
     excess = [float(tip["keq_pa_sqrtm"]) - present for tip in tips]
     assert max(excess) <= 0.01 * SCALE
     grown = [x for x, tip in zip(excess, tips, strict=True) if float(tip["advance_m"]) > 0.0]
-    assert len(grown) > 10
+    assert len(grown) > 5
     assert np.mean(np.abs(grown) <= 0.0051 * SCALE) > 0.9
     length, pressure, error = columns(
         out, "fracture_length_m", "well_pressure_pa", "well_pressure_error_pa"
