@@ -1,10 +1,10 @@
 !> Growth by jumps: tips that advance without equilibrium until they arrest.
 !!
 !! The time of a jump has an error: that of K_eq over the rate of K_eq where the tip was at rest, or
-!! that of its position over its speed where it grew in equilibrium. Until this time has passed after
-!! a jump, it may not yet have happened; and a tip at rest that has jumped before may jump again as
-!! soon as K_eq equals K_IC within its error. In both cases the length of the jump is part of the
-!! error of the position.
+!! that of its position over its speed where it grew in equilibrium. Until this time has passed
+!! after a jump, it may not yet have happened; and a tip at rest that has jumped before may jump
+!! again as soon as K_eq equals K_IC within its error. In both cases the length of the jump is part
+!! of the error of the position.
 module twolevel_jumps
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
