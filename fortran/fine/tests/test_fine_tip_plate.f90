@@ -46,21 +46,14 @@ program test_fine_tip_plate
    end do
 
    ! Under tractions alone K does not depend on Poisson's ratio. The collapsed elements pass; the
-   ! triangles, whose strain varies less around the tip, lock by some per cent. At 0.49 the error
-   ! decreases with the elements; at 0.4999 it depends on the mesh (0.1 to 0.7 % in five meshes).
-   do i = 1, 2
-      associate (poisson => [0.49_rk, 0.4999_rk], tolerance => [1.0e-3_rk, 1.0e-2_rk])
-         call solve(tension, tip_collapsed, 1.0_rk, 1.0_rk, poisson(i), intensity, energy, exact)
-         print "(a,f7.4,a,2f9.4)", "Poisson's ratio", poisson(i), &
-            ", plane strain: errors of K_I and K_I inner in %", &
-            100.0_rk*(intensity%k1/2.825457622_rk - 1.0_rk), &
-            100.0_rk*(intensity%k1_inner/2.825457622_rk - 1.0_rk)
-         call checks%is_close(intensity%k1/2.825457622_rk, 1.0_rk, tolerance(i), &
-                              "nearly incompressible")
-         call checks%is_close(intensity%k1_inner/2.825457622_rk, 1.0_rk, tolerance(i), &
-                              "nearly incompressible, inner domain")
-      end associate
-   end do
+   ! triangles, whose strain varies less around the tip, lock by some per cent.
+   call solve(tension, tip_collapsed, 1.0_rk, 1.0_rk, 0.4999_rk, intensity, energy, exact)
+   print "(a,2f9.4)", "Poisson's ratio 0.4999, plane strain: errors of K_I and K_I inner in %", &
+      100.0_rk*(intensity%k1/2.825457622_rk - 1.0_rk), &
+      100.0_rk*(intensity%k1_inner/2.825457622_rk - 1.0_rk)
+   call checks%is_close(intensity%k1/2.825457622_rk, 1.0_rk, 1.0e-3_rk, "nearly incompressible")
+   call checks%is_close(intensity%k1_inner/2.825457622_rk, 1.0_rk, 2.0e-3_rk, &
+                        "nearly incompressible, inner domain")
    call checks%finish()
 
 contains
@@ -130,20 +123,19 @@ contains
       type(tip_probe_t) :: probe
       real(rk) :: moment(2)
       integer(ik) :: i
-      real(rk) :: finer, scale
+      real(rk) :: scale
 
-      finer = merge(1.0_rk, 0.5_rk, poisson < 0.4_rk)
       network = network_t(first=[1_ik, 3_ik], s_start=[0.0_rk], &
                           xy=reshape([-0.1_rk, 0.0_rk, 0.5_rk, 0.0_rk], [2, 2]))
       spec%x_min = 0.0_rk
       spec%x_max = 1.0_rk
       spec%y_min = -1.0_rk
       spec%y_max = 1.0_rk
-      spec%size_fracture = finer*0.02_rk
-      spec%size_boundary = finer*0.15_rk
+      spec%size_fracture = 0.02_rk
+      spec%size_boundary = 0.15_rk
       spec%is_window = .true.
       spec%rosette_sectors = 12
-      spec%rosette_radius = finer*0.02_rk
+      spec%rosette_radius = 0.02_rk
       call build_mesh(spec, network, mesher, mesh, error)
       call checks%no_error(error, "plate is meshed")
       mesh%xy = b*mesh%xy
@@ -175,8 +167,7 @@ contains
       end if
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       call checks%no_error(error, "plate is held")
-      call checks%is_true(real(model%constraints%n_dofs, rk) <= 5000.0_rk/finer**2, &
-                          "at most 5000 unknowns, or four times as many")
+      call checks%is_true(model%constraints%n_dofs <= 5000, "at most 5000 unknowns")
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "plate is solved")
       call intensity_of_tip(model, loads, displacement, 1_ik, dimensionless, error)

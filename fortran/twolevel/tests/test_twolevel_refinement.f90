@@ -134,8 +134,7 @@ contains
       call checks%is_true(size(simulation%chronicle%events) == 2, "an event for each")
       call evaluate(simulation)
       associate (now => simulation%tip%intensity)
-         ! 0.1 to 2.9 % off in eight meshes.
-         call checks%is_true(all(abs(now%k2 - known) < 0.05_rk*known), "K is better then")
+         call checks%is_true(all(abs(now%k2 - known) < 0.02_rk*known), "K is right then")
          call checks%is_true(all(abs(now%k2 - known) <= now%k2_error + finite*known), &
                              "within its error")
       end associate
