@@ -63,6 +63,7 @@ module contact_law
       procedure :: friction_at
       procedure :: dilated
       procedure :: closure
+      procedure :: joint_pressure
       procedure :: spring
       procedure :: apart
       procedure :: is_bonded
@@ -232,6 +233,21 @@ contains
       closed = self%compliance*pressure*stiffer - self%closure_at_rest
       slope = self%compliance*stiffer**2
    end subroutine closure
+
+   !> Pressure s between the faces of a joint that closes, from their jump: the inverse of `closure`.
+   !! Zero where the faces are apart, and for laws without closure.
+   pure real(rk) function joint_pressure(self, jump) result(pressure)
+      class(contact_law_t), intent(in) :: self
+      real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]
+      real(rk) :: closed, gap, slope
+
+      pressure = 0.0_rk
+      call self%dilated(jump(2), sign(1.0_rk, jump(2)), gap, slope)
+      closed = gap - jump(1) + self%closure_at_rest
+      if (.not. (self%compliance > 0.0_rk .and. closed > 0.0_rk)) return
+      if (.not. closed*self%closure_end < 1.0_rk) return  ! the law has a pole there
+      pressure = closed/(self%compliance*(1.0_rk - closed*self%closure_end))
+   end function joint_pressure
 
    !> Factor of the normal equation: c in series with the stiffness of the joint [Pa/m].
    elemental real(rk) function spring(self, stiffness)

@@ -5,10 +5,10 @@
 !! The traction on the fracture faces, for the interaction integral.
 module fine_tip_domain
    use base_kinds, only: ik, rk
-   use base_plane, only: norm2, point_distance
+   use base_plane, only: norm2, point_distance, turned_left
    use base_tolerances, only: same_direction, same_place
    use fine_elasticity, only: is_same, rocks_t
-   use fine_element, only: line_resultants, tip_rule, tip_rule_size
+   use fine_element, only: line_resultants, line_shapes, tip_rule, tip_rule_size
    use fine_faces, only: face_contact, face_jump, face_loaded
    use fine_loads, only: fine_loads_t, volume_forces
    use fine_mesh, only: fine_mesh_t
@@ -17,8 +17,8 @@ module fine_tip_domain
    implicit none(type, external)
    private
 
-   public :: domain_weight, element_rule, face_traction, in_situ_stress, largest_radius
-   public :: reference_angle, rosette_size, traction_source
+   public :: domain_weight, element_rule, face_traction, in_situ_stress, is_joint, joint_deviation
+   public :: largest_radius, reference_angle, rosette_size, traction_source
 
 contains
 
@@ -186,6 +186,49 @@ contains
       share = line_resultants(model%mesh%face_tip(cell))
       traction = force(:, k)/(share(3)*model%mesh%face_length(cell))
    end function face_traction
+
+   !> Whether the faces of a fracture cell close under pressure, so that their traction follows from
+   !! their jump.
+   pure logical function is_joint(model, cell)
+      type(fine_model_t), intent(in) :: model
+      integer(ik), intent(in) :: cell  !< fracture cell
+
+      is_joint = model%conditions%condition(cell) == face_contact
+      if (is_joint) is_joint = model%conditions%law(cell)%contact%compliance > 0.0_rk
+   end function is_joint
+
+   !> Traction on side + at a point of a joint, less that of its middle, in x and y: the law at the
+   !! interpolated jump. The faces slide with friction where they do so in the middle.
+   !!
+   !! At the tip the jump is zero, so the joint bears the pressure that it had at rest, and within
+   !! one element often nothing: the traction of the middle then leaves K several per cent too small.
+   pure function joint_deviation(model, loads, displacement, cell, x) result(deviation)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      integer(ik), intent(in) :: cell  !< fracture cell of a joint
+      real(rk), intent(in) :: x  !< parameter of the shape functions along it, 0 to 1 [-]
+      real(rk) :: deviation(2)  !< [Pa]
+      real(rk), parameter :: slides = 1.0e-6_rk  !< distance of the traction from friction [-]
+      real(rk) :: axes(2, 2), jump(2, 3), traction(2), difference
+
+      associate (plus => model%mesh%face_nodes(:, 1, cell), &
+                 minus => model%mesh%face_nodes(:, 2, cell), &
+                 tau => model%mesh%face_tangent(:, cell), &
+                 law => model%conditions%law(cell)%contact)
+         axes(1, :) = turned_left(tau)
+         axes(2, :) = tau
+         jump = matmul(axes, displacement(:, minus) - displacement(:, plus))
+         difference = law%joint_pressure(jump(:, 3)) &
+                      - law%joint_pressure(matmul(jump, line_shapes(x)))
+         deviation = difference*axes(1, :)
+         traction = matmul(axes, face_traction(model, loads, displacement, cell))
+         traction(1) = traction(1) + loads%fluid_pressure(cell)
+         if (.not. abs(traction(2)) >= (1.0_rk - slides)*law%friction*abs(traction(1))) return
+         if (.not. traction(1) < 0.0_rk) return
+         deviation = deviation + difference*traction(2)/traction(1)*tau
+      end associate
+   end function joint_deviation
 
    !> The cell whose traction stands for that of a cell near the tip.
    !!

@@ -19,7 +19,7 @@ module fine_tip_energy
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: domain_weight, element_rule, face_traction, in_situ_stress, &
-                              traction_source
+                              is_joint, joint_deviation, traction_source
    use fine_tip_types, only: tip_frame_t
    implicit none(type, external)
    private
@@ -130,7 +130,7 @@ contains
       slope = slope/(2.0_rk*triangle_area(place))
    end function slope_along
 
-   !> The traction of one fracture cell on the slope of its jump. In the parameter x of its shape
+   !> The traction of one fracture cell, constant but for joints, on the slope of its jump. In the parameter x of its shape
    !! functions the slope times ds is d[u]/dx dx, whether or not its middle node is at the quarter
    !! point.
    pure real(rk) function face_share(model, loads, displacement, frame, reference_stress, cell, q)
@@ -142,19 +142,27 @@ contains
       integer(ik), intent(in) :: cell
       real(rk), intent(in) :: q(:)  !< (n_nodes) [-]
       integer(ik), parameter :: n_points = 3  ! exact: q and the slope have degrees 2 and 1
-      real(rk) :: x(n_points), weights(n_points), traction(2), jump(2, 3), q_here, slope(2), along
-      integer(ik) :: point
+      integer(ik), parameter :: n_joint = 8  ! for the traction of a joint
+      real(rk) :: x(n_joint), weights(n_joint), mean(2), traction(2), jump(2, 3), q_here, slope(2)
+      real(rk) :: along
+      integer(ik) :: n, point
 
-      call gauss_rule(n_points, x, weights)
-      traction = matmul(frame%axes, face_traction(model, loads, displacement, &
-                                                  traction_source(model, frame, cell))) &
-                 - frame%upper*reference_stress(:, 2)
+      n = merge(n_joint, n_points, is_joint(model, cell))
+      call gauss_rule(n, x(:n), weights(:n))
+      mean = matmul(frame%axes, face_traction(model, loads, displacement, &
+                                              traction_source(model, frame, cell))) &
+             - frame%upper*reference_stress(:, 2)
       face_share = 0.0_rk
       associate (plus => model%mesh%face_nodes(:, 1, cell), &
                  minus => model%mesh%face_nodes(:, 2, cell))
          jump = matmul(frame%axes, displacement(:, minus) - displacement(:, plus))
          along = sign(1.0_rk, dot_product(frame%axes(1, :), model%mesh%face_tangent(:, cell)))
-         do point = 1, n_points
+         do point = 1, n
+            traction = mean
+            if (is_joint(model, cell)) then
+               traction = mean + matmul(frame%axes, joint_deviation(model, loads, displacement, &
+                                                                    cell, x(point)))
+            end if
             associate (share => line_shapes(x(point)))
                q_here = share(1)*q(plus(1)) + share(2)*q(plus(2)) + share(3)*q(plus(3))
             end associate

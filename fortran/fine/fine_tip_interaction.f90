@@ -26,13 +26,15 @@ module fine_tip_interaction
    use fine_loads, only: fine_loads_t
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: domain_weight, element_rule, face_traction, in_situ_stress, &
-                              reference_angle, traction_source
+                              is_joint, joint_deviation, reference_angle, traction_source
    use fine_tip_field, only: auxiliary_field, auxiliary_field_t, root_of_place
    use fine_tip_types, only: tip_frame_t
    implicit none(type, external)
    private
 
    public :: interaction_integrals, interactions_t, tip_probe_t
+
+   integer(ik), parameter :: joint_points = 8  !< Gauss points of a cell of a joint
 
    !> The integrals of both modes on some domains about a tip of one mesh.
    type :: interactions_t
@@ -47,7 +49,12 @@ module fine_tip_interaction
       integer(ik), allocatable :: face(:)  !< fracture cells in the largest domain
       !> (2, modes, domains, faces) and of their tractions, in the tip's axes.
       real(rk), allocatable :: by_traction(:, :, :, :)
+      integer(ik), allocatable :: joint(:)  !< faces whose traction varies within the cell
+      !> (2, modes, domains, points, joints) of their tractions at points, less that of the middle
+      real(rk), allocatable :: by_deviation(:, :, :, :, :)
+      real(rk), allocatable :: place(:, :)  !< (points, joints) parameter of these points [-]
    contains
+      procedure :: by_joints
       procedure :: intensities
       procedure :: extraction_forces
    end type interactions_t
@@ -99,8 +106,17 @@ contains
             end if
          end do
       end associate
+      self%joint = pack([(i, i=1, size(self%face, kind=ik))], &
+                        [(is_joint(model, self%face(i)), i=1, size(self%face))])
+      associate (n_joints => size(self%joint))
+         allocate (self%by_deviation(2, 2, size(radii), joint_points, n_joints), source=0.0_rk)
+         allocate (self%place(joint_points, n_joints), source=0.0_rk)
+      end associate
       do i = 1, size(self%face, kind=ik)
          call set_face(self, model, i, q)
+      end do
+      do i = 1, size(self%joint, kind=ik)
+         call set_joint(self, model, i, q)
       end do
    end function interaction_integrals
 
@@ -205,47 +221,73 @@ contains
       integer(ik), intent(in) :: i  !< among those of the domain
       real(rk), intent(in) :: q(:, :)  !< (domains, n_nodes) [-]
       integer(ik), parameter :: n_points = 5
-      real(rk) :: s(n_points), weights(n_points), ends(2, 2), distance, q_here, weight, x
+      real(rk) :: by_point(2, 2, size(q, 1), n_points), x(n_points)
+      integer(ik) :: point
+
+      call weigh_points(self%frame, model, self%face(i), q, x, by_point)
+      do point = 1, n_points
+         self%by_traction(:, :, :, i) = self%by_traction(:, :, :, i) + by_point(:, :, :, point)
+      end do
+   end subroutine set_face
+
+   !> The same at each point of a joint.
+   pure subroutine set_joint(self, model, i, q)
+      type(interactions_t), intent(inout) :: self
+      type(fine_model_t), intent(in) :: model
+      integer(ik), intent(in) :: i  !< among the joints
+      real(rk), intent(in) :: q(:, :)  !< (domains, n_nodes) [-]
+
+      call weigh_points(self%frame, model, self%face(self%joint(i)), q, self%place(:, i), &
+                        self%by_deviation(:, :, :, :, i))
+   end subroutine set_joint
+
+   !> Coefficients of the tractions at Gauss points of a fracture cell.
+   pure subroutine weigh_points(frame, model, cell, q, place, by_point)
+      type(tip_frame_t), intent(in) :: frame
+      type(fine_model_t), intent(in) :: model
+      integer(ik), intent(in) :: cell  !< fracture cell
+      real(rk), intent(in) :: q(:, :)  !< (domains, n_nodes) [-]
+      real(rk), intent(out) :: place(:)  !< (points) parameter of the shape functions [-]
+      real(rk), intent(out) :: by_point(:, :, :, :)  !< (2, modes, domains, points)
+      real(rk) :: s(size(place)), weights(size(place)), ends(2, 2), distance, q_here, weight, x
       real(rk) :: kolosov, shear_modulus
       type(auxiliary_field_t) :: above, below
       integer(ik) :: point, mode, r
 
-      call gauss_rule(n_points, s, weights)
-      associate (frame => self%frame, cell => self%face(i))
-         associate (nodes => model%mesh%face_nodes(:, 1, cell), &
-                    length => model%mesh%face_length(cell), &
-                    tip_end => model%mesh%face_at_tip(cell))
-            kolosov = frame%rock%kolosov()
-            shear_modulus = frame%rock%shear_modulus()
-            ends = model%mesh%xy(:, nodes(1:2))
-            do point = 1, n_points
-               x = s(point)
-               weight = length*weights(point)
-               distance = norm2((1.0_rk - x)*ends(:, 1) + x*ends(:, 2) - frame%origin)
-               if (tip_end > 0) then
-                  ! r = length*t**2 takes the root out of the integrand; x follows t or t**2.
-                  distance = length*s(point)**2
-                  weight = 2.0_rk*weight*s(point)
-                  if (model%mesh%face_tip(cell) == 0) x = x**2
-                  if (tip_end == 2) x = 1.0_rk - x
-               end if
-               do mode = 1, 2
-                  above = auxiliary_field(mode, cmplx(0.0_rk, sqrt(distance), rk), kolosov, &
-                                          shear_modulus)
-                  below = auxiliary_field(mode, cmplx(0.0_rk, -sqrt(distance), rk), kolosov, &
-                                          shear_modulus)
-                  ! The traction is that on side +, the lower one where frame%upper > 0.
-                  do r = 1, size(q, 1, kind=ik)
-                     q_here = dot_product(line_shapes(x), q(r, nodes))
-                     self%by_traction(:, mode, r, i) = &
-                        self%by_traction(:, mode, r, i) &
-                        + weight*q_here*frame%upper*(above%slope - below%slope)
-                  end do
+      call gauss_rule(size(place, kind=ik), s, weights)
+      associate (nodes => model%mesh%face_nodes(:, 1, cell), &
+                 length => model%mesh%face_length(cell), &
+                 tip_end => model%mesh%face_at_tip(cell))
+         kolosov = frame%rock%kolosov()
+         shear_modulus = frame%rock%shear_modulus()
+         ends = model%mesh%xy(:, nodes(1:2))
+         do point = 1, size(place, kind=ik)
+            x = s(point)
+            weight = length*weights(point)
+            distance = norm2((1.0_rk - x)*ends(:, 1) + x*ends(:, 2) - frame%origin)
+            if (tip_end > 0) then
+               ! r = length*t**2 takes the root out of the integrand; x follows t or t**2.
+               distance = length*s(point)**2
+               weight = 2.0_rk*weight*s(point)
+               if (model%mesh%face_tip(cell) == 0) x = x**2
+               if (tip_end == 2) x = 1.0_rk - x
+            end if
+            place(point) = x
+            do mode = 1, 2
+               above = auxiliary_field(mode, cmplx(0.0_rk, sqrt(distance), rk), kolosov, &
+                                       shear_modulus)
+               below = auxiliary_field(mode, cmplx(0.0_rk, -sqrt(distance), rk), kolosov, &
+                                       shear_modulus)
+               ! The traction is that on side +, the lower one where frame%upper > 0.
+               do r = 1, size(q, 1, kind=ik)
+                  q_here = dot_product(line_shapes(x), q(r, nodes))
+                  by_point(:, mode, r, point) = weight*q_here*frame%upper &
+                                                *(above%slope - below%slope)
                end do
             end do
-         end associate
+         end do
       end associate
-   end subroutine set_face
+   end subroutine weigh_points
 
    !> Stress intensity factors from each domain.
    pure function intensities(self, model, loads, displacement) result(k)
@@ -289,8 +331,33 @@ contains
             end do
          end do
          k = 0.5_rk*frame%rock%crack_modulus()*k
+         if (size(self%joint) > 0) k = k + self%by_joints(model, loads, displacement)
       end associate
    end function intensities
+
+   !> Share of the deviations of tractions from that of the middle of each cell of a joint.
+   pure function by_joints(self, model, loads, displacement) result(k)
+      class(interactions_t), intent(in) :: self
+      type(fine_model_t), intent(in) :: model  !< with the mesh that the integrals are for
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      real(rk), allocatable :: k(:, :)  !< (modes, domains) [Pa m^1/2]
+      real(rk) :: deviation(2)
+      integer(ik) :: i, point, r
+
+      allocate (k(2, size(self%by_body_force, 3)), source=0.0_rk)
+      do i = 1, size(self%joint, kind=ik)
+         do point = 1, joint_points
+            deviation = matmul(self%frame%axes, &
+                               joint_deviation(model, loads, displacement, &
+                                               self%face(self%joint(i)), self%place(point, i)))
+            do r = 1, size(k, 2, kind=ik)
+               k(:, r) = k(:, r) + matmul(deviation, self%by_deviation(:, :, r, point, i))
+            end do
+         end do
+      end do
+      k = 0.5_rk*self%frame%rock%crack_modulus()*k
+   end function by_joints
 
    !> dK/du of both modes for one domain, on faces whose traction is given: the nodal forces whose
    !! work on a displacement is its share in K.

@@ -24,6 +24,7 @@ program test_contact_closure
    type(checks_t) :: checks
 
    call test_hyperbola()
+   call test_inverse()
    call test_derivatives()
    call test_admissible()
    call test_violations()
@@ -59,6 +60,28 @@ contains
       call law%closure(0.0_rk, closed, slope)
       call checks%is_close(closed, -3.0e-5_rk, 0.0_rk, "opens by what it was closed at rest")
    end subroutine test_hyperbola
+
+   !> The pressure at a jump gives the closure that the jump leaves, with dilation and at rest; none
+   !! where the faces are apart, beyond the pole, and without closure.
+   subroutine test_inverse()
+      type(contact_law_t) :: law
+      real(rk) :: closed, ignored, pressure
+      integer :: k
+
+      law = joint
+      law%closure_at_rest = 3.0e-5_rk
+      do k = -3, 5
+         pressure = 10.0_rk**k*1.0e3_rk
+         call law%closure(pressure, closed, ignored)
+         call checks%is_close(law%joint_pressure([-closed + 0.1_rk*5.0_rk*um, -5.0_rk*um]), &
+                              pressure, 1.0e-13_rk*max(pressure*(1.0_rk + pressure/1.0e7_rk), &
+                                                       initial*largest), "inverse of closure")
+      end do
+      call checks%is_true(.not. law%joint_pressure([3.1e-5_rk, 0.0_rk]) > 0.0_rk, "apart")
+      call checks%is_true(.not. law%joint_pressure([-7.5e-5_rk, 0.0_rk]) > 0.0_rk, "beyond d_max")
+      law%compliance = 0.0_rk
+      call checks%is_true(.not. law%joint_pressure([-1.0e-5_rk, 0.0_rk]) > 0.0_rk, "no closure")
+   end subroutine test_inverse
 
    subroutine test_derivatives()
       call compare(joint, [-5.0_rk, 1.0_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
