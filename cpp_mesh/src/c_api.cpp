@@ -132,6 +132,8 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.fixed_points = points_from(given->n_fixed, given->fixed);
     spec.guides = guides_from(*given);
     spec.joint_size = given->joint_size;
+    spec.refined = points_from(given->n_refined, given->refined);
+    spec.refined_size = given->refined_size;
     if (given->n_foci > 0)
         spec.foci = {points_from(given->n_foci, given->foci), given->size_fracture,
                      given->focus_slope, given->focus_size};

@@ -23,9 +23,6 @@ bool is_for_elements(const Specification& spec) {
            (spec.rosette_sectors > 0 || !spec.domain.is_rectangle() || !spec.fixed_points.empty());
 }
 
-// Growth of cell sizes per distance from a joint.
-constexpr double growth_around_joints = 0.4;
-
 // The ends of guides on the boundary have the nodes from the given number on.
 void embed_guides(const GuideEdges& guides, int first_on_boundary, Region& region,
                   std::vector<Vec2>& xy) {
@@ -73,7 +70,9 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         rosette_discs(graph, plans, specification.rosette_sectors, specification.ring_slope));
     if (specification.joint_size > 0.0)
         for (const Joint& joint : joints_of(graph))
-            mesh.size.add(SizeDisc{joint.xy, 0.0, specification.joint_size, growth_around_joints});
+            mesh.size.add(corner_disc(joint.xy, specification.joint_size));
+    for (const Vec2& place : specification.refined)
+        mesh.size.add(corner_disc(place, specification.refined_size));
     // Cells between fractures that meet, or almost do, must not be much longer than what is left
     // for them.
     if (mesh.size.is_scale_free() ||

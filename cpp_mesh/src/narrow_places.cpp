@@ -12,6 +12,9 @@ constexpr double narrow_share = 0.6;
 // Growth of cell sizes per distance from a narrow place: as fast as good shapes allow.
 constexpr double growth = 0.6;
 
+// Growth of cell sizes per distance from a corner.
+constexpr double growth_at_corners = 0.4;
+
 // Below this share of the wanted size the distance of an end is too small for good shapes.
 constexpr double near_share = 0.2;
 
@@ -28,6 +31,10 @@ double room_at(const Graph& graph, const Domain& domain, int point, double gap) 
 }
 
 } // namespace
+
+SizeDisc corner_disc(Vec2 place, double size) {
+    return {place, 0.0, size, growth_at_corners};
+}
 
 void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, SizeField& size) {
     std::vector<SizeDisc> discs;

@@ -1,4 +1,4 @@
-// Smaller cells where the fractures leave little room.
+// Smaller cells where the fractures leave little room, and at corners, where they meet or turn.
 #ifndef CPP_MESH_NARROW_PLACES_HPP
 #define CPP_MESH_NARROW_PLACES_HPP
 
@@ -7,6 +7,9 @@
 #include "size_field.hpp"
 
 namespace cpp_mesh {
+
+// Cells of the given size at a corner, where the stress is singular, growing from there.
+SizeDisc corner_disc(Vec2 place, double size);
 
 // Cells start from the length of an edge of the graph that is shorter than they should be, and from
 // the distance of a point from an edge or the boundary that is so near, and grow from there.

@@ -100,6 +100,41 @@ void window(Checks& checks) {
     checks.is_true(small.longest < 1.5 * fine, "the short one");
 }
 
+// Length of the shortest fracture cell that ends at a place.
+double shortest_at(const ApiMesh& mesh, const Point& place) {
+    double shortest = 1e9;
+    for (int i = 0; i < mesh.counts.n_fracture_cells; ++i) {
+        const Point a = mesh.point(mesh.fcell_points[2 * i]);
+        const Point b = mesh.point(mesh.fcell_points[2 * i + 1]);
+        for (const Point& p : {a, b})
+            if (std::hypot(p[0] - place[0], p[1] - place[1]) < 1e-9)
+                shortest = std::min(shortest, std::hypot(b[0] - a[0], b[1] - a[1]));
+    }
+    return shortest;
+}
+
+// Cells at a refined place, here a kink, are as small as asked for, and stay so when an end grows.
+void refined_places(Checks& checks) {
+    TestNetwork network({{{4.0, 5.0}, {5.0, 5.0}, {5.5, 5.5}}});
+    const std::vector<double> kink = {5.0, 5.0};
+    cm_spec spec = rectangle_spec(10.0, 10.0, 0.1, 1.0);
+    spec.rosette_sectors = 12;
+    spec.rosette_radius = 0.1;
+    ApiMesh usual, mesh, grown;
+    checks.is_true(usual.create(spec, network), usual.error);
+    checks.is_true(shortest_at(usual, {5.0, 5.0}) > 0.05, "usual cells at a kink");
+    spec.n_refined = 1;
+    spec.refined = kink.data();
+    spec.refined_size = 0.003;
+    checks.is_true(mesh.create(spec, network), mesh.error);
+    checks.is_true(shortest_at(mesh, {5.0, 5.0}) < 1.5 * 0.003, "small cells at a kink");
+    checks.is_true(lengths_of(mesh, 0).longest > 0.08, "usual ones farther away");
+    checks.is_true(mesh.smallest_angle() > 20.0, "shape with a refined place");
+    network.fractures[0].push_back({5.55, 5.55});
+    checks.is_true(grown.grow(mesh, network), grown.error);
+    checks.is_true(shortest_at(grown, {5.0, 5.0}) < 1.5 * 0.003, "still small after growth");
+}
+
 void refusals(Checks& checks) {
     const std::vector<double> own = {coarse, 3.0};
     cm_spec spec = rectangle_spec(10.0, 10.0, fine, 1.0);
@@ -116,6 +151,7 @@ int main() {
     same_as_usual(checks);
     growth(checks);
     window(checks);
+    refined_places(checks);
     refusals(checks);
     return checks.finish();
 }

@@ -18,9 +18,10 @@ module mechanics_body
    use fine_tip_types, only: intensity_t
    use growth_network, only: end_pieces
    use mechanics_faces, only: body_loads, face_conditions, held_boundary, prescribe_slip
-   use mesh_builder, only: build_mesh, build_mesh_sized, grow_mesh, mesh_quality, mesh_spec_t, &
-                           mesher_t, transfer_mesher
+   use mesh_builder, only: build_mesh, build_mesh_sized, corner_share, grow_mesh, mesh_quality, &
+                           mesh_spec_t, mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
+   use report_corners, only: joints_of_scene, kinks_of_scene
    use report_scene, only: follow_outlines, interface_distance, keep_off, place_rocks, &
                            regions_of_other_rock, set_own_sizes
    use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
@@ -298,6 +299,10 @@ contains
       spec%size_fracture = scene%discretization%size_fracture
       if (.not. spec%size_fracture > 0.0_rk) spec%size_fracture = spec%size_boundary
       call set_own_sizes(scene, spec)
+      associate (kinks => kinks_of_scene(scene), joints => joints_of_scene(scene))
+         spec%refined = reshape([kinks, joints], [2, size(kinks, 2) + size(joints, 2)])
+      end associate
+      spec%refined_size = corner_share*spec%size_fracture
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
       spec%end_radius = end_radii(scene, network)

@@ -5,7 +5,7 @@ module mesh_builder
    use, intrinsic :: iso_c_binding, only: c_associated, c_loc, c_null_ptr, c_ptr
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use mesh_c_arrays, only: c_network_arrays_t, copy_map, copy_mesh, mesh_spec_t, &
+   use mesh_c_arrays, only: c_network_arrays_t, copy_map, copy_mesh, corner_share, mesh_spec_t, &
                             prepare_network, prepare_spec
    use mesh_c_binding, only: cm_check, cm_create, cm_create_sized, cm_destroy, cm_grow, &
                              cm_joint_t, cm_locate, cm_move_tips, cm_network_t, cm_quality, &
@@ -15,8 +15,8 @@ module mesh_builder
    implicit none(type, external)
    private
 
-   public :: build_mesh, build_mesh_sized, check_mesh_input, grow_mesh, joint_t, locate
-   public :: mesh_quality, mesh_spec_t, mesher_t, move_tips, remesh, transfer_mesher
+   public :: build_mesh, build_mesh_sized, check_mesh_input, corner_share, grow_mesh, joint_t
+   public :: locate, mesh_quality, mesh_spec_t, mesher_t, move_tips, remesh, transfer_mesher
 
    !> Owns a mesh of the C++ library. It cannot be copied: assigning one leaves the left side
    !! empty; use transfer_mesher to move one.

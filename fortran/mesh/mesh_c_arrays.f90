@@ -12,7 +12,13 @@ module mesh_c_arrays
    implicit none(type, external)
    private
 
-   public :: c_network_arrays_t, copy_map, copy_mesh, mesh_spec_t, prepare_network, prepare_spec
+   public :: c_network_arrays_t, copy_map, copy_mesh, corner_share, mesh_spec_t, prepare_network
+   public :: prepare_spec
+
+   !> Size of finite elements at corners, where fractures meet or turn, over that along fractures:
+   !! the stress has a weak singularity there, which causes a first-order error of K of tips
+   !! nearby [-].
+   real(rk), parameter :: corner_share = 1.0_rk/32.0_rk
 
    !> What to mesh: a rectangle or a polygon with the fractures in it.
    type :: mesh_spec_t
@@ -43,6 +49,8 @@ module mesh_c_arrays
       real(rk) :: ring_slope = 0.0_rk  !< growth of sizes around rosettes [-]; 0: usual
       !> (n_fractures) size along each fracture [m]; 0: size_fracture, which is the smallest of all
       real(rk), allocatable :: own_size(:)
+      real(rk), allocatable :: refined(:, :)  !< (2, n) places with smaller cells [m]
+      real(rk) :: refined_size = 0.0_rk  !< cells there [m]
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
@@ -72,6 +80,11 @@ contains
       c_spec%rosette_radius = spec%rosette_radius
       c_spec%joint_size = spec%joint_size
       c_spec%ring_slope = spec%ring_slope
+      if (allocated(spec%refined)) then
+         c_spec%n_refined = ubound(spec%refined, 2)
+         if (c_spec%n_refined > 0) c_spec%refined = c_loc(spec%refined)
+         c_spec%refined_size = spec%refined_size
+      end if
       c_spec%is_rough = merge(1_ik, 0_ik, spec%is_rough)
       if (allocated(spec%foci)) then
          c_spec%n_foci = ubound(spec%foci, 2)

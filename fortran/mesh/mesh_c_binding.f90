@@ -44,6 +44,9 @@ module mesh_c_binding
       integer(c_int32_t) :: is_rough = 0
       real(c_double) :: ring_slope = 0.0_c_double
       type(c_ptr) :: own_size = c_null_ptr
+      integer(c_int32_t) :: n_refined = 0
+      type(c_ptr) :: refined = c_null_ptr
+      real(c_double) :: refined_size = 0.0_c_double
    end type cm_spec_t
 
    !> Sizes of the arrays below.

@@ -7,8 +7,9 @@ module twolevel_window_spec
    use coarse_rock, only: new_rock, rock_t
    use fine_elasticity, only: elasticity_t
    use growth_network, only: end_pieces
-   use mesh_builder, only: mesh_spec_t
+   use mesh_builder, only: corner_share, mesh_spec_t
    use mesh_types, only: network_t
+   use report_corners, only: kinks_of_scene
    use report_scene, only: follow_outlines, keep_off, regions_of_other_rock
    use scene_types, only: material_t, scene_t
    use twolevel_window_tip, only: window_tip_t
@@ -16,10 +17,6 @@ module twolevel_window_spec
    private
 
    public :: constants_of_rock, focus, grow_away, tip_place, window_spec
-
-   !> Size of elements at intersections of fractures, over that along fractures: the stress has a
-   !! weak singularity there, which causes a first-order error of K of tips nearby [-].
-   real(rk), parameter :: joint_share = 1.0_rk/32.0_rk
 
    !> Growth of element size with distance from the fractures, on average [-]
    real(rk), parameter :: grading = 0.4_rk
@@ -49,7 +46,9 @@ contains
       spec%is_rough = .true.
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = element_size
-      spec%joint_size = joint_share*element_size
+      spec%joint_size = corner_share*element_size
+      spec%refined = kinks_of_scene(scene)
+      spec%refined_size = spec%joint_size
    end function window_spec
 
    !> Let elements grow around the rosettes.
