@@ -234,8 +234,8 @@ contains
       slope = self%compliance*stiffer**2
    end subroutine closure
 
-   !> Pressure s between the faces of a joint that closes, from their jump: the inverse of `closure`.
-   !! Zero where the faces are apart, and for laws without closure.
+   !> Pressure s between the faces of a joint that closes, from their jump: the inverse of
+   !! `closure`. Zero where the faces are apart, and for laws without closure.
    pure real(rk) function joint_pressure(self, jump) result(pressure)
       class(contact_law_t), intent(in) :: self
       real(rk), intent(in) :: jump(2)  !< [u]_n, [u]_tau [m]

@@ -200,8 +200,9 @@ contains
    !> Traction on side + at a point of a joint, less that of its middle, in x and y: the law at the
    !! interpolated jump. The faces slide with friction where they do so in the middle.
    !!
-   !! At the tip the jump is zero, so the joint bears the pressure that it had at rest, and within
-   !! one element often nothing: the traction of the middle then leaves K several per cent too small.
+   !! At the tip the jump is zero, so the joint bears the pressure that it had at rest, and half an
+   !! element farther on often nothing: the traction of the middle alone leaves K several per cent
+   !! too small.
    pure function joint_deviation(model, loads, displacement, cell, x) result(deviation)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads

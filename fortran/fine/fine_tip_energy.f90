@@ -130,9 +130,9 @@ contains
       slope = slope/(2.0_rk*triangle_area(place))
    end function slope_along
 
-   !> The traction of one fracture cell, constant but for joints, on the slope of its jump. In the parameter x of its shape
-   !! functions the slope times ds is d[u]/dx dx, whether or not its middle node is at the quarter
-   !! point.
+   !> The traction of one fracture cell, constant but for joints, on the slope of its jump. In the
+   !! parameter x of its shape functions the slope times ds is d[u]/dx dx, whether or not its middle
+   !! node is at the quarter point.
    pure real(rk) function face_share(model, loads, displacement, frame, reference_stress, cell, q)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads

@@ -1,5 +1,5 @@
-!> Corners of fractures: kinks from 10 degrees on, ends on other fractures, crossings, and a fracture
-!! that crosses itself; none where fractures pass each other or go straight on.
+!> Corners of fractures: kinks from 10 degrees on, ends on other fractures, crossings, and a
+!! fracture that crosses itself; none where fractures pass each other or go straight on.
 program test_report_corners
    use base_kinds, only: ik, rk
    use report_corners, only: joints_of_scene, kinks_of_scene
