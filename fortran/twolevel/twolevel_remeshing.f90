@@ -5,7 +5,9 @@ submodule(twolevel_state) twolevel_remeshing
    use base_plane, only: norm2
    use base_timers, only: phase_remesh, phase_transfer
    use base_tolerances, only: same_place
-   use coarse_model, only: give_back, no_profiles, profiles_t, rest_fluid
+   use coarse_layer_profiles, only: give_back, no_profiles, profiles_of, profiles_t, set_apart, &
+                                    take_profiles
+   use coarse_model, only: rest_fluid
    use mesh_builder, only: remesh
    use mesh_types, only: mesh_map_t
    use twolevel_setup, only: choose_first_step
@@ -69,9 +71,9 @@ contains
       call timers%start(phase_transfer)
       associate (layers => self%problem%model%layers, state => self%now%coarse)
          if (layers%n > 0) then
-            profiles = layers%profiles(state%unknowns, state%layer)
-            call layers%set_apart(map%cell_old, map%fracture_cell_old, state%unknowns, &
-                                  state%content, profiles)
+            profiles = profiles_of(layers, state%unknowns, state%layer)
+            call set_apart(layers, map%cell_old, map%fracture_cell_old, state%unknowns, &
+                           state%content, profiles)
          else
             profiles = no_profiles()
          end if
@@ -107,8 +109,8 @@ contains
             return
          end if
          call insert_layers(mesh%n_cells, layers%n, state%unknowns)
-         call layers%take_profiles(profiles, mesh, map%cell_old, map%fracture_cell_old, &
-                                   state%unknowns, state%layer, state%content)
+         call take_profiles(layers, profiles, mesh, map%cell_old, map%fracture_cell_old, &
+                            state%unknowns, state%layer, state%content)
       end associate
    end subroutine transfer_layers
 

@@ -1,0 +1,261 @@
+!> Pressure over the distance from the faces with layers: at points, and from one mesh to the next.
+module coarse_layer_profiles
+   use base_kinds, only: ik, rk
+   use coarse_layers, only: layers_t
+   use coarse_layout, only: layer_block
+   use mesh_geometry, only: cell_centre
+   use mesh_types, only: mesh_t
+   implicit none(type, external)
+   private
+
+   public :: find_pressure, give_back, no_profiles, profiles_of, profiles_t, set_apart
+   public :: take_profiles
+
+   !> Pressures in the layers, for their transfer to another mesh.
+   type :: profiles_t
+      integer(ik), allocatable :: cell(:), face_of_cell(:), fracture_cell(:), side(:)
+      integer(ik), allocatable :: n(:)  !< nodes
+      real(rk), allocatable :: place(:, :)  !< distance of the nodes from the face [m]
+      real(rk), allocatable :: value(:, :)  !< (nodes, and then that of the rest of the cell) [Pa]
+      !> Content beyond that at the pressure of the rest of the cell, of layers that are kept [m2]
+      real(rk), allocatable :: excess(:)
+   end type profiles_t
+
+contains
+
+   !> The pressure at a point that lies before a face with a layer, not farther from it than the
+   !! centre of its cell; elsewhere it is left as it is.
+   pure subroutine find_pressure(layers, mesh, unknowns, inner, xy, pressure)
+      type(layers_t), intent(in) :: layers
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk), intent(inout) :: pressure  !< [Pa]
+      real(rk) :: along(2), at_face, centre, distance, nearest, normal(2), offset(2), start(2)
+      integer(ik) :: l
+
+      nearest = huge(1.0_rk)
+      do l = 1, layers%n
+         associate (ends => mesh%xy(:, mesh%face_nodes(:, mesh%layer_face(l))), &
+                    cell => layers%cell(l), chain => layers%chain(l), n => layers%chain(l)%n)
+            start = ends(:, 1)
+            along = (ends(:, 2) - start)/norm2(ends(:, 2) - start)
+            normal = [-along(2), along(1)]
+            offset = cell_centre(mesh, cell) - start
+            if (dot_product(offset, normal) < 0.0_rk) normal = -normal
+            centre = dot_product(offset, normal)
+            offset = xy - start
+            distance = dot_product(offset, normal)
+            if (distance < 0.0_rk .or. distance > min(centre, nearest)) cycle
+            if (dot_product(offset, along) < 0.0_rk) cycle
+            if (dot_product(offset, along) > norm2(ends(:, 2) - start)) cycle
+            nearest = distance
+            at_face = layers%given(l)
+            if (layers%at(1, l) > 0) at_face = unknowns(3, layers%at(1, l)/3)
+            pressure = between_nodes([0.0_rk, chain%place, centre], &
+                                     [at_face, inner(:n - 1, l), &
+                                      unknowns(1, layer_block(mesh, l)), &
+                                      unknowns(3, layer_block(mesh, mesh%cell_layer(cell)))], &
+                                     distance)
+         end associate
+      end do
+   end subroutine find_pressure
+
+   !> Linear interpolation between nodes.
+   pure real(rk) function between_nodes(place, value, at) result(found)
+      real(rk), intent(in) :: place(:)  !< [m]
+      real(rk), intent(in) :: value(:)  !< [Pa]
+      real(rk), intent(in) :: at  !< between the first and the last place [m]
+      integer(ik) :: k
+      real(rk) :: t
+
+      k = max(1_ik, min(count(place <= at, kind=ik), size(place, kind=ik) - 1))
+      t = (at - place(k))/(place(k + 1) - place(k))
+      found = (1.0_rk - t)*value(k) + t*value(k + 1)
+   end function between_nodes
+
+   !> Those of a state without layers.
+   pure type(profiles_t) function no_profiles() result(none)
+      allocate (none%cell(0), none%face_of_cell(0), none%fracture_cell(0), none%side(0))
+      allocate (none%excess(0))
+   end function no_profiles
+
+   !> The pressures in the layers of a state.
+   pure function profiles_of(layers, unknowns, inner) result(found)
+      type(layers_t), intent(in) :: layers
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
+      type(profiles_t) :: found
+      integer(ik) :: k, l
+
+      found%cell = layers%cell
+      found%face_of_cell = layers%face_of_cell
+      found%fracture_cell = layers%fracture_cell
+      found%side = layers%side
+      found%n = layers%chain%n
+      allocate (found%place(layers%n_nodes, layers%n), found%value(layers%n_nodes + 1, layers%n), &
+                source=0.0_rk)
+      do k = 1, size(layers%cells, kind=ik)
+         associate (first => (layers%at(2, layers%of_cell%at(k, 1_ik)) + 2)/3)
+            do l = layers%of_cell%first(k), layers%of_cell%last(k)
+               call take(layers%of_cell%item(l), unknowns(3, first))
+            end do
+         end associate
+      end do
+
+   contains
+
+      pure subroutine take(l, rest)
+         integer(ik), intent(in) :: l
+         real(rk), intent(in) :: rest  !< pressure of the rest of the cell [Pa]
+
+         associate (n => layers%chain(l)%n)
+            found%place(:n, l) = layers%chain(l)%place
+            found%value(:n - 1, l) = inner(:n - 1, l)
+            found%value(n, l) = unknowns(1, (layers%at(2, l) + 2)/3)
+            found%value(n + 1, l) = rest
+         end associate
+      end subroutine take
+
+   end function profiles_of
+
+   !> Take the excess of the layers at faces that are kept on another mesh out of their cells, which
+   !! keep the pressure of their rest: it is not transferred by areas.
+   pure subroutine set_apart(layers, cell_old, fracture_cell_old, unknowns, content, found)
+      type(layers_t), intent(in) :: layers
+      integer(ik), intent(in) :: cell_old(:)  !< (new cells) the same cell before; 0: none
+      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      real(rk), intent(inout) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
+      type(profiles_t), intent(inout) :: found  !< of `profiles`
+      real(rk) :: excess
+      integer(ik) :: i, k, l
+      logical :: is_kept
+
+      allocate (found%excess(layers%n), source=0.0_rk)
+      do k = 1, size(layers%cells, kind=ik)
+         do i = 1, layers%of_cell%length(k)
+            l = layers%of_cell%at(k, i)
+            if (layers%fracture_cell(l) > 0) then
+               is_kept = any(fracture_cell_old == layers%fracture_cell(l))
+            else
+               is_kept = any(cell_old == layers%cell(l))
+            end if
+            if (.not. is_kept) cycle
+            associate (chain => layers%chain(l), n => layers%chain(l)%n, cell => layers%cell(l))
+               excess = dot_product(chain%volume, found%value(:n, l) - found%value(n + 1, l))
+               found%excess(l) = layers%storage(k)*excess
+               content(cell) = content(cell) - found%excess(l)
+               unknowns(3, cell) = unknowns(3, cell) - excess/layers%volume(k)
+            end associate
+         end do
+      end do
+   end subroutine set_apart
+
+   !> Give the layers of a new mesh those before at the same faces: the same pressures beyond that
+   !! of the rest of the cell at the same distances from the face, and their content. Other layers
+   !! have the pressure of their cell.
+   subroutine take_profiles(layers, before, mesh, cell_old, fracture_cell_old, unknowns, inner, &
+                            content)
+      type(layers_t), intent(in) :: layers
+      type(profiles_t), intent(in) :: before  !< set apart
+      type(mesh_t), intent(in) :: mesh  !< new
+      integer(ik), intent(in) :: cell_old(:)  !< (n_cells) the same cell before; 0: none
+      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      real(rk), intent(inout) :: unknowns(:, :)  !< (3, n_blocks); those of the layers are set
+      real(rk), allocatable, intent(out) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
+      real(rk) :: value(layers%n_nodes)
+      real(rk) :: excess, rest
+      logical :: is_taken(size(before%cell))
+      integer(ik) :: i, k, l, old
+
+      is_taken = .false.
+      call layers%begin(unknowns, inner)
+      do k = 1, size(layers%cells, kind=ik)
+         excess = 0.0_rk
+         rest = unknowns(3, layers%cells(k))
+         do i = 1, layers%of_cell%length(k)
+            l = layers%of_cell%at(k, i)
+            old = same_layer(l)
+            if (old == 0) cycle
+            is_taken(old) = .true.
+            content(layers%cells(k)) = content(layers%cells(k)) + before%excess(old)
+            associate (chain => layers%chain(l), n => layers%chain(l)%n, m => before%n(old))
+               value(:n) = interpolated(before%place(:m, old), &
+                                        before%value(:m + 1, old) - before%value(m + 1, old), &
+                                        chain%place)
+               excess = excess + dot_product(chain%volume, value(:n))
+               inner(:n - 1, l) = rest + value(:n - 1)
+               unknowns(1, (layers%at(2, l) + 2)/3) = rest + value(n)
+            end associate
+         end do
+         unknowns(3, layers%cells(k)) = rest + excess/layers%volume(k)
+      end do
+      call give_back(before, is_taken, mesh, fracture_cell_old, content)
+
+   contains
+
+      !> The layer at the same face before; 0: none.
+      pure integer(ik) function same_layer(l)
+         integer(ik), intent(in) :: l
+
+         same_layer = 0
+         if (layers%fracture_cell(l) > 0) then
+            if (fracture_cell_old(layers%fracture_cell(l)) == 0) return
+            same_layer = findloc(before%side == layers%side(l) .and. before%fracture_cell == &
+                                 fracture_cell_old(layers%fracture_cell(l)), .true., dim=1)
+         else if (cell_old(layers%cell(l)) > 0) then
+            same_layer = findloc(before%cell == cell_old(layers%cell(l)) .and. &
+                                 before%face_of_cell == layers%face_of_cell(l), .true., dim=1)
+         end if
+      end function same_layer
+
+   end subroutine take_profiles
+
+   !> Give the content of layers whose face has none on the new mesh to the cell there.
+   pure subroutine give_back(before, is_taken, mesh, fracture_cell_old, content)
+      type(profiles_t), intent(in) :: before
+      logical, intent(in) :: is_taken(:)  !< layers that the new mesh has
+      type(mesh_t), intent(in) :: mesh  !< new
+      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
+      integer(ik) :: at, old
+
+      do old = 1, size(is_taken, kind=ik)
+         if (is_taken(old) .or. .not. abs(before%excess(old)) > 0.0_rk) cycle
+         at = findloc(fracture_cell_old, before%fracture_cell(old), dim=1)
+         if (at == 0) cycle
+         associate (cell => mesh%face_cells(1, mesh%fracture%cell_faces(before%side(old), at)))
+            content(cell) = content(cell) + before%excess(old)
+         end associate
+      end do
+   end subroutine give_back
+
+   !> Linear interpolation between nodes; the first value holds up to the first node, the last one,
+   !! of the rest of the cell, beyond the last node.
+   pure function interpolated(place, value, at) result(found)
+      real(rk), intent(in) :: place(:)  !< (n) [m]
+      real(rk), intent(in) :: value(:)  !< (n + 1) [Pa]
+      real(rk), intent(in) :: at(:)  !< [m]
+      real(rk) :: found(size(at))  !< [Pa]
+      real(rk), parameter :: same = 1.0e-12_rk  ! relative
+      integer(ik) :: i, k
+      real(rk) :: t
+
+      do i = 1, size(at, kind=ik)
+         k = count(place <= at(i)*(1.0_rk + same))
+         if (k == 0) then
+            found(i) = value(1)
+         else if (k == size(place)) then
+            found(i) = value(k)
+            if (at(i) > place(k)*(1.0_rk + same)) found(i) = value(k + 1)
+         else
+            t = max(0.0_rk, at(i) - place(k))/(place(k + 1) - place(k))
+            found(i) = (1.0_rk - t)*value(k) + t*value(k + 1)
+         end if
+      end do
+   end function interpolated
+
+end module coarse_layer_profiles
