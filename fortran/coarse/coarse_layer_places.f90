@@ -161,7 +161,8 @@ contains
             end associate
          end associate
       end do
-      allocate (layers%rho(layers%n_nodes - 1, n), source=0.0_rk)
+      allocate (layers%rho(layers%n_nodes - 1, n), layers%means(2, n), layers%first_mean(n), &
+                source=0.0_rk)
    end subroutine set_up
 
    !> Flow round tips: a conductance from the faces of a tip's cell with layers to the cell ahead.

@@ -51,6 +51,8 @@ module coarse_layers
       real(rk), allocatable :: storage(:)  !< S* [1/Pa]
       real(rk), allocatable :: compliance(:)  !< of the inner nodes for mu [m2 Pa]
       real(rk), allocatable :: rho(:, :)  !< (n_nodes - 1, n) of the present step [Pa]
+      real(rk), allocatable :: means(:, :)  !< (2, n) the same over the step, next to both ends [Pa]
+      real(rk), allocatable :: first_mean(:)  !< (n) mean of the first node in the step [Pa]
       real(rk), allocatable :: given(:)  !< (n) pressure at the face in the present step [Pa]
    contains
       procedure :: set_terms
@@ -87,7 +89,7 @@ contains
       real(rk), intent(out) :: matrix(:, :)  !< [m2/Pa]
       real(rk), intent(out) :: of_mu(:)  !< mu per unknown, times the compliance [m2]
       integer(ik) :: a, b, i, l
-      real(rk) :: across
+      real(rk) :: across, weight
 
       matrix = 0.0_rk
       of_mu(1) = -self%volume(k)
@@ -101,12 +103,13 @@ contains
             of_mu(a) = dot_product(chain%volume(:n - 1), chain%alpha)
             of_mu(a + 1) = dot_product(chain%volume(:n - 1), chain%beta) + chain%volume(n)
             of_mu(a + 2) = 0.0_rk
-            matrix(a, a) = self%dt*chain%conductance(0)*(1.0_rk - chain%alpha(1))
-            across = -self%dt*chain%conductance(0)*chain%beta(1)
+            weight = chain%mean_weight
+            matrix(a, a) = self%dt*chain%conductance(0)*(weight - chain%near_face(1))
+            across = -self%dt*chain%conductance(0)*chain%near_face(2)
             matrix(a, a + 1) = across
             matrix(a + 1, a) = across
             matrix(a + 1, a + 1) = chain%storage*chain%volume(n) &
-                                   + self%dt*chain%conductance(n - 1)*(1.0_rk - chain%beta(n - 1))
+                                   + self%dt*chain%conductance(n - 1)*(weight - chain%near_end)
             matrix(a + 2, a + 2) = self%dt*self%between(l)
          end associate
       end do
@@ -176,7 +179,7 @@ contains
       real(rk), pointer :: p(:), into(:)
       real(rk), allocatable :: terms(:, :), of_mu(:), rhs(:)
       integer(ik), allocatable :: number(:)
-      real(rk) :: known
+      real(rk) :: ends(2), flow(2), known
       integer(ik) :: a, i, k, l
 
       p(1:size(unknowns)) => unknowns
@@ -193,11 +196,14 @@ contains
             l = self%of_cell%at(k, i)
             a = 3*i
             associate (chain => self%chain(l), n => self%chain(l)%n)
-               self%rho(:n - 1, l) = chain%stored(inner(:n - 1, l))
+               ends = [self%given(l), p(number(a + 1))]
+               if (number(a) > 0) ends(1) = p(number(a))
+               call chain%stored(inner(:n - 1, l), ends, self%rho(:n - 1, l), self%means(:, l))
                known = known + dot_product(chain%volume(:n - 1), self%rho(:n - 1, l))
-               rhs(a) = self%dt*chain%conductance(0)*self%rho(1, l)
-               rhs(a + 1) = chain%storage*chain%volume(n)*p(number(a + 1)) &
-                            + self%dt*chain%conductance(n - 1)*self%rho(n - 1, l)
+               flow = self%dt*chain%conductance([0_ik, n - 1]) &
+                      *(self%means(:, l) - (1.0_rk - chain%mean_weight)*ends)
+               rhs(a) = flow(1)
+               rhs(a + 1) = chain%storage*chain%volume(n)*ends(2) + flow(2)
             end associate
          end do
          rhs = rhs - of_mu*(known/self%compliance(k))
@@ -214,7 +220,7 @@ contains
 
    !> The inner nodes after the step.
    pure subroutine update(self, unknowns, inner)
-      class(layers_t), intent(in) :: self
+      class(layers_t), intent(inout) :: self
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) after the step
       real(rk), intent(inout) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
       integer(ik) :: i, k, l
@@ -238,8 +244,10 @@ contains
          do i = 1, self%of_cell%length(k)
             l = self%of_cell%at(k, i)
             call find_ends(l, at_face, at_end)
-            associate (n => self%chain(l)%n)
-               inner(:n - 1, l) = self%chain(l)%inner(self%rho(:n - 1, l), mu, at_face, at_end)
+            associate (chain => self%chain(l), n => self%chain(l)%n)
+               inner(:n - 1, l) = chain%inner(self%rho(:n - 1, l), mu, at_face, at_end)
+               self%first_mean(l) = self%means(1, l) - chain%mean_gamma(1)*mu &
+                                    + dot_product(chain%near_face, [at_face, at_end])
             end associate
          end do
       end do
@@ -287,15 +295,15 @@ contains
    end function on_sides
 
    !> Fluid that leaves the body through layers on its outer boundary in a step [m2].
-   pure real(rk) function drained(self, inner)
+   pure real(rk) function drained(self)
       class(layers_t), intent(in) :: self
-      real(rk), intent(in) :: inner(:, :)  !< after the step [Pa]
       integer(ik) :: l
 
       drained = 0.0_rk
       do l = 1, self%n
          if (self%fracture_cell(l) > 0) cycle
-         drained = drained + self%dt*self%chain(l)%conductance(0)*(inner(1, l) - self%given(l))
+         drained = drained + self%dt*self%chain(l)%conductance(0) &
+                   *(self%first_mean(l) - self%given(l))
       end do
    end function drained
 

@@ -273,7 +273,7 @@ contains
          if (self%drained .and. self%layers%n > 0) then
             report%rock_outflow = dt*boundary_outflow(mesh, self%regions, self%regions%flux, &
                                                       self%regions%scalars_of(after%unknowns)) &
-                                  + self%layers%drained(after%layer)
+                                  + self%layers%drained()
             balance = balance + report%rock_outflow
          else if (self%drained) then
             allocate (outflow(mesh%n_cells))
