@@ -66,9 +66,9 @@ contains
       real(rk), intent(in) :: thickness  !< of the layer [m]
       real(rk), intent(in) :: first  !< thickness of the first volume [m]
 
-      node_count = 6
-      if (first < thickness/200.0_rk) node_count = 8
-      if (first < thickness/5000.0_rk) node_count = 10
+      node_count = 7
+      if (first < thickness/200.0_rk) node_count = 10
+      if (first < thickness/5000.0_rk) node_count = 14
    end function node_count
 
    !> A chain on a face.

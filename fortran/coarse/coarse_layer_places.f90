@@ -18,7 +18,7 @@ module coarse_layer_places
 
    !> A layer is at most this part of the distance of the centre of the cell from the face, and
    !! those of m faces at most the other part over m [-].
-   real(rk), parameter :: thickest = 0.8_rk, all_together = 1.35_rk
+   real(rk), parameter :: thickest = 0.75_rk, all_together = 1.35_rk
    !> Thickness of the first volume over sqrt(c dt) of the first step [-].
    real(rk), parameter :: first_volume = 0.5_rk
    !> What flows round a tip beyond the flow in one dimension, per side, over the mobility and the

@@ -16,8 +16,8 @@
 !! relative error of the length along which fluid leaks off causes the same relative error of the
 !! pressure rise. Where all fluid leaks off, a crack in equilibrium grows until the injected fluid
 !! leaks off over the true length, so the tip positions have the same error again. The rock next to
-!! the fractures, with its layers and cells, takes in up to 1 % too much or too little
-!! (coarse_layers).
+!! the fractures, with its layers and cells, takes in up to 1.3 % too much or too little
+!! (docs/theory.md).
 !!
 !! A wing that is bent from its fracture and short over its cells opens by the slip of the fracture:
 !! its length has an error of up to a cell, which falls with one over the number of its cells
@@ -52,7 +52,7 @@ module twolevel_errors
    !> the same of a bent wing, times the number of its cells [-]
    real(rk), parameter :: share_of_bent = 2.0_rk
    !> error of the leak-off by layers and cells, over the leak-off [-]
-   real(rk), parameter :: share_of_leakoff = 0.01_rk
+   real(rk), parameter :: share_of_leakoff = 0.015_rk
 
    !> Error of K_eq of a tip in a step, and the data to convert it into an error of the position.
    type :: tip_excess_t
