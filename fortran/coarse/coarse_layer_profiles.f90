@@ -1,6 +1,7 @@
 !> Pressure over the distance from the faces with layers: at points, and from one mesh to the next.
 module coarse_layer_profiles
    use base_kinds, only: ik, rk
+   use base_lists, only: lists_t
    use coarse_layers, only: layers_t
    use coarse_layout, only: layer_block
    use mesh_geometry, only: cell_centre
@@ -8,8 +9,8 @@ module coarse_layer_profiles
    implicit none(type, external)
    private
 
-   public :: find_pressure, give_back, no_profiles, profiles_of, profiles_t, set_apart
-   public :: take_profiles
+   public :: find_pressure, kept_faces_t, no_profiles, profiles_of, profiles_t, return_excess
+   public :: set_apart, take_profiles
 
    !> Pressures in the layers, for their transfer to another mesh.
    type :: profiles_t
@@ -20,6 +21,13 @@ module coarse_layer_profiles
       !> Content beyond that at the pressure of the rest of the cell, of layers that are kept [m2]
       real(rk), allocatable :: excess(:)
    end type profiles_t
+
+   !> Faces of the fracture cells of a new mesh that are, or are parts of, faces before: a joint
+   !! divides a face, or moves a node between two faces.
+   type :: kept_faces_t
+      type(lists_t) :: before  !< fracture cells before that each fracture cell overlaps
+      real(rk), allocatable :: of_old(:), of_new(:)  !< (items) overlap, over the length of each [-]
+   end type kept_faces_t
 
 contains
 
@@ -122,13 +130,13 @@ contains
 
    !> Take the excess of the layers at faces that are kept on another mesh out of their cells, which
    !! keep the pressure of their rest: it is not transferred by areas.
-   pure subroutine set_apart(layers, cell_old, fracture_cell_old, unknowns, content, found)
+   pure subroutine set_apart(layers, cell_old, faces, unknowns, content, found)
       type(layers_t), intent(in) :: layers
       integer(ik), intent(in) :: cell_old(:)  !< (new cells) the same cell before; 0: none
-      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      type(kept_faces_t), intent(in) :: faces
       real(rk), intent(inout) :: unknowns(:, :)  !< (3, n_blocks)
       real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
-      type(profiles_t), intent(inout) :: found  !< of `profiles`
+      type(profiles_t), intent(inout) :: found  !< of `profiles_of`
       real(rk) :: excess
       integer(ik) :: i, k, l
       logical :: is_kept
@@ -138,7 +146,7 @@ contains
          do i = 1, layers%of_cell%length(k)
             l = layers%of_cell%at(k, i)
             if (layers%fracture_cell(l) > 0) then
-               is_kept = any(fracture_cell_old == layers%fracture_cell(l))
+               is_kept = any(faces%before%item == layers%fracture_cell(l))
             else
                is_kept = any(cell_old == layers%cell(l))
             end if
@@ -154,38 +162,27 @@ contains
    end subroutine set_apart
 
    !> Give the layers of a new mesh those before at the same faces: the same pressures beyond that
-   !! of the rest of the cell at the same distances from the face, and their content. Other layers
-   !! have the pressure of their cell.
-   subroutine take_profiles(layers, before, mesh, cell_old, fracture_cell_old, unknowns, inner, &
-                            content)
+   !! of the rest of the cell at the same distances from the face, their means where a face consists
+   !! of parts of two. Other layers have the pressure of their cell.
+   pure subroutine take_profiles(layers, before, cell_old, faces, unknowns, inner)
       type(layers_t), intent(in) :: layers
       type(profiles_t), intent(in) :: before  !< set apart
-      type(mesh_t), intent(in) :: mesh  !< new
       integer(ik), intent(in) :: cell_old(:)  !< (n_cells) the same cell before; 0: none
-      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
+      type(kept_faces_t), intent(in) :: faces
       real(rk), intent(inout) :: unknowns(:, :)  !< (3, n_blocks); those of the layers are set
       real(rk), allocatable, intent(out) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
-      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
       real(rk) :: value(layers%n_nodes)
       real(rk) :: excess, rest
-      logical :: is_taken(size(before%cell))
-      integer(ik) :: i, k, l, old
+      integer(ik) :: i, k, l
 
-      is_taken = .false.
       call layers%begin(unknowns, inner)
       do k = 1, size(layers%cells, kind=ik)
          excess = 0.0_rk
          rest = unknowns(3, layers%cells(k))
          do i = 1, layers%of_cell%length(k)
             l = layers%of_cell%at(k, i)
-            old = same_layer(l)
-            if (old == 0) cycle
-            is_taken(old) = .true.
-            content(layers%cells(k)) = content(layers%cells(k)) + before%excess(old)
-            associate (chain => layers%chain(l), n => layers%chain(l)%n, m => before%n(old))
-               value(:n) = interpolated(before%place(:m, old), &
-                                        before%value(:m + 1, old) - before%value(m + 1, old), &
-                                        chain%place)
+            associate (chain => layers%chain(l), n => layers%chain(l)%n)
+               call find_values(l, value(:n))
                excess = excess + dot_product(chain%volume, value(:n))
                inner(:n - 1, l) = rest + value(:n - 1)
                unknowns(1, (layers%at(2, l) + 2)/3) = rest + value(n)
@@ -193,45 +190,84 @@ contains
          end do
          unknowns(3, layers%cells(k)) = rest + excess/layers%volume(k)
       end do
-      call give_back(before, is_taken, mesh, fracture_cell_old, content)
 
    contains
 
-      !> The layer at the same face before; 0: none.
-      pure integer(ik) function same_layer(l)
+      !> Pressures of a layer beyond that of the rest of its cell.
+      pure subroutine find_values(l, values)
          integer(ik), intent(in) :: l
+         real(rk), intent(out) :: values(:)  !< [Pa]
+         integer(ik) :: old, part
 
-         same_layer = 0
-         if (layers%fracture_cell(l) > 0) then
-            if (fracture_cell_old(layers%fracture_cell(l)) == 0) return
-            same_layer = findloc(before%side == layers%side(l) .and. before%fracture_cell == &
-                                 fracture_cell_old(layers%fracture_cell(l)), .true., dim=1)
-         else if (cell_old(layers%cell(l)) > 0) then
-            same_layer = findloc(before%cell == cell_old(layers%cell(l)) .and. &
-                                 before%face_of_cell == layers%face_of_cell(l), .true., dim=1)
-         end if
-      end function same_layer
+         values = 0.0_rk
+         associate (c => layers%fracture_cell(l), place => layers%chain(l)%place)
+            if (c == 0) then
+               if (cell_old(layers%cell(l)) == 0) return
+               old = findloc(before%cell == cell_old(layers%cell(l)) .and. &
+                             before%face_of_cell == layers%face_of_cell(l), .true., dim=1)
+               call add_values(before, old, 1.0_rk, place, values)
+               return
+            end if
+            do part = faces%before%first(c), faces%before%last(c)
+               old = layer_before(before, faces%before%item(part), layers%side(l))
+               call add_values(before, old, faces%of_new(part), place, values)
+            end do
+         end associate
+      end subroutine find_values
 
    end subroutine take_profiles
 
-   !> Give the content of layers whose face has none on the new mesh to the cell there.
-   pure subroutine give_back(before, is_taken, mesh, fracture_cell_old, content)
+   !> Add a share of the pressures of a layer before, beyond that of the rest of its cell.
+   pure subroutine add_values(before, old, share, place, values)
       type(profiles_t), intent(in) :: before
-      logical, intent(in) :: is_taken(:)  !< layers that the new mesh has
-      type(mesh_t), intent(in) :: mesh  !< new
-      integer(ik), intent(in) :: fracture_cell_old(:)  !< the same fracture cell before; 0: none
-      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
-      integer(ik) :: at, old
+      integer(ik), intent(in) :: old  !< layer; 0: none
+      real(rk), intent(in) :: share  !< of the face [-]
+      real(rk), intent(in) :: place(:)  !< [m]
+      real(rk), intent(inout) :: values(:)  !< there [Pa]
 
-      do old = 1, size(is_taken, kind=ik)
-         if (is_taken(old) .or. .not. abs(before%excess(old)) > 0.0_rk) cycle
-         at = findloc(fracture_cell_old, before%fracture_cell(old), dim=1)
-         if (at == 0) cycle
-         associate (cell => mesh%face_cells(1, mesh%fracture%cell_faces(before%side(old), at)))
-            content(cell) = content(cell) + before%excess(old)
-         end associate
+      if (old == 0) return
+      associate (m => before%n(old))
+         values = values + share*interpolated(before%place(:m, old), before%value(:m + 1, old) &
+                                              - before%value(m + 1, old), place)
+      end associate
+   end subroutine add_values
+
+   !> Number of the layer on a side of a fracture cell; 0: none.
+   pure integer(ik) function layer_before(before, fracture_cell, side)
+      type(profiles_t), intent(in) :: before
+      integer(ik), intent(in) :: fracture_cell, side
+
+      layer_before = findloc(before%fracture_cell == fracture_cell .and. before%side == side, &
+                             .true., dim=1, kind=ik)
+   end function layer_before
+
+   !> Return the excess that has been set apart to the cells at the same faces, whether these have
+   !! layers or not.
+   pure subroutine return_excess(before, mesh, cell_old, faces, content)
+      type(profiles_t), intent(in) :: before
+      type(mesh_t), intent(in) :: mesh  !< new
+      integer(ik), intent(in) :: cell_old(:)  !< (n_cells) the same cell before; 0: none
+      type(kept_faces_t), intent(in) :: faces
+      real(rk), intent(inout) :: content(:)  !< (n_cells) [m2]
+      integer(ik) :: at, c, old, part, side
+
+      do c = 1, mesh%fracture%n_cells
+         do side = 1, 2
+            associate (cell => mesh%face_cells(1, mesh%fracture%cell_faces(side, c)))
+               do part = faces%before%first(c), faces%before%last(c)
+                  old = layer_before(before, faces%before%item(part), side)
+                  if (old == 0) cycle
+                  content(cell) = content(cell) + faces%of_old(part)*before%excess(old)
+               end do
+            end associate
+         end do
       end do
-   end subroutine give_back
+      do old = 1, size(before%cell, kind=ik)
+         if (before%fracture_cell(old) > 0) cycle
+         at = findloc(cell_old, before%cell(old), dim=1, kind=ik)
+         if (at > 0) content(at) = content(at) + before%excess(old)
+      end do
+   end subroutine return_excess
 
    !> Linear interpolation between nodes; the first value holds up to the first node, the last one,
    !! of the rest of the cell, beyond the last node.
