@@ -32,56 +32,118 @@ module coarse_layer_profiles
 contains
 
    !> The pressure at a point that lies before a face with a layer, not farther from it than the
-   !! centre of its cell; elsewhere it is left as it is.
-   pure subroutine find_pressure(layers, mesh, unknowns, inner, xy, pressure)
+   !! height of its cell; elsewhere it is left as it is. Beyond the last node of the chain it is an
+   !! exponential curve, with the slope of the chain there, to the pressure of the farthest node of
+   !! the point's cell: exact where the pressure is linear.
+   pure subroutine find_pressure(layers, mesh, unknowns, inner, xy, cell, at_nodes, pressure)
       type(layers_t), intent(in) :: layers
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
       real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
       real(rk), intent(in) :: xy(2)  !< [m]
+      integer(ik), intent(in) :: cell  !< in which the point lies
+      real(rk), intent(in) :: at_nodes(3)  !< pressures at the nodes of this cell [Pa]
       real(rk), intent(inout) :: pressure  !< [Pa]
-      real(rk) :: along(2), at_face, centre, distance, nearest, normal(2), offset(2), start(2)
-      integer(ik) :: l
+      real(rk) :: along(2), at_face, distance(3), height, nearest, normal(2), offset(2), start(2)
+      integer(ik) :: far, k, l
 
       nearest = huge(1.0_rk)
       do l = 1, layers%n
          associate (ends => mesh%xy(:, mesh%face_nodes(:, mesh%layer_face(l))), &
-                    cell => layers%cell(l), chain => layers%chain(l), n => layers%chain(l)%n)
+                    chain => layers%chain(l), n => layers%chain(l)%n)
             start = ends(:, 1)
             along = (ends(:, 2) - start)/norm2(ends(:, 2) - start)
             normal = [-along(2), along(1)]
-            offset = cell_centre(mesh, cell) - start
+            offset = cell_centre(mesh, layers%cell(l)) - start
             if (dot_product(offset, normal) < 0.0_rk) normal = -normal
-            centre = dot_product(offset, normal)
+            height = 3.0_rk*dot_product(offset, normal)
             offset = xy - start
-            distance = dot_product(offset, normal)
-            if (distance < 0.0_rk .or. distance > min(centre, nearest)) cycle
-            if (dot_product(offset, along) < 0.0_rk) cycle
-            if (dot_product(offset, along) > norm2(ends(:, 2) - start)) cycle
-            nearest = distance
+            associate (depth => dot_product(offset, normal))
+               if (depth < 0.0_rk .or. depth > min(height, nearest)) cycle
+               if (dot_product(offset, along) < 0.0_rk) cycle
+               if (dot_product(offset, along) > norm2(ends(:, 2) - start)) cycle
+               nearest = depth
+            end associate
+            distance = [(dot_product(mesh%xy(:, mesh%cell_nodes(k, cell)) - start, normal), k=1, 3)]
+            far = maxloc(distance, dim=1)
             at_face = layers%given(l)
             if (layers%at(1, l) > 0) at_face = unknowns(3, layers%at(1, l)/3)
-            pressure = between_nodes([0.0_rk, chain%place, centre], &
-                                     [at_face, inner(:n - 1, l), &
-                                      unknowns(1, layer_block(mesh, l)), &
-                                      unknowns(3, layer_block(mesh, mesh%cell_layer(cell)))], &
-                                     distance)
+            pressure = along_chain([0.0_rk, chain%place, distance(far)], &
+                                   [at_face, inner(:n - 1, l), unknowns(1, layer_block(mesh, l)), &
+                                    at_nodes(far)], nearest)
          end associate
       end do
    end subroutine find_pressure
 
-   !> Linear interpolation between nodes.
-   pure real(rk) function between_nodes(place, value, at) result(found)
+   !> Between nodes by cubics without overshoot (slopes by harmonic means of those of the secants),
+   !! exponentially between the last two.
+   pure real(rk) function along_chain(place, value, at) result(found)
       real(rk), intent(in) :: place(:)  !< [m]
       real(rk), intent(in) :: value(:)  !< [Pa]
       real(rk), intent(in) :: at  !< between the first and the last place [m]
-      integer(ik) :: k
-      real(rk) :: t
+      integer(ik) :: k, m
+      real(rk) :: rate, secant(size(place) - 1), t
 
-      k = max(1_ik, min(count(place <= at, kind=ik), size(place, kind=ik) - 1))
+      m = size(place, kind=ik)
+      k = max(1_ik, min(count(place <= at, kind=ik), m - 1))
       t = (at - place(k))/(place(k + 1) - place(k))
-      found = (1.0_rk - t)*value(k) + t*value(k + 1)
-   end function between_nodes
+      secant = (value(2:) - value(:m - 1))/(place(2:) - place(:m - 1))
+      if (k == m - 1) then
+         if (abs(secant(k)) > 0.0_rk) then
+            rate = decay_rate(slope_at(k)/secant(k))
+            if (abs(rate) > sqrt(epsilon(1.0_rk))) then
+               t = (1.0_rk - exp(-rate*t))/(1.0_rk - exp(-rate))
+            end if
+         end if
+         found = (1.0_rk - t)*value(k) + t*value(k + 1)
+      else
+         associate (h => place(k + 1) - place(k))
+            found = value(k) + h*t*(secant(k) + (1.0_rk - t) &
+                                    *((1.0_rk - t)*(slope_at(k) - secant(k)) &
+                                      - t*(slope_at(k + 1) - secant(k))))
+         end associate
+      end if
+
+   contains
+
+      !> Slope at node i.
+      pure real(rk) function slope_at(i) result(slope)
+         integer(ik), intent(in) :: i
+
+         slope = secant(max(1_ik, i - 1))
+         if (i == 1 .or. i == m) return
+         if (i == m - 1) return  ! the last secant is long
+         slope = 0.0_rk
+         if (secant(i - 1)*secant(i) <= 0.0_rk) return
+         associate (before => place(i) - place(i - 1), after => place(i + 1) - place(i))
+            slope = 3.0_rk*(before + after)/((before + 2.0_rk*after)/secant(i - 1) &
+                                             + (2.0_rk*before + after)/secant(i))
+         end associate
+      end function slope_at
+
+   end function along_chain
+
+   !> The rate u at which (1 - exp(-u t))/(1 - exp(-u)) has a slope at t = 0, u/(1 - exp(-u)).
+   pure real(rk) function decay_rate(slope) result(u)
+      real(rk), intent(in) :: slope  !< below a hundredth as a hundredth [-]
+      real(rk), parameter :: least = 0.01_rk, most = 100.0_rk
+      integer, parameter :: halvings = 50
+      real(rk) :: high, low, start
+      integer :: i
+
+      low = -most
+      high = most
+      do i = 1, halvings
+         u = 0.5_rk*(low + high)
+         start = 1.0_rk + 0.5_rk*u  ! near u = 0
+         if (abs(u) > 1.0e-6_rk) start = u/(1.0_rk - exp(-u))
+         if (start < max(least, min(most, slope))) then
+            low = u
+         else
+            high = u
+         end if
+      end do
+   end function decay_rate
 
    !> Those of a state without layers.
    pure type(profiles_t) function no_profiles() result(none)

@@ -139,7 +139,7 @@ contains
             row%pressure(i) = value(3)
             if (allocated(state%layer)) then
                call find_pressure(model%layers, mesh, state%unknowns, state%layer, xy(:, i), &
-                                  row%pressure(i))
+                                  cells(i), at_nodes(3, :), row%pressure(i))
             end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             if (.not. allocated(model%in_situ)) cycle

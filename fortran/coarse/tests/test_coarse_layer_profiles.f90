@@ -1,18 +1,19 @@
 !> Layers from one mesh to the next: the same faces keep pressures and content; faces that consist
 !! of halves of two others have the means of their pressures; no fluid is made or lost, also where
-!! the new mesh has no layers.
+!! the new mesh has no layers. Pressures at points before faces: exact in steady flow.
 program test_coarse_layer_profiles
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
+   use base_plane, only: barycentric
    use base_timers, only: timers_t
-   use coarse_layer_profiles, only: kept_faces_t, profiles_of, profiles_t, return_excess, &
-                                    set_apart, take_profiles
+   use coarse_layer_profiles, only: find_pressure, kept_faces_t, profiles_of, profiles_t, &
+                                    return_excess, set_apart, take_profiles
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: mesh_square, porous_body, straight_network, uniform_cells
+   use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: initial_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -27,6 +28,7 @@ program test_coarse_layer_profiles
    call take_in_fluid()
    call same_faces()
    call moved_faces()
+   call points_in_steady_flow()
    call checks%finish()
 
 contains
@@ -123,6 +125,49 @@ contains
       beyond = at%layer(1, l) &
                - at%unknowns(3, (model%layers%at(2, mesh%cell_layer(model%layers%cell(l))) + 2)/3)
    end function beyond
+
+   !> Steady flow from right to left, across a fracture: the pressure is linear, and so it is in the
+   !! layers, in and beyond their chains.
+   subroutine points_in_steady_flow()
+      real(rk), parameter :: across(2, 2, 1) = reshape([1.0_rk, 0.0_rk, 1.0_rk, 2.0_rk], [2, 2, 1])
+      real(rk), parameter :: drop = 2.0e7_rk  ! per m [Pa/m]
+      real(rk), parameter :: depth(5) = [1.0e-5_rk, 1.0e-3_rk, 0.03_rk, 0.08_rk, 0.15_rk]
+      type(mesher_t) :: mesher
+      type(step_report_t) :: report
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      type(scene_t) :: scene
+      real(rk) :: found, largest, weight(3), xy(2)
+      integer(ik) :: c, i
+
+      scene = porous_body()
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      call load_sides(scene, [-60.0e6_rk, -60.0e6_rk, 0.0_rk])
+      scene%sides(1:2)%pressure_given = .true.
+      scene%sides(2)%pressure = 2.0_rk*drop
+      call mesh_square(checks, straight_network(across), 0.25_rk, 0.3_rk, mesher, mesh)
+      model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization with drained sides")
+      call new_state(mesh, model%cells, initial_t(), model, state)
+      call model%advance(mesh, 1.0e12_rk, state, timers, report, error)
+      call checks%no_error(error, "steady flow")
+      call checks%is_true(report%converged, "steady flow: converged")
+      largest = 0.0_rk
+      do i = 1, size(depth)
+         xy = [depth(i), 0.31_rk]
+         do c = 1, mesh%n_cells
+            weight = barycentric(mesh%xy(:, mesh%cell_nodes(:, c)), xy)
+            if (all(weight >= 0.0_rk)) exit
+         end do
+         found = -1.0_rk
+         call find_pressure(model%layers, mesh, state%unknowns, state%layer, xy, c, &
+                            drop*mesh%xy(1, mesh%cell_nodes(:, c)), found)
+         largest = max(largest, abs(found - drop*xy(1)))
+      end do
+      call checks%is_close(largest/drop, 0.0_rk, 1.0e-5_rk, "pressure at points, steady flow")
+   end subroutine points_in_steady_flow
 
    !> From the mesh to itself, with or without layers on the new one.
    subroutine carry_over(faces, has_layers, after)
