@@ -7,18 +7,34 @@
 !! the first one in the middle of its volume: this is worth twice the number of nodes (compare the
 !! spectrally matched grids of Druskin and Knizhnerman; Ingerman et al. 2000).
 !!
-!! An implicit step of length dt is
-!!   T p = s - mu v + dt g_0 p_0 e_1 + dt g_n p_end e_n
-!! for the inner nodes 1 .. n = N - 1, with T the storage and dt times the conductances, s the
-!! content before the step, p_0 the scalar at the face, p_end that of node N, and mu a content per
-!! volume that all volumes receive alike (coarse_layers). `prepare` eliminates the inner nodes:
-!!   p = rho - gamma mu + alpha p_0 + beta p_end.
+!! In a step of length dt the inner nodes 1 .. n = N - 1 take m implicit steps of length h = dt/m,
+!!   T p_k = C p_(k-1) - mu v/m + h g_0 p_0k e_1 + h g_n p_end,k e_n,
+!! with C the storage, T = C + h times the conductances, p_0 the scalar at the face, p_end that of
+!! node N, and mu a content per volume that all volumes receive alike in the step (coarse_layers).
+!! The scalars at both ends change linearly in the step (a prescribed one is that after it). With
+!! m = 4 the flow into a thin layer has a fourth of the error of m = 1. But where the whole chain
+!! follows its ends within the step, the scalar at a face that stores little would oscillate from
+!! step to step; with m = 1 it does not. The result is the mean of both, weighted by the length of
+!! the step: symmetric, without negative coefficients, and with the balance of each.
+!!
+!! The elimination of the inner nodes:
+!!   p = rho - gamma mu + alpha p_0 + beta p_end after the step,
+!! and the same for the means over the step, which determine the flow in it.
 module coarse_chain
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
    public :: chain_t, new_chain, node_count
+
+   integer, parameter :: parts(2) = [1, 4]  !< m of the two schemes
+
+   !> Implicit steps of the inner nodes in a step of the chain.
+   type :: scheme_t
+      integer :: parts = 1  !< m
+      real(rk) :: share = 1.0_rk  !< weight in the mean of the schemes [-]
+      real(rk), allocatable :: pivot(:), factor(:)  !< (N - 1) of the elimination; pivots inverted
+   end type scheme_t
 
    type :: chain_t
       integer(ik) :: n = 0  !< nodes N, at least 2
@@ -29,14 +45,18 @@ module coarse_chain
       real(rk) :: storage = 0.0_rk  !< content per volume and scalar [1/Pa]
       ! Of the last step length:
       real(rk) :: dt = -1.0_rk  !< [s]
+      type(scheme_t) :: scheme(2)
       real(rk), allocatable :: alpha(:), beta(:)  !< (N - 1) [-]
       real(rk), allocatable :: gamma(:)  !< (N - 1) [Pa]
-      real(rk), allocatable :: pivot(:), factor(:)  !< of the elimination
+      !> mean over the step, of the scalars at the ends by those after it [-]
+      real(rk) :: mean_weight = 1.0_rk
+      !> mean coefficients: of the first inner node for p_0 and p_end, of the last for p_end [-]
+      real(rk) :: near_face(2) = 0.0_rk, near_end = 0.0_rk
+      real(rk) :: mean_gamma(2) = 0.0_rk  !< of the first and the last inner node [Pa]
    contains
       procedure :: prepare
       procedure :: stored
       procedure :: inner
-      procedure, private :: solve
    end type chain_t
 
 contains
@@ -46,9 +66,9 @@ contains
       real(rk), intent(in) :: thickness  !< of the layer [m]
       real(rk), intent(in) :: first  !< thickness of the first volume [m]
 
-      node_count = 6
-      if (first < thickness/200.0_rk) node_count = 8
-      if (first < thickness/5000.0_rk) node_count = 10
+      node_count = 7
+      if (first < thickness/200.0_rk) node_count = 10
+      if (first < thickness/5000.0_rk) node_count = 14
    end function node_count
 
    !> A chain on a face.
@@ -105,53 +125,136 @@ contains
    pure subroutine prepare(self, dt)
       class(chain_t), intent(inout) :: self
       real(rk), intent(in) :: dt  !< [s]
-      real(rk) :: unit(self%n - 1)
+      real(rk) :: blend
+      integer :: k
+
+      self%dt = dt
+      ! c dt over the squares of the thickness of the chain and of its first volume; storage over
+      ! conductance at the face is half the square of the latter over c.
+      associate (over_all => dt/(self%storage*sum(self%volume)*sum(1.0_rk/self%conductance)), &
+                 of_first => 2.0_rk*self%storage*self%volume(1)/(self%conductance(0)*dt))
+         blend = 1.0_rk/(1.0_rk + over_all + of_first)
+      end associate
+      self%scheme%parts = parts
+      self%scheme%share = [1.0_rk - blend, blend]
+      self%alpha = spread(0.0_rk, 1, int(self%n) - 1)
+      self%beta = self%alpha
+      self%gamma = self%alpha
+      self%mean_weight = 0.0_rk
+      self%near_face = 0.0_rk
+      self%near_end = 0.0_rk
+      self%mean_gamma = 0.0_rk
+      do k = 1, size(parts)
+         call factorize(self, self%scheme(k))
+         call add_response(self, self%scheme(k))
+      end do
+   end subroutine prepare
+
+   !> Factors of T.
+   pure subroutine factorize(self, scheme)
+      class(chain_t), intent(inout) :: self
+      type(scheme_t), intent(inout) :: scheme
+      real(rk) :: h
       integer(ik) :: i, m
 
       m = self%n - 1
-      self%dt = dt
-      self%pivot = self%storage*self%volume(:m) + dt*(self%conductance(:m - 1) &
-                                                      + self%conductance(1:m))
-      self%factor = spread(0.0_rk, 1, int(m))
+      h = self%dt/scheme%parts
+      scheme%pivot = self%storage*self%volume(:m) &
+                     + h*(self%conductance(:m - 1) + self%conductance(1:m))
+      if (.not. allocated(scheme%factor)) allocate (scheme%factor(m))
+      scheme%factor(1) = 0.0_rk
       do i = 2, m
-         self%factor(i) = -dt*self%conductance(i - 1)/self%pivot(i - 1)
-         self%pivot(i) = self%pivot(i) + self%factor(i)*dt*self%conductance(i - 1)
+         scheme%factor(i) = h*self%conductance(i - 1)/scheme%pivot(i - 1)
+         scheme%pivot(i) = scheme%pivot(i) - scheme%factor(i)*h*self%conductance(i - 1)
       end do
-      unit = 0.0_rk
-      unit(1) = dt*self%conductance(0)
-      self%alpha = self%solve(unit)
-      unit = 0.0_rk
-      unit(m) = dt*self%conductance(m)
-      self%beta = self%solve(unit)
-      self%gamma = self%solve(self%volume(:m))
-   end subroutine prepare
+      scheme%pivot = 1.0_rk/scheme%pivot
+   end subroutine factorize
 
-   !> T^-1 b.
-   pure function solve(self, b) result(p)
+   !> Add the share of a scheme in the coefficients.
+   pure subroutine add_response(self, scheme)
+      class(chain_t), intent(inout) :: self
+      type(scheme_t), intent(in) :: scheme
+      real(rk) :: first(3), h, last(3), response(self%n - 1, 3)
+      integer(ik) :: i, m
+      integer :: k
+
+      m = self%n - 1
+      h = self%dt/scheme%parts
+      response = 0.0_rk
+      first = 0.0_rk
+      last = 0.0_rk
+      do k = 1, scheme%parts
+         do i = 1, 3
+            response(:, i) = self%storage*self%volume(:m)*response(:, i)
+         end do
+         response(1, 1) = response(1, 1) + h*self%conductance(0)*k/scheme%parts
+         response(m, 2) = response(m, 2) + h*self%conductance(m)*k/scheme%parts
+         response(:, 3) = response(:, 3) + self%volume(:m)/scheme%parts
+         do i = 1, 3
+            call solve(self, scheme, response(:, i))
+         end do
+         first = first + response(1, :)/scheme%parts
+         last = last + response(m, :)/scheme%parts
+      end do
+      associate (share => scheme%share)
+         self%alpha = self%alpha + share*response(:, 1)
+         self%beta = self%beta + share*response(:, 2)
+         self%gamma = self%gamma + share*response(:, 3)
+         self%mean_weight = self%mean_weight + share*0.5_rk*(1.0_rk + 1.0_rk/scheme%parts)
+         self%near_face = self%near_face + share*first(:2)
+         self%near_end = self%near_end + share*last(2)
+         self%mean_gamma = self%mean_gamma + share*[first(3), last(3)]
+      end associate
+   end subroutine add_response
+
+   !> Solve T p = b in place.
+   pure subroutine solve(self, scheme, p)
       class(chain_t), intent(in) :: self
-      real(rk), intent(in) :: b(:)  !< (N - 1) [m2]
-      real(rk) :: p(size(b))  !< [Pa]
+      type(scheme_t), intent(in) :: scheme
+      real(rk), intent(inout) :: p(:)  !< (N - 1) b [m2], then [Pa]
       integer(ik) :: i, m
 
-      m = size(b, kind=ik)
-      p = b
+      m = size(p, kind=ik)
       do i = 2, m
-         p(i) = p(i) - self%factor(i)*p(i - 1)
+         p(i) = p(i) + scheme%factor(i)*p(i - 1)
       end do
-      p(m) = p(m)/self%pivot(m)
+      p(m) = p(m)*scheme%pivot(m)
       do i = m - 1, 1, -1
-         p(i) = (p(i) + self%dt*self%conductance(i)*p(i + 1))/self%pivot(i)
+         p(i) = p(i)*scheme%pivot(i) + scheme%factor(i + 1)*p(i + 1)
       end do
-   end function solve
+   end subroutine solve
 
-   !> rho: what the content before the step alone gives.
-   pure function stored(self, before) result(rho)
+   !> rho: the scalars after the step that follow from those before it alone, and their means over
+   !! the step next to both ends.
+   pure subroutine stored(self, before, ends, rho, means)
       class(chain_t), intent(in) :: self
       real(rk), intent(in) :: before(:)  !< (N - 1) scalars before the step [Pa]
-      real(rk) :: rho(size(before))  !< [Pa]
+      real(rk), intent(in) :: ends(2)  !< p_0 and that of node N before the step [Pa]
+      real(rk), intent(out) :: rho(:)  !< (N - 1) [Pa]
+      real(rk), intent(out) :: means(2)  !< of the first and the last inner node [Pa]
+      real(rk) :: from_ends(2), p(size(before))
+      integer :: i, k, m
 
-      rho = self%solve(self%storage*self%volume(:size(before))*before)
-   end function stored
+      m = size(before)
+      rho = 0.0_rk
+      means = 0.0_rk
+      do i = 1, size(self%scheme)
+         associate (scheme => self%scheme(i), parts => self%scheme(i)%parts)
+            p = before
+            do k = 1, parts
+               p = self%storage*self%volume(:m)*p
+               if (k < parts) then
+                  from_ends = real(parts - k, rk)/parts**2*self%dt*self%conductance([0, m])*ends
+                  p(1) = p(1) + from_ends(1)
+                  p(m) = p(m) + from_ends(2)
+               end if
+               call solve(self, scheme, p)
+               means = means + scheme%share/parts*p([1, m])
+            end do
+            rho = rho + scheme%share*p
+         end associate
+      end do
+   end subroutine stored
 
    !> The inner nodes after the step.
    pure function inner(self, rho, mu, at_face, at_end) result(p)

@@ -1,30 +1,25 @@
-!> The coarse level: Biot's equations in the rock, contact and flow in the fractures, one time step
-!! at a time. The rock is discretized once per mesh and factorized once per length of the time step;
-!! a step then costs one substitution and a few small Newton steps on the fractures.
+!> The coarse level: Biot's equations in the rock, contact and flow in the fractures, discretized on
+!! one mesh. Its time steps are in the submodule coarse_steps.
 module coarse_model
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_timers, only: phase_assemble, phase_contact, phase_discretize, phase_factorize, &
-                          phase_solve, timers_t
-   use base_tolerances, only: same_time
+   use base_timers, only: phase_assemble, phase_discretize, timers_t
    use contact_law, only: state_stick
-   use coarse_tips, only: crack_ends_t, dampers, free_ends, jumps_of, place_tips, tip_springs
-   use coarse_diffusion, only: boundary_outflow, cell_outflow
-   use coarse_fields, only: cell_contents, corner_tractions
-   use coarse_fluid_law, only: add_fracture_balance
-   use coarse_fractures, only: flow_paths_t, newton_settings_t
+   use coarse_tips, only: crack_ends_t, free_ends
+   use coarse_fractures, only: newton_settings_t
    use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
-   use coarse_layers, only: give_back, layers_t, no_profiles, place_layers, profiles_t
+   use coarse_layers, only: layers_t
+   use coarse_layer_places, only: add_tip_flow, place_layers
    use coarse_joints, only: find_joints, joints_t, renew_outlets
    use coarse_matrix, only: matrix_t
-   use coarse_newton, only: fracture_problem_t, solve_fractures
+   use coarse_newton, only: fracture_problem_t
    use coarse_loads, only: add_point_forces, find_weight, hold_points
    use coarse_regions, only: regions_t
    use coarse_permeability, only: place_regions, relative_resistance
    use coarse_rock, only: new_rock, rock_t, solid_t
-   use coarse_wells, only: control_rate, rock_wells_t, wells_t
-   use coarse_state, only: fracture_cells_t, go_back, state_t, step_report_t
+   use coarse_wells, only: control_rate, rock_wells_t
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use coarse_stencils, only: discretize, renew_sides
    use mesh_types, only: mesh_t, point_interior
    use scene_fluid_law, only: has_law, new_fluid_law
@@ -34,7 +29,7 @@ module coarse_model
    implicit none(type, external)
    private
 
-   public :: coarse_model_t, give_back, new_state, no_profiles, profiles_t, rest_fluid
+   public :: coarse_model_t, new_state, rest_fluid
 
    !> Discretized body on one mesh.
    type, extends(fracture_problem_t) :: coarse_model_t
@@ -62,6 +57,34 @@ module coarse_model
       procedure :: advance
       procedure :: release
    end type coarse_model_t
+
+   interface
+
+      !> Undrained response to the load: the fractures have the pressure of the adjacent rock, and
+      !! no fluid flows along them, through joints or wells.
+      module subroutine equilibrate(self, mesh, dt, state, timers, report, error)
+         class(coarse_model_t), intent(inout) :: self
+         type(mesh_t), intent(in) :: mesh
+         real(rk), intent(in) :: dt  !< a time in which no fluid moves noticeably [s]
+         type(state_t), intent(inout) :: state
+         type(timers_t), intent(inout) :: timers
+         type(step_report_t), intent(out) :: report
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine equilibrate
+
+      !> One backward Euler step. The state changes only if the step converges (report%converged);
+      !! an error is raised where the equations cannot be solved at all.
+      module subroutine advance(self, mesh, dt, state, timers, report, error)
+         class(coarse_model_t), intent(inout) :: self
+         type(mesh_t), intent(in) :: mesh
+         real(rk), intent(in) :: dt  !< [s]
+         type(state_t), intent(inout) :: state
+         type(timers_t), intent(inout) :: timers
+         type(step_report_t), intent(out) :: report
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine advance
+
+   end interface
 
 contains
 
@@ -106,7 +129,7 @@ contains
       call discretize(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ, &
                       self%layers%relief)
       if (.not. allocated(error)) then
-         call self%layers%add_tip_flow(mesh, self%rock, self%matrix)
+         call add_tip_flow(self%layers, mesh, self%rock, self%matrix)
          if (scene%has_points()) call hold_points(scene, mesh, self%matrix, self%weight)
          call find_connections(mesh, self%connections)
          call find_joints(mesh, self%sides, self%joints)
@@ -221,283 +244,6 @@ contains
       state%branch_flow = spread(0.0_rk, 1, int(model%joints%branch_count()))
       state%joint_pressure = [(model%joints%mean_pressure(j, state%pressure), j=1, model%joints%n)]
    end subroutine rest_fluid
-
-   !> Undrained response to the load: the fractures have the pressure of the adjacent rock, and no
-   !! fluid flows along them, through joints or wells.
-   subroutine equilibrate(self, mesh, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt  !< a time in which no fluid moves noticeably [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-      type(flow_paths_t) :: none
-      real(rk) :: time
-
-      call timers%heed(error)
-      if (allocated(error)) return
-      time = state%time
-      none%settings = self%settings
-      none%settings%equilibrate = .true.
-      allocate (none%connections(2, 0))
-      call solve_step(self, mesh, none, dt, state, timers, report, error)
-      state%time = time
-      if (report%converged) call rest_fluid(self, state)
-   end subroutine equilibrate
-
-   !> One backward Euler step. The state changes only if the step converges (report%converged); an
-   !! error is raised where the equations cannot be solved at all.
-   subroutine advance(self, mesh, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt  !< [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-      type(flow_paths_t) :: paths
-
-      call timers%heed(error)
-      if (allocated(error)) return
-      paths = self%flow_paths_t
-      if (self%rock_wells%n > 0) then
-         call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
-      else
-         call solve_step(self, mesh, paths, dt, state, timers, report, error)
-      end if
-   end subroutine advance
-
-   !> A step with pressure-controlled wells in the rock, repeated until the results agree with the
-   !! controls that have been tried.
-   subroutine advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      type(flow_paths_t), intent(in) :: paths
-      real(rk), intent(in) :: dt  !< [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-      type(state_t) :: before
-      logical :: any_changed
-      integer(ik) :: first, k, last, most
-
-      before = state
-      first = self%wells%n + 1
-      last = self%wells%n_all
-      associate (wells => self%rock_wells, head_before => before%well_head(first:))
-         call wells%choose_controls(self%wells, state%rock_well_control)
-         most = 3*wells%n + 1
-         do k = 1, 2*most + 30
-            call wells%set_terms(self%wells, dt, head_before, self%matrix, any_changed)
-            if (any_changed) self%condensed%dt = -1.0_rk
-            call solve_step(self, mesh, paths, dt, state, timers, report, error)
-            if (allocated(error) .or. .not. report%converged) return
-            call wells%find_flows(self%wells, dt, head_before, state%unknowns(3, :mesh%n_cells), &
-                                  state%well_flow(first:last), state%well_head(first:last), &
-                                  state%well_rate(first:last))
-            ! The balance contains the sources at a pressure of zero in the cells.
-            report%mass_error = report%mass_error + dt*sum(wells%source &
-                                                           - state%well_flow(first:last))
-            call wells%correct_controls(self%wells, state%well_head(first:last), &
-                                        state%well_rate(first:last), k > most, any_changed)
-            if (.not. any_changed) exit
-            call go_back(state, before)
-         end do
-         state%rock_well_control = wells%control
-      end associate
-      report%converged = .not. any_changed
-      if (any_changed) report%reason = "no combination of well controls satisfies all well limits"
-   end subroutine advance_with_wells
-
-   !> Set the springs on the faces of the fractures: at tips, and dampers.
-   subroutine support_faces(self, mesh, settings, dt)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      type(newton_settings_t), intent(in) :: settings  !< of the step
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), allocatable :: spring(:)
-
-      spring = tip_springs(self%ends, self%rock, mesh, self%condensed)
-      if (is_damped(settings)) then
-         spring = spring + dampers(self%condensed, self%settings%damping/dt)
-      end if
-      call self%condensed%support(spring)
-      call place_tips(self%ends, self%condensed%length, self%cells)
-      if (allocated(self%rock_resistance)) then
-         self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
-      end if
-   end subroutine support_faces
-
-   !> Right-hand side of the body: loads, sources, stored fluid.
-   subroutine find_load(self, mesh, wells, dt, content, load, fluid)
-      class(coarse_model_t), intent(in) :: self
-      type(mesh_t), intent(in) :: mesh
-      type(wells_t), intent(in) :: wells  !< of the step
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: content(:)  !< (cells) of fluid before the step [m2]
-      real(rk), allocatable, intent(out) :: load(:, :)  !< (3, n_blocks) [N/m], [m2]
-      real(rk), allocatable, intent(out) :: fluid(:)  !< (cells) injected, if any [m2/s]
-      integer(ik) :: w
-
-      load = self%matrix%elastic_known
-      load(3, :) = load(3, :) + dt*self%matrix%flow_known
-      if (self%layers%n > 0) then
-         associate (of_layers => load(:2, mesh%n_cells + 1:mesh%n_cells + self%layers%n))
-            of_layers = of_layers + dt*self%matrix%layer_known
-         end associate
-      end if
-      load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - content
-      if (allocated(self%source)) then
-         fluid = self%source(3, :)
-         if (wells%n_all > wells%n) then
-            do w = 1, self%rock_wells%n
-               associate (into => fluid(self%rock_wells%cell(w)))
-                  into = into + self%rock_wells%source(w)
-               end associate
-            end do
-         end if
-         load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%source(:2, :)
-         load(3, :mesh%n_cells) = load(3, :mesh%n_cells) - dt*fluid
-      end if
-      if (allocated(self%weight)) then
-         load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%weight
-      end if
-   end subroutine find_load
-
-   !> Add the loads of dampers and of a stress in situ on the faces.
-   subroutine add_face_loads(self, mesh, settings, dt, jump, load)
-      class(coarse_model_t), intent(in) :: self
-      type(mesh_t), intent(in) :: mesh
-      type(newton_settings_t), intent(in) :: settings  !< of the step
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: jump(:, :, :)  !< (2, 2, fracture cells) before the step [m]
-      real(rk), intent(inout) :: load(:)  !< on the condensed system [N/m], [m2]
-
-      if (mesh%fracture%n_cells > 0 .and. is_damped(settings)) then
-         load = load + dampers(self%condensed, self%settings%damping/dt) &
-                *jumps_of(self%condensed, jump)
-      end if
-      if (allocated(self%in_situ)) then
-         call self%in_situ%add_contact_tractions(mesh%fracture, self%condensed%length, &
-                                                 self%condensed%normal, self%condensed%layout, load)
-      end if
-   end subroutine add_face_loads
-
-   !> Solve a step with the present sources and matrix.
-   subroutine solve_step(self, mesh, paths, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      type(flow_paths_t), intent(in) :: paths
-      real(rk), intent(in) :: dt  !< [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: fluid(:), rhs(:, :), g(:), q(:)
-      type(state_t) :: before
-      integer(ik) :: n
-
-      n = mesh%fracture%n_cells
-      if (.not. abs(self%condensed%dt - dt) <= same_time*dt) then
-         call timers%start(phase_factorize)
-         call self%layers%set_terms(dt, self%matrix)
-         call self%condensed%factorize(mesh, self%matrix, dt, error)
-         call timers%stop(phase_factorize)
-         if (allocated(error)) return
-      end if
-      if (n > 0) call support_faces(self, mesh, paths%settings, dt)
-      allocate (g(self%condensed%layout%count()), q(self%condensed%layout%count()))
-      call timers%start(phase_assemble)
-      call find_load(self, mesh, paths%wells, dt, state%content, rhs, fluid)
-      if (self%layers%n > 0) then
-         call self%layers%set_given(self%sides)
-         call self%layers%add_load(state%unknowns, state%layer, rhs)
-      end if
-      call timers%stop(phase_assemble)
-      call timers%start(phase_solve)
-      call self%condensed%condense(rhs, g, error)
-      call timers%stop(phase_solve)
-      if (allocated(error)) return
-      call add_face_loads(self, mesh, paths%settings, dt, state%jump, g)
-
-      before = state
-      report%converged = .true.
-      if (n > 0) then
-         call timers%start(phase_contact)
-         call solve_fractures(self%fracture_problem_t, paths, dt, g, state, q, report)
-         call timers%stop(phase_contact)
-         if (.not. report%converged) return
-         state%injection = self%cells%injection
-         if (paths%wells%n > 0) then
-            state%injection = state%injection + matmul(paths%wells%share, &
-                                                       state%well_flow(:paths%wells%n))
-         end if
-      end if
-      call timers%start(phase_solve)
-      call self%condensed%expand(q, rhs, state%unknowns, error)
-      call timers%stop(phase_solve)
-      if (allocated(error)) return
-      call timers%start(phase_assemble)
-      if (self%layers%n > 0) call self%layers%update(state%unknowns, state%layer)
-      call corner_tractions(self%regions, state%unknowns, state%tractions)
-      call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, &
-                         state%tractions, state%content)
-      state%time = state%time + dt
-      call book_fluid(self, mesh, paths, fluid, dt, before, state, report)
-      call timers%stop(phase_assemble)
-      if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) then
-         call raise_error(error, "coarse_model", "the solution is not a finite number")
-      end if
-   end subroutine solve_step
-
-   !> Whether slip radiates energy; not in the initial state, which takes no time.
-   pure logical function is_damped(settings)
-      type(newton_settings_t), intent(in) :: settings
-
-      is_damped = settings%damping > 0.0_rk .and. .not. settings%equilibrate
-   end function is_damped
-
-   !> The fluid balance of the step: what is stored less what has been supplied, and the parts of
-   !! it that are reported.
-   subroutine book_fluid(self, mesh, paths, fluid, dt, before, after, report)
-      class(coarse_model_t), intent(in) :: self
-      type(mesh_t), intent(in) :: mesh
-      type(flow_paths_t), intent(in) :: paths
-      real(rk), allocatable, intent(in) :: fluid(:)  !< (n_cells) into the rock [m2/s]
-      real(rk), intent(in) :: dt  !< [s]
-      type(state_t), intent(in) :: before, after
-      type(step_report_t), intent(inout) :: report
-      real(rk), allocatable :: outflow(:)
-
-      report%compressed = 0.0_rk
-      report%rock_outflow = 0.0_rk
-      associate (balance => report%mass_error)
-         balance = sum(after%content - before%content)
-         if (mesh%fracture%n_cells > 0) then
-            call add_fracture_balance(paths, self%cells, self%condensed%length, dt, before, after, &
-                                      report%compressed, balance)
-         end if
-         if (allocated(fluid)) balance = balance - dt*sum(fluid)
-         if (self%drained .and. self%layers%n > 0) then
-            report%rock_outflow = dt*boundary_outflow(mesh, self%regions, self%regions%flux, &
-                                                      self%regions%scalars_of(after%unknowns)) &
-                                  + self%layers%drained(after%layer)
-            balance = balance + report%rock_outflow
-         else if (self%drained) then
-            allocate (outflow(mesh%n_cells))
-            call cell_outflow(mesh, self%regions, self%regions%flux, after%unknowns(3, :), outflow)
-            report%rock_outflow = dt*sum(outflow)
-            if (mesh%fracture%n_cells > 0) then
-               ! Fluid that crosses the faces of fractures remains in the body.
-               report%rock_outflow = report%rock_outflow &
-                                     + dt*sum(self%condensed%length*after%leakoff)
-            end if
-            balance = balance + report%rock_outflow
-         end if
-      end associate
-   end subroutine book_fluid
 
    !> Free what gfortran 12 does not free by itself where the model is a component: arrays of the
    !! types that its components extend.

@@ -201,7 +201,8 @@ contains
                                   real(stated_errors%tries, rk), [stated_errors%tried], &
                                   stated_errors%slope, truths([time_error%is_followed]), &
                                   time_error%value, &
-                                  time_error%rate, time_error%error, time_error%step])
+                                  time_error%rate, time_error%error, time_error%step, &
+                                  stated_errors%before_switch, stated_errors%time])
       end associate
    end function certainty_part
 

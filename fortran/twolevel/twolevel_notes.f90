@@ -18,6 +18,7 @@ module twolevel_notes
    use twolevel_onset, only: approach_t
    use twolevel_places, only: tip_cell_lengths
    use twolevel_problem, only: coarse_problem_t
+   use twolevel_schedule, only: last_switch
    implicit none(type, external)
    private
 
@@ -223,8 +224,11 @@ contains
          do i = 1, size(tips, kind=ik)
             call find_wing(scene%fractures(tip(i)%fracture), tip(i), tips(i)%wing, tips(i)%bend)
          end do
+         now%stated_errors%has_layers = problem%model%layers%n > 0
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
-                                     total_length(front%network), now%trend%pressure_rise(), leaked)
+                                       total_length(front%network), now%trend%pressure_rise(), &
+                                       leaked, now%coarse%time &
+                                       - last_switch(scene, now%coarse%time - 0.5_rk*dt))
       end associate
    end subroutine note_stated_errors
 

@@ -1,13 +1,15 @@
 !> Growth of the coarse mesh with the network: remeshing around the tips, and the transfer of the
 !! state to the new mesh.
 submodule(twolevel_state) twolevel_remeshing
-   use base_kinds, only: ik
+   use base_kinds, only: ik, rk
    use base_plane, only: norm2
    use base_timers, only: phase_remesh, phase_transfer
    use base_tolerances, only: same_place
-   use coarse_model, only: give_back, no_profiles, profiles_t, rest_fluid
+   use coarse_layer_profiles, only: kept_faces_t, no_profiles, profiles_of, profiles_t, &
+                                    return_excess, set_apart, take_profiles
+   use coarse_model, only: rest_fluid
    use mesh_builder, only: remesh
-   use mesh_types, only: mesh_map_t
+   use mesh_types, only: fracture_mesh_t, mesh_map_t
    use twolevel_setup, only: choose_first_step
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
@@ -47,6 +49,7 @@ contains
       type(coarse_problem_t), allocatable :: problem
       type(mesh_map_t) :: map
       type(profiles_t) :: profiles
+      type(kept_faces_t) :: faces
       real(rk) :: radius
       integer(ik) :: i, k, nearest
 
@@ -67,11 +70,11 @@ contains
       call timers%stop(phase_remesh)
       if (allocated(error)) return
       call timers%start(phase_transfer)
+      faces = kept_faces(self%problem%mesh%fracture, problem%mesh%fracture)
       associate (layers => self%problem%model%layers, state => self%now%coarse)
          if (layers%n > 0) then
-            profiles = layers%profiles(state%unknowns, state%layer)
-            call layers%set_apart(map%cell_old, map%fracture_cell_old, state%unknowns, &
-                                  state%content, profiles)
+            profiles = profiles_of(layers, state%unknowns, state%layer)
+            call set_apart(layers, map%cell_old, faces, state%unknowns, state%content, profiles)
          else
             profiles = no_profiles()
          end if
@@ -86,7 +89,7 @@ contains
       call choose_first_step(self%scene, self%problem%model%first_step)
       call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
       if (allocated(error)) return
-      call transfer_layers(self%problem, profiles, map, self%now%coarse)
+      call transfer_layers(self%problem, profiles, map, faces, self%now%coarse)
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
@@ -94,23 +97,42 @@ contains
    end subroutine remesh_coarse
 
    !> Transfer the pressures in layers to a new coarse mesh, after all else.
-   subroutine transfer_layers(problem, profiles, map, state)
+   subroutine transfer_layers(problem, profiles, map, faces, state)
       type(coarse_problem_t), intent(in) :: problem  !< with the new mesh
       type(profiles_t), intent(in) :: profiles  !< before
       type(mesh_map_t), intent(in) :: map
+      type(kept_faces_t), intent(in) :: faces
       type(state_t), intent(inout) :: state
 
       associate (layers => problem%model%layers, mesh => problem%mesh)
-         if (layers%n == 0) then
-            call give_back(profiles, spread(.false., 1, size(profiles%cell)), mesh, &
-                           map%fracture_cell_old, state%content)
-            return
-         end if
+         call return_excess(profiles, mesh, map%cell_old, faces, state%content)
+         if (layers%n == 0) return
          call insert_layers(mesh%n_cells, layers%n, state%unknowns)
-         call layers%take_profiles(profiles, mesh, map%cell_old, map%fracture_cell_old, &
-                                   state%unknowns, state%layer, state%content)
+         call take_profiles(layers, profiles, map%cell_old, faces, state%unknowns, state%layer)
       end associate
    end subroutine transfer_layers
+
+   !> Faces of fracture cells before that those of a new mesh consist of.
+   pure function kept_faces(before, after) result(faces)
+      type(fracture_mesh_t), intent(in) :: before, after
+      type(kept_faces_t) :: faces
+      type(overlaps_t) :: overlaps
+      integer(ik) :: c, k
+
+      overlaps = fracture_overlaps(before, after)
+      faces%before%first = overlaps%first
+      faces%before%item = overlaps%old
+      faces%of_old = overlaps%length
+      faces%of_new = overlaps%length
+      do c = 1, after%n_cells
+         do k = faces%before%first(c), faces%before%last(c)
+            associate (old => before%cell_s(:, faces%before%item(k)), new => after%cell_s(:, c))
+               faces%of_old(k) = min(1.0_rk, faces%of_old(k)/(old(2) - old(1)))
+               faces%of_new(k) = min(1.0_rk, faces%of_new(k)/(new(2) - new(1)))
+            end associate
+         end do
+      end do
+   end function kept_faces
 
    !> Insert the blocks of layers after those of the cells.
    pure subroutine insert_layers(n_cells, n_layers, unknowns)

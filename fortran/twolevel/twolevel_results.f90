@@ -4,6 +4,7 @@ module twolevel_results
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
    use coarse_fields, only: cell_stress, cell_stresses
+   use coarse_layer_profiles, only: find_pressure
    use coarse_state, only: state_t
    use coarse_nodes, only: nodal_fields, node_values
    use contact_law, only: state_open, state_slip, state_stick
@@ -137,8 +138,8 @@ contains
             row%displacement(:, i) = value(:2)
             row%pressure(i) = value(3)
             if (allocated(state%layer)) then
-               call model%layers%find_pressure(mesh, state%unknowns, state%layer, xy(:, i), &
-                                               row%pressure(i))
+               call find_pressure(model%layers, mesh, state%unknowns, state%layer, xy(:, i), &
+                                  cells(i), at_nodes(3, :), row%pressure(i))
             end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             if (.not. allocated(model%in_situ)) cycle

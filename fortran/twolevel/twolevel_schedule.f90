@@ -6,7 +6,7 @@ module twolevel_schedule
    implicit none(type, external)
    private
 
-   public :: follow_sides, last_switch, next_switch
+   public :: follow_sides, last_switch, next_switch, shortest_stage
 
 contains
 
@@ -41,6 +41,19 @@ contains
          time = min(scene%time%end, minval(switches, mask=switches > now*(1.0_rk + same_time)))
       end associate
    end function next_switch
+
+   !> Shortest time between two switches [s].
+   pure real(rk) function shortest_stage(scene) result(shortest)
+      type(scene_t), intent(in) :: scene
+      real(rk) :: time
+
+      time = 0.0_rk
+      shortest = scene%time%end
+      do while (time < scene%time%end)
+         shortest = min(shortest, next_switch(scene, time) - time)
+         time = next_switch(scene, time)
+      end do
+   end function shortest_stage
 
    !> All these times, in any order [s].
    pure function switch_times(scene) result(times)

@@ -10,6 +10,7 @@ module twolevel_setup
    use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
+   use twolevel_schedule, only: shortest_stage
    use twolevel_stepping, only: first_step
    implicit none(type, external)
    private
@@ -27,12 +28,16 @@ module twolevel_setup
 
 contains
 
-   !> Set the first step of the run, which determines where layers are resolved.
+   !> Set the first step of the run, or of a stage of it that is much shorter than the run: with it
+   !! it is determined where layers are resolved, and how finely.
    subroutine choose_first_step(scene, first)
       type(scene_t), intent(in) :: scene
       real(rk), intent(inout) :: first  !< [s]
+      real(rk), parameter :: share = 1.0e-4_rk  ! first step of a stage, over its length [-]
 
-      if (scene%discretization%layers == "auto") first = first_step(scene%time)
+      if (scene%discretization%layers /= "auto") return
+      first = first_step(scene%time)
+      if (scene%time%tolerance > 0.0_rk) first = min(first, share*shortest_stage(scene))
    end subroutine choose_first_step
 
    !> Replace a toughness of 0, or next to it, by one that changes nothing that a run resolves: K_eq
