@@ -95,27 +95,42 @@ contains
       place = [0.0_rk, layers%chain(layer)%place, height/3.0_rk, height]
    end function place_of
 
-   !> Pressure at these distances beyond that which windows have there [Pa].
+   !> Pressure of the layer at these distances beyond that of windows [Pa].
+   !!
+   !! The cell at a tip also has the singular pressure of undrained rock there, which windows do not
+   !! have: the fluid drains it (coarse_own_pressure), and it vanishes on the faces. The layer is
+   !! therefore that of a difference from the window's pressure, with the shape that it has. The
+   !! window's pressure, from the means of cells, has the content of the layer distributed over the
+   !! cell: the rest of the cell has less.
    pure function excess_of(mesh, layers, state, own_pressure, layer) result(excess)
       type(mesh_t), intent(in) :: mesh
       type(layers_t), intent(in) :: layers
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) [Pa]
       integer(ik), intent(in) :: layer
+      real(rk), parameter :: at_most = 2.0_rk  ! times the pressures of the layer [-]
       real(rk), allocatable :: excess(:), place(:)
-      real(rk) :: at_face, far
+      real(rk) :: at_centre, at_face, beyond, rest
       integer(ik) :: last
 
       associate (chain => layers%chain(layer), cell => layers%cell(layer), &
                  face => mesh%layer_face(layer), x => state%unknowns)
          last = size(state%layer, 1, kind=ik)
          at_face = 0.5_rk*sum(own_pressure(mesh%face_nodes(:, face)))
-         far = sum(own_pressure(mesh%cell_nodes(:, cell))) - 2.0_rk*at_face
+         at_centre = sum(own_pressure(mesh%cell_nodes(:, cell)))/3.0_rk
+         rest = x(3, layer_block(mesh, mesh%cell_layer(cell)))
+         beyond = rest - x(3, cell)
          place = place_of(mesh, layers, layer)
          excess = [x(3, end_block(mesh, layers%fracture_cell(layer), layers%side(layer))), &
                    state%layer(:min(last, chain%n - 1), layer), x(1, layer_block(mesh, layer)), &
-                   x(3, layer_block(mesh, mesh%cell_layer(cell))), far] &
-                  - at_face - (far - at_face)*place/place(size(place))
+                   rest] - rest
+         if (abs(excess(1)) > 0.0_rk) then
+            excess = max(0.0_rk, min(at_most, (excess(1) + x(3, cell) - at_centre)/excess(1))) &
+                     *excess
+         end if
+         excess = [excess + beyond, 0.0_rk]
+         last = size(place, kind=ik) - 1
+         excess(:last) = excess(:last) - (at_face - at_centre)*(1.0_rk - place(:last)/place(last))
       end associate
    end function excess_of
 
