@@ -62,6 +62,7 @@ module twolevel_coarse_errors
       real(rk) :: eta = 0.0_rk  !< poroelastic stress coefficient [-]
       !> pressure of the fluid minus the rock's own pressure at the faces [Pa]
       real(rk) :: jump = 0.0_rk
+      logical :: is_known = .false.  !< the coarse level has the layer (coarse_layers)
    end type layer_t
 
    !> stated error, over the difference in the comparisons [-]
@@ -69,6 +70,9 @@ module twolevel_coarse_errors
    !> weight of the comparison with linear interpolation [-]
    real(rk), parameter :: share_of_order = 0.5_rk
    real(rk), parameter :: share_of_pressure = 0.25_rk  !< weight of the comparison of pressures [-]
+   !> Error of K at a drained tip in undrained rock, over 1 - F times K, and of K_I of layers, over
+   !! itself: verification/sudden_pressure [-].
+   real(rk), parameter :: share_of_drained_tip = 0.2_rk, share_of_layer = 0.15_rk
 
    !> Relative change of the intensities within which the last comparison with the body still
    !! applies [-].
@@ -101,6 +105,7 @@ contains
          end if
          if (at == 0) return
          layer%cell = here%cell_s(2, at) - here%cell_s(1, at)
+         if (mesh%n_layers > 0) layer%is_known = any(mesh%face_layer(here%cell_faces(:, at)) > 0)
          cell = mesh%face_cells(1, here%cell_faces(1, at))
          layer%jump = state%pressure(at) &
            - 0.25_rk*sum([(own_pressure(mesh%face_nodes(:, here%cell_faces(side, at))), side=1, 2)])
@@ -117,22 +122,27 @@ contains
    end function layer_at_tip
 
    !> Possible errors of K_I and K_II by layers that the cells do not resolve [Pa m^1/2].
-   pure function thin_layer_errors(layer, k, is_closed, age) result(errors)
+   pure function thin_layer_errors(layer, k, is_closed, age, back_stress) result(errors)
       type(layer_t), intent(in) :: layer
       real(rk), intent(in) :: k(2)  !< K_I, K_II [Pa m^1/2]
       logical, intent(in) :: is_closed  !< the faces touch at the tip: K_I = 0
       real(rk), intent(in) :: age  !< age of the layer [s]
+      !> K_I of the layers, which is known where the coarse level has them [Pa m^1/2]
+      real(rk), intent(in) :: back_stress
       real(rk) :: errors(2)
       real(rk) :: factor, unresolved
 
       errors = 0.0_rk
       if (.not. layer%cell > 0.0_rk) return
       unresolved = 1.0_rk/(1.0_rk + 4.0_rk*layer%diffusivity*age/layer%cell**2)
-      errors = (1.0_rk - layer%drained_tip)*abs(k)
-      factor = sqrt(2.0_rk)*layer%eta/gamma(1.25_rk)
-      errors(1) = errors(1) + factor*abs(layer%jump) &
-                  *min(layer%diffusivity*age, layer%cell**2)**0.25_rk
-      errors = unresolved*errors
+      errors = share_of_drained_tip*(1.0_rk - layer%drained_tip)*abs(k)*unresolved
+      if (layer%is_known) then
+         errors(1) = errors(1) + share_of_layer*abs(back_stress)
+      else
+         factor = 0.5_rk*(1.0_rk + layer%drained_tip)*sqrt(2.0_rk)*layer%eta/gamma(1.25_rk)
+         errors(1) = errors(1) + factor*abs(layer%jump)*unresolved &
+                     *min(layer%diffusivity*age, layer%cell**2)**0.25_rk
+      end if
       if (is_closed) errors(1) = 0.0_rk
    end function thin_layer_errors
 
@@ -359,7 +369,8 @@ contains
       age = state%time
       if (tip%advance > 0.0_rk) age = min(age, (state%time - since)*layer%cell/tip%advance)
       associate (found => seen%found)
-         errors = thin_layer_errors(layer, [found%k1, found%k2], found%closed, age)
+         errors = thin_layer_errors(layer, [found%k1, found%k2], found%closed, age, &
+                                    seen%back_stress)
       end associate
    end function errors_of_layer
 

@@ -44,6 +44,7 @@ module twolevel_window_tip
       !> the errors by the coarse level have been estimated for the last evaluation
       logical :: is_compared = .false.
       real(rk) :: passing(2) = 0.0_rk  !< and what coarse cells show badly of the rock's pressure
+      real(rk) :: back_stress = 0.0_rk  !< K_I of layers on the faces, not in `found` [Pa m^1/2]
    contains
       procedure :: element_size
       procedure :: rosette_radius
@@ -165,6 +166,7 @@ contains
       type(intensity_t) :: intensity
 
       intensity = self%found
+      call add_back_stress(self%back_stress, crack_modulus, intensity)
       intensity%k1_corrected = intensity%k1_corrected + self%lacking(1)
       intensity%k2_corrected = intensity%k2_corrected + self%lacking(2)
       intensity%k1_error = intensity%k1_error + self%uncertain(1) + self%passing(1)
@@ -172,5 +174,22 @@ contains
       intensity%passing_error = maxval(self%passing)
       call complete_errors(crack_modulus, intensity)
    end function with_coarse_error
+
+   !> Add K_I of layers of fluid pressure on the faces (twolevel_back_stress), unless the faces touch
+   !! at the tip. It may close the tip.
+   pure subroutine add_back_stress(k1, crack_modulus, intensity)
+      real(rk), intent(in) :: k1  !< [Pa m^1/2]
+      real(rk), intent(in) :: crack_modulus  !< E' [Pa]
+      type(intensity_t), intent(inout) :: intensity
+      real(rk) :: before
+
+      if (intensity%closed .or. .not. abs(k1) > 0.0_rk) return
+      before = intensity%k1
+      intensity%k1 = max(0.0_rk, intensity%k1 + k1)
+      intensity%k1_inner = max(0.0_rk, intensity%k1_inner + k1)
+      intensity%k1_dc = max(0.0_rk, intensity%k1_dc + k1)
+      intensity%k1_corrected = intensity%k1_corrected + intensity%k1 - before
+      intensity%g_domain = intensity%g_domain + (intensity%k1**2 - before**2)/crack_modulus
+   end subroutine add_back_stress
 
 end module twolevel_window_tip

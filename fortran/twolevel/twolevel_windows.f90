@@ -19,6 +19,7 @@ module twolevel_windows
    use report_scene, only: has_other_toughness, relative_toughness
    use fine_tip_types, only: intensity_t
    use growth_front, only: front_state_t
+   use twolevel_back_stress, only: back_stress_of
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window, only: window_t
    use twolevel_window_tip, only: window_tip_t
@@ -246,6 +247,7 @@ contains
          do i = 1, size(window%serves, kind=ik)
             associate (t => window%serves(i), tip => front%tip(window%serves(i)))
                if (.not. tip%is_free) cycle
+               seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end)
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
                tip%rosette_radius = window%mesh%fracture%tip_radius(window%at(i))
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &

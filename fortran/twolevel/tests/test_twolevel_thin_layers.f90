@@ -14,6 +14,7 @@ program test_twolevel_thin_layers
    !> The weight function of a half-plane crack times the pressure that diffuses from its faces,
    !! integrated in Python [Pa m^1/2].
    real(rk), parameter :: of_layer = 0.8983566782682296e6_rk
+   real(rk), parameter :: drained = 0.93_rk  !< (1 + F)/2: the rock at the tip deforms as drained [-]
 
    call test_thin_layer()
    call test_wide_layer()
@@ -21,15 +22,25 @@ program test_twolevel_thin_layers
 
 contains
 
-   !> A layer far thinner than a cell counts in full; K_I of closed tips is zero.
+   !> A layer far thinner than a cell counts in full where the coarse level does not have it, and
+   !! by 0.15 of its back stress where it does; the drained tip by a fifth of what it changes. K_I of
+   !! closed tips is zero.
    subroutine test_thin_layer()
+      real(rk), parameter :: back_stress = -1.0e5_rk  ! [Pa m^1/2]
+      type(layer_t) :: known
       real(rk) :: errors(2)
 
-      errors = thin_layer_errors(layer, k, .false., age)
-      call checks%is_close(errors(1), 0.14_rk*k(1) + of_layer, 1.0e-6_rk*k(1), "K_I")
-      call checks%is_close(errors(2), 0.14_rk*k(2), 1.0e-6_rk*k(2), "K_II")
-      errors = thin_layer_errors(layer, k, .true., age)
+      errors = thin_layer_errors(layer, k, .false., age, 0.0_rk)
+      call checks%is_close(errors(1), 0.2_rk*0.14_rk*k(1) + drained*of_layer, 1.0e-6_rk*k(1), &
+                           "K_I")
+      call checks%is_close(errors(2), 0.2_rk*0.14_rk*k(2), 1.0e-6_rk*k(2), "K_II")
+      errors = thin_layer_errors(layer, k, .true., age, 0.0_rk)
       call checks%is_close(errors(1), 0.0_rk, 0.0_rk, "K_I of a closed tip")
+      known = layer
+      known%is_known = .true.
+      errors = thin_layer_errors(known, k, .false., age, back_stress)
+      call checks%is_close(errors(1), 0.2_rk*0.14_rk*k(1) - 0.15_rk*back_stress, &
+                           1.0e-6_rk*k(1), "K_I with a layer")
    end subroutine test_thin_layer
 
    !> A layer of ten cells is resolved.
@@ -39,8 +50,9 @@ contains
 
       resolved = layer
       resolved%cell = 0.1_rk*sqrt(layer%diffusivity*age)
-      errors = thin_layer_errors(resolved, k, .false., age)
-      call checks%is_true(all(errors < 0.0025_rk*(0.14_rk*k + of_layer)), "a wide layer")
+      errors = thin_layer_errors(resolved, k, .false., age, 0.0_rk)
+      call checks%is_true(all(errors < 0.0025_rk*(0.2_rk*0.14_rk*k + drained*of_layer)), &
+                          "a wide layer")
    end subroutine test_wide_layer
 
 end program test_twolevel_thin_layers
