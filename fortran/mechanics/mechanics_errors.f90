@@ -7,7 +7,7 @@ module mechanics_errors
    use mechanics_body, only: body_t
    use mechanics_fields, only: point_state
    use mesh_geometry, only: cell_area
-   use report_jump_errors, only: finite_elements, jump_errors_t, relative_jump_errors
+   use report_jump_errors, only: finite_elements, jump_errors_t, relative_jump_errors, unevenness
    use report_rows, only: fracture_fields_t, history_row_t, matrix_fields_t
    use scene_types, only: material_t
    implicit none(type, external)
@@ -36,13 +36,13 @@ contains
          error%max_slip = errors%share(at(2))*row%max_slip
          error%fracture_volume = sum(length*errors%of_sum*abs(jump(1, :)))
          weight = length*abs(jump(2, :))
-         share = maxval(errors%of_sum)
+         share = 2.0_rk*maxval(errors%share(at))
          if (sum(weight) > 0.0_rk) then
             error%seismic_moment = row%seismic_moment*sum(weight*errors%of_sum)/sum(weight)
          end if
          ! Of an open crack of the same opening: pi/16 E' w**2.
-         error%strain_energy = share*pi/8.0_rk*modulus_of(rock)*(row%max_opening**2 &
-                                                                 + row%max_slip**2)
+         error%strain_energy = share*pi/16.0_rk*modulus_of(rock)*(row%max_opening**2 &
+                                                                  + row%max_slip**2)
          error%strain_energy = error%strain_energy + body%estimate%total**2
       end associate
    end subroutine note_row
@@ -81,8 +81,10 @@ contains
       associate (e => fields%error)
          e%jump_n = jumps%share*abs(fields%jump_n)
          e%jump_t = jumps%share*abs(fields%jump_t)
-         e%traction_n = by_jump*hypot(fields%jump_n, fields%jump_t) + least*abs(fields%traction_n)
-         e%traction_t = by_jump*hypot(fields%jump_n, fields%jump_t) + least*abs(fields%traction_n)
+         e%traction_n = by_jump*hypot(fields%jump_n, fields%jump_t) &
+                        + unevenness(body%mesh%fracture, fields%traction_n)
+         e%traction_t = by_jump*hypot(fields%jump_n, fields%jump_t) &
+                        + unevenness(body%mesh%fracture, fields%traction_t)
       end associate
    end subroutine find_fracture_errors
 

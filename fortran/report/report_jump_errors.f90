@@ -14,7 +14,8 @@ module report_jump_errors
    implicit none(type, external)
    private
 
-   public :: finite_elements, finite_volumes, jump_errors_t, jump_law_t, relative_jump_errors
+   public :: finite_elements, finite_volumes, jump_errors_t, jump_law_t, relative_jump_errors, &
+             unevenness
 
    !> Shares of a discretization, each times a cell's length over a distance [-].
    type :: jump_law_t
@@ -140,5 +141,28 @@ contains
          part = max(part, abs(along(1, 1)*along(2, 2) - along(2, 1)*along(1, 2))/minval(lengths))
       end do
    end function kinked_part
+
+   !> Differences of the values of cells from the mean of their neighbours on the fracture.
+   pure function unevenness(fracture, values) result(difference)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: values(:)
+      real(rk) :: difference(size(values))
+      real(rk) :: mean
+      integer(ik) :: i, k, n, next
+
+      difference = 0.0_rk
+      do i = 1, fracture%n_cells
+         n = 0
+         mean = 0.0_rk
+         do k = -1, 1, 2
+            next = i + k
+            if (next < 1 .or. next > fracture%n_cells) cycle
+            if (fracture%cell_fracture(next) /= fracture%cell_fracture(i)) cycle
+            n = n + 1
+            mean = mean + values(next)
+         end do
+         if (n > 0) difference(i) = abs(values(i) - mean/n)
+      end do
+   end function unevenness
 
 end module report_jump_errors

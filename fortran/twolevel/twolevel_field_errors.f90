@@ -6,12 +6,12 @@ module twolevel_field_errors
    use coarse_state, only: state_t
    use contact_law, only: state_open
    use mesh_types, only: fracture_mesh_t
-   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors
+   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors, unevenness
    use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
                           matrix_fields_t
    use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_value_errors, only: by_pressure_of, moving, value_errors_t
+   use twolevel_value_errors, only: by_pressure_of, moving, of_solution, value_errors_t
    implicit none(type, external)
    private
 
@@ -36,13 +36,14 @@ contains
       of_pressure = errors%pressure_error()
       associate (fracture => problem%mesh%fracture, e => fields%error)
          jumps = relative_jump_errors(fracture, moves, finite_volumes)
-         by_pressure = by_pressure_of(scene, problem, state, jumps, errors%of_pressure*errors%rise)
+         by_pressure = by_pressure_of(scene, problem, state, jumps, errors%in_space())
          e%jump_n = (jumps%share + errors%of_opening + errors%of_length)*abs(fields%jump_n) &
                     + by_pressure(1, :) + at_ends(fracture, moves, fields%jump_n)
          e%jump_t = (jumps%share + errors%of_slip + errors%of_length)*abs(fields%jump_t) &
                     + by_pressure(2, :) + at_ends(fracture, moves, fields%jump_t)
-         e%pressure = of_pressure + 0.5_rk*bend(fracture, fields%pressure)
-         e%flow = bend(fracture, fields%flow) + errors%of_flow*abs(fields%flow) &
+         e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
+                      + of_solution*abs(fields%pressure)
+         e%flow = unevenness(fracture, fields%flow) + errors%of_flow*abs(fields%flow) &
                   + errors%time_share()*abs(fields%flow)
       end associate
       call note_tractions(scene, problem, state, jumps, fields)
@@ -65,10 +66,10 @@ contains
       end where
       associate (e => fields%error, fracture => problem%mesh%fracture, t => state%traction, &
                  friction => problem%model%cells%law%friction)
-         e%traction_n = max(bend(fracture, fields%traction_n), &
+         e%traction_n = max(unevenness(fracture, fields%traction_n), &
                             0.5_rk*abs(t(1, 2, :) - t(1, 1, :))) &
                         + by_jump*hypot(fields%jump_n, fields%jump_t) + e%pressure
-         e%traction_t = max(bend(fracture, fields%traction_t), &
+         e%traction_t = max(unevenness(fracture, fields%traction_t), &
                             0.5_rk*abs(t(2, 2, :) - t(2, 1, :))) &
                         + by_jump*hypot(fields%jump_n, fields%jump_t) + friction*e%pressure
          where (fields%state == state_open)
@@ -97,29 +98,6 @@ contains
          end do
       end do
    end function at_ends
-
-   !> Differences of the values of cells from the mean of their neighbours on the fracture.
-   pure function bend(fracture, values) result(difference)
-      type(fracture_mesh_t), intent(in) :: fracture
-      real(rk), intent(in) :: values(:)
-      real(rk) :: difference(size(values))
-      real(rk) :: mean
-      integer(ik) :: i, k, n, next
-
-      difference = 0.0_rk
-      do i = 1, fracture%n_cells
-         n = 0
-         mean = 0.0_rk
-         do k = -1, 1, 2
-            next = i + k
-            if (next < 1 .or. next > fracture%n_cells) cycle
-            if (fracture%cell_fracture(next) /= fracture%cell_fracture(i)) cycle
-            n = n + 1
-            mean = mean + values(next)
-         end do
-         if (n > 0) difference(i) = abs(values(i) - mean/n)
-      end do
-   end function bend
 
    !> Errors of the pressures of joints.
    pure subroutine note_joint_errors(errors, fields)

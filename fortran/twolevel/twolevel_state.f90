@@ -435,7 +435,7 @@ contains
 
       call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
       if (allocated(error)) return
-      call self%value_errors%note_probes(self%time(), self%step%is_unstable, row)
+      call self%value_errors%note_probes(self%time(), self%now%trend%pressure_rise(), row)
    end subroutine probes
 
    !> Fields of the last accepted state, if there is one.

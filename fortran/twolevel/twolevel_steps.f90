@@ -101,10 +101,18 @@ contains
    !> What the errors of the last step need to know.
    pure type(step_facts_t) function facts_of(self) result(facts)
       class(two_levels_t), intent(in) :: self
+      integer :: w
 
       facts%is_jump = self%step%is_unstable
+      facts%is_first = self%step%is_after_switch
       facts%since_switch = self%now%coarse%time - last_switch(self%scene, self%before%time)
       facts%has_estimate = states_errors(self%scene%growth)
+      facts%has_given_rates = size(self%scene%injections) == 0
+      do w = 1, size(self%scene%injections)
+         associate (well => self%scene%injections(w))
+            if (allocated(well%rate)) facts%has_given_rates = .true.
+         end associate
+      end do
       facts%mass_error = self%now%fluid%mass_error
    end function facts_of
 

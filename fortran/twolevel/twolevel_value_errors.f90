@@ -27,14 +27,14 @@ module twolevel_value_errors
    use report_rows, only: history_errors_t, history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t
    use twolevel_errors, only: stated_errors_t
-   use twolevel_followed, only: followed_t
+   use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
 
-   public :: by_pressure_of, moving, step_facts_t, unresolved_depth, value_errors_t
+   public :: by_pressure_of, moving, of_solution, step_facts_t, unresolved_depth, value_errors_t
 
    ! Positions of the quantities of a row that are followed.
    integer, parameter :: injected = 1, produced = 2, leakoff = 3, outflow = 4, fracture_fluid = 5, &
@@ -45,12 +45,17 @@ module twolevel_value_errors
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
    real(rk), parameter :: of_index = 0.12_rk  !< pressure of a well in the rock [-]
-   real(rk), parameter :: least = 0.005_rk  !< least relative error in space [-]
+   !> relative error of pressures by the solver: the limit of its forward error bound [-]
+   real(rk), parameter :: of_solution = 1.0e-6_rk
+   real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
+   real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
 
    !> What the errors of a step need besides its row.
    type :: step_facts_t
       logical :: is_jump = .false.  !< the step consists of unstable growth
+      logical :: is_first = .false.  !< wells or sides were switched at its start
       real(rk) :: since_switch = 0.0_rk  !< time since the wells were switched [s]
+      logical :: has_given_rates = .true.  !< a well has a rate, or there is none
       logical :: has_estimate = .false.  !< errors of lengths are estimated
       real(rk) :: mass_error = 0.0_rk  !< error of the balance so far [m2]
    end type step_facts_t
@@ -59,12 +64,14 @@ module twolevel_value_errors
    type :: value_errors_t
       type(history_errors_t) :: row
       real(rk) :: of_pressure = 0.0_rk  !< relative error in space of the pressure in fractures [-]
+      real(rk) :: diffusing = 1.0_rk  !< share of the fluid that has leaked off [-]
       real(rk) :: of_flow = 0.0_rk  !< the same of a flow that is not prescribed [-]
       real(rk) :: rise = 0.0_rk  !< of the mean pressure in the fractures [Pa]
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
       real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
       real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
+      type(followed_step_t) :: step  !< last step
       type(followed_t) :: quantities
       type(followed_t) :: wells  !< pressure, flow, volume of each
       type(followed_t) :: probes  !< pressure, displacement, stress of each
@@ -73,6 +80,7 @@ module twolevel_value_errors
       procedure :: note_state
       procedure :: note_wells
       procedure :: note_probes
+      procedure :: in_space
       procedure :: pressure_error
       procedure :: time_share
    end type value_errors_t
@@ -129,14 +137,20 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       type(jump_errors_t) :: errors
-      real(rk) :: leaked, values(n_followed)
+      real(rk) :: values(n_followed)
 
       values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
                 row%rock_fluid, row%rock_outflow, row%fracture_volume, row%max_slip, &
                 row%max_opening, row%seismic_moment, row%max_slip_rate, 0.0_rk, &
                 mean_in_rock(problem, state)]
       if (problem%mesh%fracture%n_cells > 0) values(pressure) = mean_pressure(problem, state)
-      call self%quantities%follow(row%time, values, facts%is_jump)
+      self%diffusing = 1.0_rk
+      if (problem%mesh%fracture%n_cells > 0) then
+         self%diffusing = abs(row%leakoff)/max(abs(row%leakoff) + abs(row%fracture_fluid), &
+                                               tiny(1.0_rk))
+      end if
+      self%step = followed_step_t(row%time, facts%is_jump, facts%is_first, self%diffusing)
+      call self%quantities%follow(self%step, values)
       self%row = history_errors_t()
       self%of_length = 0.0_rk
       if (facts%has_estimate .and. row%fracture_length > 0.0_rk) then
@@ -145,12 +159,10 @@ contains
       self%of_rock = of_well_in_rock(problem, facts%since_switch)
       if (problem%mesh%fracture%n_cells > 0) then
          errors = relative_jump_errors(problem%mesh%fracture, moving(state), finite_volumes)
-         leaked = 0.0_rk
-         if (abs(row%leakoff) > 0.0_rk) leaked = abs(row%leakoff) &
-                                            & /(abs(row%leakoff) + abs(row%fracture_fluid))
-         self%of_flow = leaked*of_layers(problem, facts%since_switch) &
-                        + (1.0_rk - leaked)*max(least, mean_share(problem, state, errors))
-         self%of_pressure = self%of_flow
+         self%of_flow = self%diffusing*of_layers(problem, facts%since_switch) + (1.0_rk &
+                                  - self%diffusing)*max(least, mean_share(problem, state, errors))
+         self%of_pressure = 0.0_rk
+         if (facts%has_given_rates) self%of_pressure = self%of_flow
          self%rise = abs(values(pressure) - self%quantities%first(pressure))
          call note_jumps(self, scene, problem, state, errors, row)
       end if
@@ -198,8 +210,7 @@ contains
       associate (s => problem%mesh%fracture%cell_s, jump => 0.5_rk*sum(state%jump, dim=2))
          length = s(2, :) - s(1, :)
          is_open = cell_states(state) == state_open
-         by_pressure = by_pressure_of(scene, problem, state, errors, &
-                                      self%of_pressure*self%rise)
+         by_pressure = by_pressure_of(scene, problem, state, errors, self%in_space())
          at = [maxloc(jump(1, :), kind=ik), maxloc(abs(jump(2, :)), kind=ik)]
          associate (time => self%quantities%error, of_sum => errors%of_sum + self%of_length)
             self%row%max_opening = time(opening) + by_pressure(1, at(1)) &
@@ -228,7 +239,7 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       type(jump_errors_t), intent(in) :: errors
-      real(rk), intent(in) :: of_pressure  !< error of the pressure [Pa]
+      real(rk), intent(in) :: of_pressure(2)  !< of `in_space` [Pa]
       real(rk) :: change(2, size(errors%share))
       integer(ik) :: states(size(errors%share))
       real(rk) :: modulus
@@ -238,8 +249,8 @@ contains
          if (.not. rock%plane_stress) modulus = modulus/(1.0_rk - rock%poisson**2)
       end associate
       states = cell_states(state)
-      change(1, :) = 4.0_rk/modulus*errors%reach*of_pressure
-      change(2, :) = change(1, :)*problem%model%cells%law%friction
+      change(1, :) = 4.0_rk/modulus*errors%reach*of_pressure(1)
+      change(2, :) = 4.0_rk/modulus*errors%reach*of_pressure(2)*problem%model%cells%law%friction
       where (states /= state_open) change(1, :) = 0.0_rk
       where (states /= state_slip) change(2, :) = 0.0_rk
    end function by_pressure_of
@@ -301,6 +312,16 @@ contains
       end associate
    end subroutine note_rest
 
+   !> Error in space of the pressure in fractures: its part by leak-off, which acts on the opening
+   !! (the other part follows from the opening), and all of it [Pa].
+   pure function in_space(self)
+      class(value_errors_t), intent(in) :: self
+      real(rk) :: in_space(2)
+
+      in_space = self%of_pressure*self%rise
+      in_space(1) = in_space(1)*self%diffusing
+   end function in_space
+
    !> Error of the mean pressure in the fractures, in time and space [Pa].
    pure real(rk) function pressure_error(self)
       class(value_errors_t), intent(in) :: self
@@ -339,8 +360,7 @@ contains
       integer :: w
 
       if (size(rows) == 0) return
-      call self%wells%follow(rows(1)%time, [rows%pressure, rows%flow, rows%injected], &
-                             facts%is_jump)
+      call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
       by_length = 0.0_rk
       if (facts%has_estimate) by_length = abs(stated%slope)*max(0.0_rk, stated%length)
       do w = 1, size(rows)
@@ -348,10 +368,15 @@ contains
                     error => rows(w)%error, well => scene%injections(w))
             share = self%of_pressure
             if (well%fracture == 0) share = self%of_rock
-            error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length
+            error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
+                             + of_solution*abs(row%pressure)
             if (well%is_controlled()) then
-               error%flow = time(n + w) + max(share, self%of_flow)*abs(row%flow)
                error%injected = time(2*n + w) + max(share, self%of_flow)*abs(row%injected)
+               ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
+               error%flow = time(n + w)
+               if (abs(row%injected) > 0.0_rk) error%flow = &
+                  & max(error%flow, 3.0_rk*abs(row%flow)*time(2*n + w)/abs(row%injected))
+               error%flow = error%flow + max(share, self%of_flow)*abs(row%flow)
                error%rate = error%flow
             end if
             error%head_pressure = error%pressure &
@@ -375,10 +400,10 @@ contains
    end subroutine note_wells
 
    !> Errors of the probes: add those in time, and of the fractures' effect, to those of the cells.
-   subroutine note_probes(self, time, is_jump, row)
+   subroutine note_probes(self, time, rise, row)
       class(value_errors_t), intent(inout) :: self
       real(rk), intent(in) :: time  !< [s]
-      logical, intent(in) :: is_jump  !< the step consists of unstable growth
+      real(rk), intent(in) :: rise  !< range of the pressures of the run so far [Pa]
       type(probe_row_t), intent(inout) :: row
       real(rk), allocatable :: values(:, :)
       real(rk) :: added(6)
@@ -389,15 +414,17 @@ contains
       values(2:3, :) = row%displacement
       values(4:, :) = row%stress
       if (.not. allocated(self%probes%value)) call self%probes%begin(time, [values])
-      call self%probes%follow(time, [values], is_jump)
+      call self%probes%follow(self%step, [values])
       do i = 1, size(row%pressure)
          associate (p => self%probes, at => 6*(i - 1))
             added = p%error(at + 1:at + 6) + (least + self%of_length) &
                   *abs(p%value(at + 1:at + 6) - p%first(at + 1:at + 6))
          end associate
-         row%pressure_error(i) = row%pressure_error(i) + added(1)
-         row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3))
-         row%stress_error(i) = row%stress_error(i) + maxval(added(4:))
+         row%pressure_error(i) = row%pressure_error(i) + added(1) + of_range*rise
+         row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3)) &
+                                     + of_range*maxval(abs(row%displacement(:, i)))
+         row%stress_error(i) = row%stress_error(i) + maxval(added(4:)) &
+                               + of_range*maxval(abs(row%stress(:, i)))
       end do
    end subroutine note_probes
 
