@@ -1,6 +1,6 @@
 !> Estimated errors of the published quantities of a body without a fluid, without a further
-!! solution: slip, opening and their sums by the sizes of the cells (report_jump_errors), stresses by
-!! their differences between adjacent elements, displacements by those of the stresses; energy by
+!! solution: slip, opening and their sums by the sizes of the cells (report_jump_errors), stresses
+!! by their differences between adjacent elements, displacements by those of the stresses; energy by
 !! that of the fractures, and with &adaptive by the estimate in the energy norm.
 module mechanics_errors
    use base_kinds, only: ik, pi, rk
@@ -36,7 +36,7 @@ contains
          error%max_slip = errors%share(at(2))*row%max_slip
          error%fracture_volume = sum(length*errors%of_sum*abs(jump(1, :)))
          weight = length*abs(jump(2, :))
-         share = 2.0_rk*maxval(errors%share(at))
+         share = maxval(errors%share(at))
          if (sum(weight) > 0.0_rk) then
             error%seismic_moment = row%seismic_moment*sum(weight*errors%of_sum)/sum(weight)
          end if
@@ -81,9 +81,10 @@ contains
       associate (e => fields%error)
          e%jump_n = jumps%share*abs(fields%jump_n)
          e%jump_t = jumps%share*abs(fields%jump_t)
-         e%traction_n = by_jump*hypot(fields%jump_n, fields%jump_t) &
+         ! The tractions of contact err less than those that the errors of the jumps are equal to.
+         e%traction_n = 0.3_rk*by_jump*hypot(fields%jump_n, fields%jump_t) &
                         + unevenness(body%mesh%fracture, fields%traction_n)
-         e%traction_t = by_jump*hypot(fields%jump_n, fields%jump_t) &
+         e%traction_t = 0.15_rk*by_jump*hypot(fields%jump_n, fields%jump_t) &
                         + unevenness(body%mesh%fracture, fields%traction_t)
       end associate
    end subroutine find_fracture_errors
@@ -122,7 +123,9 @@ contains
       real(rk) :: mean(3)
       integer(ik) :: cell, k, n, other
 
-      allocate (fields%stress_error(body%mesh%n_cells), fields%displacement_error(body%mesh%n_cells))
+      associate (n => body%mesh%n_cells)
+         allocate (fields%stress_error(n), fields%displacement_error(n))
+      end associate
       do cell = 1, body%mesh%n_cells
          mean = 0.0_rk
          n = 0

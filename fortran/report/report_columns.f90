@@ -363,7 +363,7 @@ module report_columns
       column_t("place_error_m", "m", with_fluid, &
          "Estimated error of its positions: the longest fracture cell of its patch", an_error), &
       column_t("area_error_m2", "m2", with_fluid, &
-         "Estimated error of area_m2: such a cell at each end", an_error), &
+         "Estimated error of area_m2: such a cell at each end within its fracture", an_error), &
       column_t("mean_slip_error_m", "m", with_fluid, &
          "Estimated error of mean_slip_m", an_error), &
       column_t("moment_error_nm", "N m", with_fluid, "Estimated error of moment_nm", an_error), &

@@ -11,7 +11,8 @@ module report_limits
    public :: limit_forward_error, limit_jump, limit_k_error, limit_k_methods
    public :: limit_k_to_grow, limit_keq, limit_layering, limit_loop_flow, limit_mass
    public :: limit_pressure_load, limit_pressure_stiffness, limit_strain, limit_t, limit_table
-   public :: limit_depth, limit_time_error, limit_well_error, limits, verdict_fine, verdict_stop, verdict_warning
+   public :: limit_depth, limit_time_error, limit_well_error, limits, verdict_fine
+   public :: verdict_stop, verdict_warning
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -120,12 +121,12 @@ module report_limits
          "loads, or of its position over the length of its fracture; not with law = 'paris'", &
          "use smaller size_fracture or a larger window"), &
       limit_t("cells over the depth of leak-off", "-", with_fluid, 1.0_rk, never, &
-         "Distance of the cells' centres from the faces of fractures without layers, twice, over "// &
-         "sqrt(c t), the depth that the fluid has reached since wells were switched", &
+         "Distance of the cells' centres from the faces of fractures without layers, twice, "// &
+         "over sqrt(c t), the depth that the fluid has reached since wells were switched", &
          "omit layers = 'off', or use smaller cells: pressures are too high, leak-off too small"), &
       limit_t("error of a well's pressure over its rise", "-", with_fluid, 0.1_rk, never, &
-         "Estimated error of the pressure of a well over its rise since the start, at the end of "// &
-         "a stage or of the run", &
+         "Estimated error of the pressure of a well over its rise since the start, at the end "// &
+         "of a stage or of the run", &
          "reduce the tolerance or the step of &time for errors in time, the cells for those in "// &
          "space")]
    !&>

@@ -365,22 +365,38 @@ contains
       event%open_share = live%before%open/live%before%moment
       event%sudden_share = live%before%sudden/live%before%moment
       event%ended_by = ended_by
-      event%error = errors_of(event, live, self%breadth)
+      event%error = errors_of(event, live, ends_known(self%last, event), self%breadth)
       self%news = [self%news, event]
    end subroutine list
 
-   !> Estimated errors of an event: its patch is known to a cell at each end, its times to a step.
-   pure type(slip_errors_t) function errors_of(event, live, breadth) result(error)
+   !> Number of ends of the patch of an event that are ends of its fracture.
+   pure integer function ends_known(mesh, event) result(n)
+      type(shear_t), intent(in) :: mesh
+      type(slip_event_t), intent(in) :: event
+
+      associate (of_event => mesh%fracture == event%fracture)
+         n = count([event%s(1) <= minval(mesh%s(1, :), mask=of_event), &
+                    event%s(2) >= maxval(mesh%s(2, :), mask=of_event)])
+      end associate
+   end function ends_known
+
+   !> Estimated errors of an event: its patch is known to a cell at each end within its fracture,
+   !! its times to a step.
+   pure type(slip_errors_t) function errors_of(event, live, n_known, breadth) result(error)
       type(slip_event_t), intent(in) :: event
       type(live_t), intent(in) :: live
+      integer, intent(in) :: n_known  !< ends of the patch that are ends of the fracture
       real(rk), intent(in) :: breadth  !< out-of-plane length [m]
       real(rk) :: of_ends, share
 
-      of_ends = 2.0_rk*live%before%cell/(event%s(2) - event%s(1))
-      share = finite_volumes%rest + finite_volumes%within*of_ends
+      associate (law => finite_volumes, per_half => 2.0_rk*live%before%cell &
+                 /(event%s(2) - event%s(1)))
+         of_ends = (2 - n_known)*0.5_rk*per_half
+         share = law%rest - law%less + per_half*merge(law%of_sum, law%within, n_known == 2)
+      end associate
       error%time = maxval(live%steps)
       error%place = live%before%cell
-      error%area = 2.0_rk*live%before%cell*breadth
+      error%area = (2 - n_known)*live%before%cell*breadth
       error%moment = share*event%moment
       error%magnitude = share/(1.5_rk*log(10.0_rk))
       error%mean_slip = (share + of_ends)*event%mean_slip

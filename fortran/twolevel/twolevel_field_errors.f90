@@ -37,9 +37,10 @@ contains
       associate (fracture => problem%mesh%fracture, e => fields%error)
          jumps = relative_jump_errors(fracture, moves, finite_volumes)
          by_pressure = by_pressure_of(scene, problem, state, jumps, errors%in_space())
-         e%jump_n = (jumps%share + errors%of_opening + errors%of_length)*abs(fields%jump_n) &
-                    + by_pressure(1, :) + at_ends(fracture, moves, fields%jump_n)
-         e%jump_t = (jumps%share + errors%of_slip + errors%of_length)*abs(fields%jump_t) &
+         e%jump_n = (jumps%share + errors%of_opening + errors%of_length - errors%given_volume()) &
+                    *abs(fields%jump_n) + by_pressure(1, :) &
+                    + at_ends(fracture, moves, fields%jump_n)
+         e%jump_t = (jumps%of_slip + errors%of_slip + errors%of_length)*abs(fields%jump_t) &
                     + by_pressure(2, :) + at_ends(fracture, moves, fields%jump_t)
          e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
                       + of_solution*abs(fields%pressure)
@@ -62,7 +63,7 @@ contains
       modulus = scene%material%young/(1.0_rk - scene%material%poisson**2)
       by_jump = 0.0_rk
       where (jumps%reach > 0.0_rk)
-         by_jump = jumps%share*0.25_rk*modulus/jumps%reach
+         by_jump = jumps%of_slip*0.25_rk*modulus/jumps%reach
       end where
       associate (e => fields%error, fracture => problem%mesh%fracture, t => state%traction, &
                  friction => problem%model%cells%law%friction)

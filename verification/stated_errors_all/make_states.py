@@ -14,6 +14,10 @@ RANDOM = random.Random(SEED)
 CELLS = (4, 6, 10, 20, 40)  # per half-length
 DRAWN = (4, 5, 7, 8, 12, 15, 25, 30)
 
+GAPS = {
+    "direction, without a fluid": "the stated error of K_II of a crack under pressure alone is 13 times too large in the median",
+}
+
 HEAD = '''title = "Stated errors of all quantities"
 group = "networks"
 source = "closed forms, README.md"
@@ -59,8 +63,9 @@ def run(name: str, method: str, scene: str, given: dict, constants: dict, withou
 
 def check(quantity: str, method: str, file: str, value: str, error: str, **how: object) -> None:
     """Ask that the stated error of a quantity holds: (value - exact) over it."""
-    result = {"file": file, "column": f"({value})/{error}", **(how or {"take": "last"})}
-    parts.append(f'[[check]]\nquantity = "{quantity}"\nruns = ["{method}, *"]\nresult = {text(result)}')
+    result = {"file": file, "column": f"({value})/maximum({error}, 1.0e-200)", **(how or {"take": "last"})}
+    gap = f'\nknown_gap = "{GAPS[quantity]}"' if quantity in GAPS else ""
+    parts.append(f'[[check]]\nquantity = "{quantity}"\nruns = ["{method}, *"]\nresult = {text(result)}{gap}')
 
 
 def draw(low: float, high: float, digits: int) -> float:
