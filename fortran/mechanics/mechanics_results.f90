@@ -6,6 +6,7 @@ module mechanics_results
    use base_number, only: brief_text
    use contact_law, only: state_open, state_slip, state_stick
    use growth_network, only: total_length
+   use mechanics_errors, only: find_fracture_errors, find_point_errors, find_rock_errors, note_row
    use mechanics_fields, only: cell_displacement, cell_stress, fracture_jump, fracture_traction, &
                                point_state
    use mechanics_state, only: loaded_body_t
@@ -51,6 +52,7 @@ contains
             row%n_open = count(state == state_open)
          end associate
          row%newton_iterations = body%contact%iterations
+         call note_row(simulation%scene%material, body, jump, row)
       end associate
    end function history_of_body
 
@@ -85,6 +87,12 @@ contains
          fracture%traction_n = pairs(1, :)
          fracture%traction_t = pairs(2, :)
          fracture%state = body%contact%state(3, :)
+         if (size(fracture%state) > 0) then
+            call find_fracture_errors(simulation%scene%material, body, fracture)
+         end if
+         if (simulation%scene%output%vtu) then
+            call find_rock_errors(simulation%scene%material, body, matrix)
+         end if
       end associate
    end function body_snapshot
 
@@ -99,6 +107,7 @@ contains
 
       n = size(simulation%scene%probes)
       allocate (xy(2, n), row%displacement(2, n), row%stress(3, n), cells(n))
+      allocate (row%displacement_error(n), row%stress_error(n))
       xy(1, :) = simulation%scene%probes%x
       xy(2, :) = simulation%scene%probes%y
       call locate(simulation%body%mesher, xy, cells, error)
@@ -106,6 +115,8 @@ contains
       do i = 1, n
          call point_state(simulation%body, cells(i), xy(:, i), row%displacement(:, i), &
                           row%stress(:, i))
+         call find_point_errors(simulation%scene%material, simulation%body, cells(i), xy(:, i), &
+                                row%displacement_error(i), row%stress_error(i))
       end do
    end subroutine probes_of_body
 

@@ -3,13 +3,15 @@
 !! packages read this text from post/wingcrack/names.json.
 module report_describe
    use base_kinds, only: rk
-   use report_columns, only: column_t, contact_words, end_words, event_columns, event_words, &
-                             fracture_columns, fracture_fields, history_columns, &
-                             intersection_fields, joint_words, matrix_fields, network_keys, &
-                             probe_columns, record_keys, slip_event_columns, slip_words, &
-                             status_words, tip_columns, well_columns, well_words, word_t
+   use report_column, only: column_t
+   use report_columns, only: event_columns, fracture_columns, history_columns, probe_columns, &
+                             slip_event_columns, tip_columns, well_columns
+   use report_keys, only: fracture_fields, intersection_fields, matrix_fields, network_keys, &
+                          record_keys
    use report_limits, only: limits
    use report_text, only: json_t
+   use report_words, only: contact_words, end_words, event_words, joint_words, slip_words, &
+                           status_words, well_words, word_t
    use scene_parameter_table, only: parameters
    use scene_parameters, only: choice_name, choice_value, group_t, groups, in_fluid, in_mechanics, &
                                parameter_t
@@ -230,6 +232,7 @@ contains
       do i = 1, size(columns)
          call begin_row(json, columns(i)%name, columns(i)%unit)
          call json%add("runs", trim(columns(i)%runs))
+         call json%add("error", trim(columns(i)%error))
          call end_row(json, columns(i)%meaning)
       end do
       call json%end_array()

@@ -11,7 +11,8 @@ module report_limits
    public :: limit_forward_error, limit_jump, limit_k_error, limit_k_methods
    public :: limit_k_to_grow, limit_keq, limit_layering, limit_loop_flow, limit_mass
    public :: limit_pressure_load, limit_pressure_stiffness, limit_strain, limit_t, limit_table
-   public :: limit_time_error, limits, verdict_fine, verdict_stop, verdict_warning
+   public :: limit_depth, limit_time_error, limit_well_error, limits, verdict_fine
+   public :: verdict_stop, verdict_warning
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -36,7 +37,8 @@ module report_limits
                          limit_angle = 9, limit_k_methods = 10, limit_k_error = 11, &
                          limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
                          limit_layering = 15, limit_loop_flow = 16, limit_table = 17, &
-                         limit_fluid_in_rock = 18, limit_growth_error = 19
+                         limit_fluid_in_rock = 18, limit_growth_error = 19, &
+                         limit_depth = 20, limit_well_error = 21
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -117,7 +119,16 @@ module report_limits
       limit_t("error of growth by the error of K", "%", "fluid and growth", 5.0_rk, never, &
          "Estimated error, by that of K, of the pressure at which a tip grows over that of the "// &
          "loads, or of its position over the length of its fracture; not with law = 'paris'", &
-         "use smaller size_fracture or a larger window")]
+         "use smaller size_fracture or a larger window"), &
+      limit_t("cells over the depth of leak-off", "-", with_fluid, 1.0_rk, never, &
+         "Distance of the cells' centres from the faces of fractures without layers, twice, "// &
+         "over sqrt(c t), the depth that the fluid has reached since wells were switched", &
+         "omit layers = 'off', or use smaller cells: pressures are too high, leak-off too small"), &
+      limit_t("error of a well's pressure over its rise", "-", with_fluid, 0.1_rk, never, &
+         "Estimated error of the pressure of a well over its rise since the start, at the end "// &
+         "of a stage or of the run", &
+         "reduce the tolerance or the step of &time for errors in time, the cells for those in "// &
+         "space")]
    !&>
 
 contains

@@ -1,5 +1,5 @@
 !> network.json: the fracture network at the end and at every time when it changed, and its joints.
-!! report_columns defines its keys.
+!! report_keys defines its keys.
 module report_network
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -1,4 +1,4 @@
-!> run.json: the scene, the end and the cost of a run, with the keys of report_columns; and the last
+!> run.json: the scene, the end and the cost of a run, with the keys of report_keys; and the last
 !! lines on the terminal.
 module report_record
    use base_errors, only: error_t
@@ -58,9 +58,13 @@ contains
       call json%add("peak_memory_mb", peak_memory_mb())
       call json%add("mass_error_relative", self%mass_error_relative)
       call json%add("contact_residual", self%contact_residual)
-      if (self%keq_over_kic > 0.0_rk) call json%add("keq_over_kic", self%keq_over_kic)
+      if (self%keq_over_kic > 0.0_rk) then
+         call json%add("keq_over_kic", self%keq_over_kic)
+         call json%add("keq_over_kic_error", self%extreme_error(1))
+      end if
       if (self%lowest_pressure < huge(1.0_rk)) then
          call json%add("lowest_pressure_pa", self%lowest_pressure)
+         call json%add("lowest_pressure_error_pa", self%extreme_error(2))
       end if
       if (self%condition_estimate > 0.0_rk) then
          call json%add("condition_estimate", self%condition_estimate)

@@ -11,8 +11,9 @@ module report_rows
    public :: event_growth_jump, event_growth_uncertain
    public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
    public :: event_step_cut, event_unstable, event_well, event_window, fracture_fields_t
-   public :: history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, slip_event_t
-   public :: summary_t, tip_row_t, well_row_t
+   public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
+   public :: matrix_fields_t, probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
+   public :: well_errors_t, well_row_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
    type :: fluid_totals_t
@@ -27,8 +28,33 @@ module report_rows
       real(rk) :: mass_error_relative = 0.0_rk  !< error of their balance [-]
    end type fluid_totals_t
 
+   !> Effects of a stimulation, with a fluid.
+   type, extends(fluid_totals_t) :: stimulation_row_t
+      real(rk) :: injection_rate = 0.0_rk  !< net rate of all wells in the step [m2/s]
+      real(rk) :: injectivity = 0.0_rk  !< injectivity of the only well; 0: none [m2/s/Pa]
+      real(rk) :: stimulated_length = 0.0_rk  !< [m]
+      real(rk) :: connected_length = 0.0_rk  !< length connected to the wells [m]
+      real(rk) :: connected_stimulated = 0.0_rk  !< length that is both [m]
+      integer(ik) :: n_clusters = 0  !< clusters of connected fractures
+      real(rk) :: connections_per_branch = 0.0_rk  !< [-]
+      real(rk) :: dimensionless_toughness = 0.0_rk  !< K_m of growth [-]
+      real(rk) :: dimensionless_leakoff = 0.0_rk  !< C_m of growth [-]
+   end type stimulation_row_t
+
+   !> Estimated errors of an accepted step, in the units of its row.
+   type :: history_errors_t
+      real(rk) :: injected = 0.0_rk, produced = 0.0_rk, leakoff = 0.0_rk, outflow = 0.0_rk
+      real(rk) :: fracture_fluid = 0.0_rk, rock_fluid = 0.0_rk, rock_outflow = 0.0_rk
+      real(rk) :: fracture_volume = 0.0_rk
+      real(rk) :: max_slip = 0.0_rk, max_opening = 0.0_rk, max_slip_rate = 0.0_rk
+      real(rk) :: seismic_moment = 0.0_rk, strain_energy = 0.0_rk
+      real(rk) :: injection_rate = 0.0_rk, injectivity = 0.0_rk
+      real(rk) :: stimulated_length = 0.0_rk, connected_length = 0.0_rk
+      real(rk) :: connected_stimulated = 0.0_rk
+   end type history_errors_t
+
    !> An accepted time step, a row of history.csv.
-   type, extends(fluid_totals_t) :: history_row_t
+   type, extends(stimulation_row_t) :: history_row_t
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
       real(rk) :: dt = 0.0_rk  !< [s]
       integer(ik) :: newton_iterations = 0
@@ -47,17 +73,15 @@ module report_rows
       real(rk) :: length_error = 0.0_rk  !< estimated error of fracture_length; -1: none [m]
       real(rk) :: well_pressure_error = 0.0_rk  !< estimated error of well_pressure; -1: none [Pa]
       real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
-      ! Of a stimulation, with a fluid:
-      real(rk) :: injection_rate = 0.0_rk  !< net rate of all wells in the step [m2/s]
-      real(rk) :: injectivity = 0.0_rk  !< injectivity of the only well; 0: none [m2/s/Pa]
-      real(rk) :: stimulated_length = 0.0_rk  !< [m]
-      real(rk) :: connected_length = 0.0_rk  !< length connected to the wells [m]
-      real(rk) :: connected_stimulated = 0.0_rk  !< length that is both [m]
-      integer(ik) :: n_clusters = 0  !< clusters of connected fractures
-      real(rk) :: connections_per_branch = 0.0_rk  !< [-]
-      real(rk) :: dimensionless_toughness = 0.0_rk  !< K_m of growth [-]
-      real(rk) :: dimensionless_leakoff = 0.0_rk  !< C_m of growth [-]
+      type(history_errors_t) :: error
    end type history_row_t
+
+   !> Estimated errors of a slip event, in the units of its row.
+   type :: slip_errors_t
+      real(rk) :: time = 0.0_rk, place = 0.0_rk, area = 0.0_rk, mean_slip = 0.0_rk
+      real(rk) :: moment = 0.0_rk, magnitude = 0.0_rk, mean_slip_rate = 0.0_rk
+      real(rk) :: stress_drop = 0.0_rk
+   end type slip_errors_t
 
    !> A slip event of a fracture, a row of slip_events.csv.
    type :: slip_event_t
@@ -78,15 +102,22 @@ module report_rows
       real(rk) :: magnitude = 0.0_rk  !< [-]
       real(rk) :: open_share = 0.0_rk  !< fraction of the moment on open faces [-]
       real(rk) :: sudden_share = 0.0_rk  !< fraction of the moment in unstable growth [-]
-      character(len=5) :: ended_by = ""  !< word of report_columns
+      character(len=5) :: ended_by = ""  !< word of report_words
+      type(slip_errors_t) :: error
    end type slip_event_t
+
+   !> Estimated errors of a well after a step, in the units of its row.
+   type :: well_errors_t
+      real(rk) :: rate = 0.0_rk, flow = 0.0_rk, pressure = 0.0_rk, head_pressure = 0.0_rk
+      real(rk) :: injected = 0.0_rk, injectivity = 0.0_rk
+   end type well_errors_t
 
    !> A well after a step, a row of wells.csv.
    type :: well_row_t
       real(rk) :: time = 0.0_rk  !< [s]
       character(len=:), allocatable :: name
       integer(ik) :: stage = 0  !< number of the stage; 0: shut
-      character(len=:), allocatable :: control  !< one of the well_words of report_columns
+      character(len=:), allocatable :: control  !< one of the well_words of report_words
       real(rk) :: rate = 0.0_rk  !< rate at the well head, mean over the step [m2/s]
       real(rk) :: flow = 0.0_rk  !< flow into fracture or rock [m2/s]
       real(rk) :: pressure = 0.0_rk  !< pressure in the fracture or rock [Pa]
@@ -94,6 +125,7 @@ module report_rows
       real(rk) :: injected = 0.0_rk  !< injected at the well head so far [m2]
       real(rk) :: injectivity = 0.0_rk  !< flow over the pressure rise since the start [m2/s/Pa]
       real(rk) :: asked = 0.0_rk  !< prescribed rate of the stage; 0 without one [m2/s]
+      type(well_errors_t) :: error
    end type well_row_t
 
    !> A state at the probes, a row of probes.csv.
@@ -101,7 +133,16 @@ module report_rows
       real(rk), allocatable :: displacement(:, :)  !< (2, n_probes) [m]
       real(rk), allocatable :: stress(:, :)  !< (3, n_probes) total: xx, yy, xy [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_probes) [Pa]; only with a fluid
+      ! (n_probes) Estimated errors: of each component, and of the pressure
+      real(rk), allocatable :: displacement_error(:), stress_error(:)  !< [m], [Pa]
+      real(rk), allocatable :: pressure_error(:)  !< [Pa]
    end type probe_row_t
+
+   !> Estimated errors of a tip, in the units of its row.
+   type :: tip_errors_t
+      real(rk) :: keq = 0.0_rk, g = 0.0_rk, angle = 0.0_rk
+      real(rk) :: position = 0.0_rk  !< -1: none
+   end type tip_errors_t
 
    !> A free tip after a step or an increment, a row of tips.csv.
    type :: tip_row_t
@@ -123,6 +164,7 @@ module report_rows
       real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< errors of k1_dc, k2_dc [Pa m^1/2]
       real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< k1, k2 less mesh error [Pa m^1/2]
       real(rk) :: apparent_toughness = 0.0_rk  !< with the viscosity of the fluid [Pa m^1/2]
+      type(tip_errors_t) :: error
    end type tip_row_t
 
    !> State of the matrix cells.
@@ -137,7 +179,17 @@ module report_rows
       ! Nodes of finite elements:
       real(rk), allocatable :: node_xy(:, :)  !< (2, n_nodes) [m]
       integer(ik), allocatable :: cell_nodes(:, :)  !< (6, n_cells) corners, then nodes on edges
+      ! (n_cells) Estimated errors: of each component, and of the pressure
+      real(rk), allocatable :: displacement_error(:), stress_error(:)  !< [m], [Pa]
+      real(rk), allocatable :: pressure_error(:)  !< [Pa]
    end type matrix_fields_t
+
+   !> (n_cells) Estimated errors of the state of the fracture cells, in the units of the fields.
+   type :: fracture_errors_t
+      real(rk), allocatable :: jump_n(:), jump_t(:)  !< that of the aperture is that of jump_n
+      real(rk), allocatable :: traction_n(:), traction_t(:)
+      real(rk), allocatable :: pressure(:), flow(:)
+   end type fracture_errors_t
 
    !> State of the fracture cells. Normal n and tangent tau as in mesh_types.
    type :: fracture_fields_t
@@ -150,12 +202,14 @@ module report_rows
       real(rk), allocatable :: void(:)  !< (n_cells) part of the aperture that vapour fills [m]
       real(rk), allocatable :: flow(:)  !< (n_cells) of fluid along tau [m2/s]
       integer(ik), allocatable :: state(:)  !< (n_cells) of contact_law
+      type(fracture_errors_t) :: error
    end type fracture_fields_t
 
    !> State of the intersections.
    type :: intersection_fields_t
       integer(ik), allocatable :: point(:)  !< (n) fracture point of each
       real(rk), allocatable :: pressure(:)  !< (n) [Pa]
+      real(rk), allocatable :: pressure_error(:)  !< (n) its estimated error [Pa]
    end type intersection_fields_t
 
    !> Unknowns of one kind.
@@ -172,6 +226,8 @@ module report_rows
       real(rk) :: mass_error_relative = 0.0_rk  !< largest of all steps [-]
       real(rk) :: keq_over_kic = 0.0_rk  !< largest of all tips and states; 0: omitted [-]
       real(rk) :: lowest_pressure = huge(1.0_rk)  !< lowest fluid pressure; huge: omitted [Pa]
+      !> estimated errors of these two [-], [Pa]
+      real(rk) :: extreme_error(2) = 0.0_rk
       real(rk) :: contact_residual = 0.0_rk  !< largest of all accepted steps, relative [-]
       real(rk) :: condition_estimate = 0.0_rk  !< largest of the Newton matrices; 0: omitted [-]
       !> bound of the relative error of their solutions [-]

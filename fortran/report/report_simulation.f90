@@ -7,6 +7,7 @@ module report_simulation
    use base_timers, only: timers_t
    use contact_law, only: state_open, state_slip
    use growth_front, only: front_t
+   use growth_law, only: growth_drive, growth_drive_t
    use growth_network, only: end_gain
    use growth_targets, only: target_boundary
    use growth_tip, only: tip_t
@@ -47,6 +48,8 @@ module report_simulation
       real(rk) :: start_time = 0.0_rk  !< start of the scene, in the unit of time()
       real(rk) :: end_time = 0.0_rk  !< end of the scene, in the unit of time()
       logical, allocatable :: has_slipped(:), has_opened(:)  !< (fractures) logged slip or opening
+      !> (tips) estimated errors of their positions; unallocated: none [m]
+      real(rk), allocatable :: position_error(:)
    contains
       procedure(begin_scene), deferred :: begin
       procedure(go_on), deferred :: next_state
@@ -242,10 +245,15 @@ contains
          row = row_of_tip(self%time(), i, self%tip(i), any_grew)
          row%apparent_toughness = self%tip(i)%viscous_rise*resistance_of(self%tip(i), any_grew) &
                                   *self%rules%toughness
+         row%error%position = -1.0_rk
+         if (allocated(self%position_error)) row%error%position = self%position_error(i)
          call self%chronicle%add_tip(row)
-         self%summary%keq_over_kic = max(self%summary%keq_over_kic, &
-                                         over_toughness(self%scene, &
-                                                      row%keq/resistance_of(self%tip(i), any_grew)))
+         associate (summary => self%summary, resistance => resistance_of(self%tip(i), any_grew))
+            if (over_toughness(self%scene, row%keq/resistance) > summary%keq_over_kic) then
+               summary%keq_over_kic = over_toughness(self%scene, row%keq/resistance)
+               summary%extreme_error(1) = over_toughness(self%scene, row%error%keq/resistance)
+            end if
+         end associate
       end do
    end subroutine note_tips
 
@@ -297,8 +305,38 @@ contains
          row%k2_dc_error = intensity%k2_dc_error
          row%k1_corrected = intensity%k1_corrected
          row%k2_corrected = intensity%k2_corrected
+         associate (error => row%error, modulus => shown%drive%crack_modulus)
+            call propagate(intensity%k1, intensity%k2, intensity%k1_error, intensity%k2_error, &
+                           modulus, error%keq, error%g, error%angle)
+         end associate
       end associate
    end function row_of_tip
+
+   !> Errors of K_eq, of the energy release rate and of the kink from those of K_I and K_II: the
+   !! largest differences at the four corners of their range.
+   pure subroutine propagate(k1, k2, k1_error, k2_error, modulus, keq_error, g_error, angle_error)
+      real(rk), intent(in) :: k1, k2, k1_error, k2_error  !< [Pa m^1/2]
+      real(rk), intent(in) :: modulus  !< E' [Pa]
+      real(rk), intent(out) :: keq_error  !< [Pa m^1/2]
+      real(rk), intent(out) :: g_error  !< [J/m2]
+      real(rk), intent(out) :: angle_error  !< [rad]
+      type(growth_drive_t) :: corner, middle
+      integer :: i, j
+
+      keq_error = 0.0_rk
+      g_error = 0.0_rk
+      angle_error = 0.0_rk
+      if (.not. modulus > 0.0_rk) return
+      middle = growth_drive(k1, k2, modulus)
+      do j = -1, 1, 2
+         do i = -1, 1, 2
+            corner = growth_drive(k1 + i*k1_error, k2 + j*k2_error, modulus)
+            keq_error = max(keq_error, abs(corner%intensity - middle%intensity))
+            g_error = max(g_error, abs(corner%energy - middle%energy))
+            angle_error = max(angle_error, abs(corner%angle - middle%angle))
+         end do
+      end do
+   end subroutine propagate
 
    !> Add events of the tips that have grown in the last increment, joined a target or stopped next
    !! to one.

@@ -23,7 +23,8 @@ module report_slip
    use contact_law, only: state_open, state_stick
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
-   use report_rows, only: slip_event_t
+   use report_jump_errors, only: finite_volumes
+   use report_rows, only: slip_errors_t, slip_event_t
    implicit none(type, external)
    private
 
@@ -49,6 +50,7 @@ module report_slip
       real(rk) :: s(2) = [huge(1.0_rk), -huge(1.0_rk)]  !< arc lengths, from and to [m]
       real(rk) :: rate = 0.0_rk  !< largest slip rate of a cell [m/s]
       real(rk) :: fastest(2) = 0.0_rk  !< centre of that cell [m]
+      real(rk) :: cell = 0.0_rk  !< length of the longest cell [m]
    end type amount_t
 
    !> Shear tractions of fracture cells.
@@ -69,6 +71,7 @@ module report_slip
       type(amount_t) :: before  !< slip before the present step
       type(amount_t) :: now  !< slip in the present step
       type(shear_t) :: start  !< tractions of its fracture before the event
+      real(rk) :: steps(2) = 0.0_rk  !< lengths of its first and its last step [s]
    end type live_t
 
    !> Adjacent sliding cells in the last step.
@@ -249,6 +252,7 @@ contains
       amount%open = sum(moment(first:last), mask=step%state(first:last) == state_open)
       if (step%is_sudden) amount%sudden = amount%moment
       amount%s = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
+      amount%cell = maxval(fracture%cell_s(2, first:last) - fracture%cell_s(1, first:last))
       do cell = first, last
          centre = fracture_cell_centre(fracture, cell)
          amount%place = amount%place + moment(cell)*centre
@@ -271,6 +275,7 @@ contains
       amount%sudden = amount%sudden + more%sudden
       amount%place = amount%place + more%place
       amount%s = [min(amount%s(1), more%s(1)), max(amount%s(2), more%s(2))]
+      amount%cell = max(amount%cell, more%cell)
       if (.not. more%rate > amount%rate) return
       amount%rate = more%rate
       amount%fastest = more%fastest
@@ -295,7 +300,9 @@ contains
             live%before = amount_t()
             live%start = self%last%of_fracture(live%event%fracture)
             live%has_begun = .true.
+            live%steps = dt
          end if
+         live%steps(2) = dt
          live%event%end = time
          live%event%largest_rate = max(live%event%largest_rate, &
                                        live%now%moment*self%breadth/dt)
@@ -358,8 +365,45 @@ contains
       event%open_share = live%before%open/live%before%moment
       event%sudden_share = live%before%sudden/live%before%moment
       event%ended_by = ended_by
+      event%error = errors_of(event, live, ends_known(self%last, event), self%breadth)
       self%news = [self%news, event]
    end subroutine list
+
+   !> Number of ends of the patch of an event that are ends of its fracture.
+   pure integer function ends_known(mesh, event) result(n)
+      type(shear_t), intent(in) :: mesh
+      type(slip_event_t), intent(in) :: event
+
+      associate (of_event => mesh%fracture == event%fracture)
+         n = count([event%s(1) <= minval(mesh%s(1, :), mask=of_event), &
+                    event%s(2) >= maxval(mesh%s(2, :), mask=of_event)])
+      end associate
+   end function ends_known
+
+   !> Estimated errors of an event: its patch is known to a cell at each end within its fracture,
+   !! its times to a step.
+   pure type(slip_errors_t) function errors_of(event, live, n_known, breadth) result(error)
+      type(slip_event_t), intent(in) :: event
+      type(live_t), intent(in) :: live
+      integer, intent(in) :: n_known  !< ends of the patch that are ends of the fracture
+      real(rk), intent(in) :: breadth  !< out-of-plane length [m]
+      real(rk) :: of_ends, share
+
+      associate (law => finite_volumes, per_half => 2.0_rk*live%before%cell &
+                 /(event%s(2) - event%s(1)))
+         of_ends = (2 - n_known)*0.5_rk*per_half
+         share = law%rest - law%less + per_half*merge(law%of_sum, law%within, n_known == 2)
+      end associate
+      error%time = maxval(live%steps)
+      error%place = live%before%cell
+      error%area = (2 - n_known)*live%before%cell*breadth
+      error%moment = share*event%moment
+      error%magnitude = share/(1.5_rk*log(10.0_rk))
+      error%mean_slip = (share + of_ends)*event%mean_slip
+      error%mean_slip_rate = error%mean_slip/(event%end - event%time) &
+                             + event%mean_slip_rate*error%time/(event%end - event%time)
+      error%stress_drop = (share + of_ends)*abs(event%stress_drop)
+   end function errors_of
 
    !> Moment magnitude [-].
    elemental real(rk) function magnitude(moment)

@@ -1,5 +1,5 @@
 !> Fields at written times: a VTU file for each dimension, with the components that ParaView
-!! expects, and collections of them (.pvd). report_columns defines the fields.
+!! expects, and collections of them (.pvd). report_keys defines the fields.
 !!
 !! ParaView expects times in increasing order, and shows files of equal time on top of one another.
 !! So states of equal time have consecutive numbers, and those of a falling load have the last state
@@ -10,7 +10,7 @@ module report_snapshots
    use base_number, only: exact_text
    use base_texts, only: text_t
    use mesh_types, only: fracture_mesh_t, mesh_t
-   use report_columns, only: fracture_fields, intersection_fields, matrix_fields
+   use report_keys, only: fracture_fields, intersection_fields, matrix_fields
    use report_files, only: make_directory, remove_file, write_text_file
    use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use report_simulation, only: snapshot_t
@@ -173,6 +173,13 @@ contains
          call grid%add("permeability", permeability_tensor(fields, material, mesh), &
             & tensor_components)
       end if
+      if (allocated(fields%displacement_error)) then
+         call grid%add("displacement_error", fields%displacement_error)
+      end if
+      if (allocated(fields%pressure_error)) then
+         call grid%add("pressure_error", fields%pressure_error)
+      end if
+      if (allocated(fields%stress_error)) call grid%add("stress_error", fields%stress_error)
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
@@ -194,8 +201,24 @@ contains
       if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
       if (allocated(fields%flow)) call grid%add("flow", fields%flow)
       if (allocated(fields%state)) call grid%add("state", fields%state)
+      call add_fracture_errors(grid, fields)
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
    end subroutine fill_fractures
+
+   !> Estimated errors of the fields of the fractures.
+   subroutine add_fracture_errors(grid, fields)
+      type(vtu_grid_t), intent(inout) :: grid
+      type(fracture_fields_t), intent(in) :: fields
+
+      associate (error => fields%error)
+         if (.not. allocated(error%jump_n)) return
+         if (allocated(fields%aperture)) call grid%add("aperture_error", error%jump_n)
+         call add_pair(grid, "jump_error", error%jump_n, error%jump_t)
+         call add_pair(grid, "traction_error", error%traction_n, error%traction_t)
+         if (allocated(error%pressure)) call grid%add("pressure_error", error%pressure)
+         if (allocated(error%flow)) call grid%add("flow_error", error%flow)
+      end associate
+   end subroutine add_fracture_errors
 
    !> The grid of the intersections.
    subroutine fill_intersections(grid, time, mesh, fields)
@@ -208,6 +231,9 @@ contains
       vertices(1, :) = [(i, i=1, size(fields%point, kind=ik))]
       call grid%begin(mesh%point_xy(:, fields%point), vertices, vtk_vertex, time)
       if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      if (allocated(fields%pressure_error)) then
+         call grid%add("pressure_error", fields%pressure_error)
+      end if
       call grid%set_units(intersection_fields%name, intersection_fields%unit)
    end subroutine fill_intersections
 

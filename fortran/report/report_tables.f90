@@ -6,11 +6,11 @@ module report_tables
    use contact_law, only: state_name
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
-   use report_columns, only: applies, column_t, event_columns, fracture_columns, history_columns, &
-                             probe_columns, slip_event_columns, tip_columns, well_columns, &
-                             well_count
-   use report_rows, only: fracture_fields_t, history_row_t, probe_row_t, slip_event_t, tip_row_t, &
-                          well_row_t
+   use report_column, only: applies, column_t, well_count
+   use report_columns, only: event_columns, fracture_columns, history_columns, probe_columns, &
+                             slip_event_columns, tip_columns, well_columns
+   use report_rows, only: fracture_fields_t, history_errors_t, history_row_t, probe_row_t, &
+                          slip_event_t, tip_row_t, well_row_t
    use report_series, only: series_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
@@ -117,9 +117,35 @@ contains
          call table%put("connections_per_branch", row%connections_per_branch)
          call table%put("dimensionless_toughness", row%dimensionless_toughness)
          call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
+         call put_errors(table, row%error)
          call table%end_row()
       end associate
    end subroutine history_row
+
+   !> Put the estimated errors of a step.
+   subroutine put_errors(table, error)
+      type(series_t), intent(inout) :: table
+      type(history_errors_t), intent(in) :: error
+
+      call table%put("injected_error_m2", error%injected)
+      call table%put("produced_error_m2", error%produced)
+      call table%put("leakoff_error_m2", error%leakoff)
+      call table%put("outflow_error_m2", error%outflow)
+      call table%put("fracture_fluid_error_m2", error%fracture_fluid)
+      call table%put("rock_fluid_error_m2", error%rock_fluid)
+      call table%put("rock_outflow_error_m2", error%rock_outflow)
+      call table%put("fracture_volume_error_m2", error%fracture_volume)
+      call table%put("max_slip_error_m", error%max_slip)
+      call table%put("max_opening_error_m", error%max_opening)
+      call table%put("seismic_moment_error_nm", error%seismic_moment)
+      call table%put("strain_energy_error_j", error%strain_energy)
+      call table%put("injection_rate_error_m2_s", error%injection_rate)
+      call table%put("injectivity_error_m2_s_pa", error%injectivity)
+      call table%put("stimulated_length_error_m", error%stimulated_length)
+      call table%put("connected_length_error_m", error%connected_length)
+      call table%put("connected_stimulated_error_m", error%connected_stimulated)
+      call table%put("max_slip_rate_error_m_s", error%max_slip_rate)
+   end subroutine put_errors
 
    !> Add a tip.
    subroutine tip_row(self, row)
@@ -152,6 +178,10 @@ contains
          call table%put("k2_corrected_pa_sqrtm", row%k2_corrected)
          call table%put("apparent_toughness_pa_sqrtm", row%apparent_toughness)
          call table%put("history_row", int(self%history%n_rows, ik))
+         call table%put("keq_error_pa_sqrtm", row%error%keq)
+         call table%put("g_error_j_m2", row%error%g)
+         call table%put("angle_error_deg", row%error%angle*degrees)
+         call table%put("position_error_m", row%error%position)
          call table%end_row()
       end associate
    end subroutine tip_row
@@ -189,6 +219,19 @@ contains
                call table%put_nothing("state")
             end if
             call table%put("history_row", int(self%history%n_rows, ik))
+            associate (error => fields%error)
+               if (allocated(fields%aperture)) then
+                  call put_if_there(table, "aperture_error_m", error%jump_n, cell)
+               else
+                  call table%put_nothing("aperture_error_m")
+               end if
+               call put_if_there(table, "jump_n_error_m", error%jump_n, cell)
+               call put_if_there(table, "jump_t_error_m", error%jump_t, cell)
+               call put_if_there(table, "traction_n_error_pa", error%traction_n, cell)
+               call put_if_there(table, "traction_t_error_pa", error%traction_t, cell)
+               call put_if_there(table, "pressure_error_pa", error%pressure, cell)
+               call put_if_there(table, "flow_error_m2_s", error%flow, cell)
+            end associate
             call table%end_row()
          end do
       end associate
@@ -213,6 +256,9 @@ contains
                call table%put(name//"_sxx_pa", row%stress(1, i))
                call table%put(name//"_syy_pa", row%stress(2, i))
                call table%put(name//"_sxy_pa", row%stress(3, i))
+               call put_if_there(table, name//"_p_error_pa", row%pressure_error, i)
+               call put_if_there(table, name//"_u_error_m", row%displacement_error, i)
+               call put_if_there(table, name//"_s_error_pa", row%stress_error, i)
             end associate
          end do
          call table%end_row()
@@ -279,6 +325,14 @@ contains
          call table%put("largest_slip_rate_m_s", event%largest_slip_rate)
          call table%put("mean_slip_rate_m_s", event%mean_slip_rate)
          call table%put("stress_drop_pa", event%stress_drop)
+         call table%put("time_error_s", event%error%time)
+         call table%put("place_error_m", event%error%place)
+         call table%put("area_error_m2", event%error%area)
+         call table%put("mean_slip_error_m", event%error%mean_slip)
+         call table%put("moment_error_nm", event%error%moment)
+         call table%put("magnitude_error", event%error%magnitude)
+         call table%put("mean_slip_rate_error_m_s", event%error%mean_slip_rate)
+         call table%put("stress_drop_error_pa", event%error%stress_drop)
          call table%end_row()
       end associate
    end subroutine slip_event_row
@@ -301,6 +355,12 @@ contains
          call table%put("injected_m2", row%injected)
          call table%put("injectivity_m2_s_pa", row%injectivity)
          call table%put("asked_m2_s", row%asked)
+         call table%put("rate_error_m2_s", row%error%rate)
+         call table%put("flow_error_m2_s", row%error%flow)
+         call table%put("pressure_error_pa", row%error%pressure)
+         call table%put("head_pressure_error_pa", row%error%head_pressure)
+         call table%put("injected_error_m2", row%error%injected)
+         call table%put("injectivity_error_m2_s_pa", row%error%injectivity)
          call table%end_row()
       end associate
    end subroutine well_row

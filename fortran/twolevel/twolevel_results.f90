@@ -122,6 +122,7 @@ contains
       n = size(points)
       allocate (xy(2, n), cells(n))
       allocate (row%displacement(2, n), row%pressure(n), row%stress(3, n))
+      allocate (row%displacement_error(n), row%pressure_error(n), row%stress_error(n))
       xy(1, :) = points%x
       xy(2, :) = points%y
       call locate(problem%mesher, xy, cells, error)
@@ -142,6 +143,9 @@ contains
                                   cells(i), at_nodes(3, :), row%pressure(i))
             end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
+            call find_local_errors(problem, state, cells(i), sum(at_nodes, dim=2)/3.0_rk, &
+                                   row%displacement_error(i), row%pressure_error(i), &
+                                   row%stress_error(i))
             if (.not. allocated(model%in_situ)) cycle
             ! The state in situ is exact at the point itself.
             row%pressure(i) = row%pressure(i) + model%in_situ%pressure_at(xy(2, i))
@@ -149,6 +153,31 @@ contains
          end do
       end associate
    end subroutine probes_of_levels
+
+   !> Errors of the values in one cell: the difference of its displacement and pressure from the
+   !! mean of those at its nodes, and half the largest difference of its stress from those of its
+   !! neighbours.
+   pure subroutine find_local_errors(problem, state, cell, of_nodes, displacement, pressure, stress)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: of_nodes(3)  !< mean displacement [m] and pressure [Pa] of its nodes
+      real(rk), intent(out) :: displacement  !< [m]
+      real(rk), intent(out) :: pressure, stress  !< [Pa]
+      integer(ik) :: k, other
+
+      displacement = maxval(abs(of_nodes(:2) - state%unknowns(:2, cell)))
+      pressure = abs(of_nodes(3) - state%unknowns(3, cell))
+      stress = 0.0_rk
+      associate (mesh => problem%mesh, regions => problem%model%regions)
+         do k = 1, 3
+            other = sum(mesh%face_cells(:, mesh%cell_faces(k, cell))) - cell
+            if (other == 0) cycle
+            stress = max(stress, 0.5_rk*maxval(abs(cell_stress(regions, state%tractions, other) &
+                                                - cell_stress(regions, state%tractions, cell))))
+         end do
+      end associate
+   end subroutine find_local_errors
 
    !> Total stress of each cell: xx, yy, xy [Pa].
    function stresses_of(problem, state) result(stresses)
@@ -209,6 +238,7 @@ contains
       logical, intent(in) :: has_regions  !< the scene has regions of other rock
       type(matrix_fields_t) :: fields
       real(rk), allocatable :: nodal(:, :)
+      integer(ik) :: c
 
       associate (mesh => problem%mesh, model => problem%model, rock => problem%model%rock)
          fields%displacement = state%unknowns(:2, :mesh%n_cells)
@@ -217,6 +247,14 @@ contains
          fields%node_displacement = nodal(:2, :)
          fields%pressure = problem%rock_pressure(state)
          fields%stress = stresses_of(problem, state)
+         allocate (fields%displacement_error(mesh%n_cells), fields%pressure_error(mesh%n_cells), &
+                   fields%stress_error(mesh%n_cells))
+         do c = 1, mesh%n_cells
+            call find_local_errors(problem, state, c, &
+                                   sum(nodal(:, mesh%cell_nodes(:, c)), dim=2)/3.0_rk, &
+                                   fields%displacement_error(c), fields%pressure_error(c), &
+                                   fields%stress_error(c))
+         end do
          if (.not. has_regions) return
          fields%permeability = rock%permeability
          if (size(rock%shear) == 1) return

@@ -11,6 +11,7 @@ module twolevel_state
    use scene_types, only: scene_t
    use report_rows, only: history_row_t, probe_row_t
    use report_simulation, only: simulation_t, snapshot_t
+   use twolevel_field_errors, only: add_rock_errors, find_fracture_errors, note_joint_errors
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_places, only: end_at_tips
@@ -21,6 +22,7 @@ module twolevel_state
    use twolevel_schedule, only: follow_sides, last_switch
    use twolevel_stepping, only: stepper_t
    use twolevel_stimulation, only: stimulation_t
+   use twolevel_value_errors, only: value_errors_t
    use twolevel_wells, only: rate
    use twolevel_unsolved, only: why_unsolved
    use twolevel_well_rows, only: well_results_t
@@ -72,6 +74,7 @@ module twolevel_state
       type(notes_t) :: notes  !< event log of growth in equilibrium
       type(stimulation_t) :: stimulation
       type(well_results_t) :: well_results
+      type(value_errors_t) :: value_errors  !< of the accepted state
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness [N m]
       !> unknowns of the windows when they were last compared with those of the body
       integer(ik) :: compared_unknowns = 0
@@ -420,6 +423,7 @@ contains
       end if
       call self%stimulation%describe(self%scene, self%start, self%front_state_t, self%problem, &
                                      self%now%coarse, row)
+      row%error = self%value_errors%row
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
       if (.not. states_errors(self%scene%growth)) return
@@ -434,6 +438,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
+      if (allocated(error)) return
+      call self%value_errors%note_probes(self%time(), self%now%trend%pressure_rise(), row)
    end subroutine probes
 
    !> Fields of the last accepted state, if there is one.
@@ -441,9 +447,15 @@ contains
       class(two_levels_t), intent(in) :: self
       type(snapshot_t), allocatable, intent(out) :: fields
 
-      if (allocated(self%now%coarse%tractions)) then
-         fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
+      if (.not. allocated(self%now%coarse%tractions)) return
+      fields = snapshot_of_levels(self%scene, self%problem, self%now%coarse)
+      call add_rock_errors(self%scene, self%problem, self%now%coarse, self%value_errors, &
+                           fields%matrix)
+      if (self%problem%mesh%fracture%n_cells > 0) then
+         call find_fracture_errors(self%scene, self%problem, self%now%coarse, self%value_errors, &
+                                   fields%fracture)
       end if
+      call note_joint_errors(self%value_errors, fields%intersection)
    end subroutine snapshot
 
    !> Time of the present state [s].

@@ -9,7 +9,7 @@ submodule(twolevel_state) twolevel_steps
    use coarse_rock, only: shear_beside
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: event_step_cut, event_unstable, history_row_t, well_row_t
-   use report_limits, only: limit_time_error
+   use report_limits, only: limit_depth, limit_time_error, limit_well_error
    use report_slip, only: slip_step_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
@@ -21,8 +21,12 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
+   use twolevel_value_errors, only: step_facts_t, unresolved_depth
    use twolevel_window_total, only: limit_windows
    implicit none(type, external)
+
+   !> Share of the injected fluid that leaks off before layers matter [-].
+   real(rk), parameter :: leaking = 0.01_rk
 
 contains
 
@@ -48,6 +52,7 @@ contains
          if (is_first) then
             call self%stimulation%begin(self%problem, self%now%coarse)
             call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+            call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
          end if
          call find_step(self, trial, wanted, timers, error)
          if (.not. allocated(error)) call accept_step(self, trial, wanted)
@@ -83,10 +88,58 @@ contains
       if (states_errors(self%scene%growth)) then
          call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
                                  self%now, self%notes%jumps)
+         self%position_error = self%now%stated_errors%tip
       end if
+      if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
+      call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row, &
+                                        self%now%stated_errors, facts_of(self))
       call note_well_rows(self)
+      call watch_errors(self)
       call note_state(self, row%mass_error_relative)
    end subroutine commit_step
+
+   !> What the errors of the last step need to know.
+   pure type(step_facts_t) function facts_of(self) result(facts)
+      class(two_levels_t), intent(in) :: self
+      integer :: w
+
+      facts%is_jump = self%step%is_unstable
+      facts%is_first = self%step%is_after_switch
+      facts%since_switch = self%now%coarse%time - last_switch(self%scene, self%before%time)
+      facts%has_estimate = states_errors(self%scene%growth)
+      facts%has_given_rates = size(self%scene%injections) == 0
+      do w = 1, size(self%scene%injections)
+         associate (well => self%scene%injections(w))
+            if (allocated(well%rate)) facts%has_given_rates = .true.
+         end associate
+      end do
+      facts%mass_error = self%now%fluid%mass_error
+   end function facts_of
+
+   !> Check the depth of diffusion against the cells, and at the end of a stage the error of the
+   !! pressure of the wells over its rise.
+   subroutine watch_errors(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk) :: rise
+      integer :: w
+
+      if (self%is_initial) return
+      associate (errors => self%value_errors, fluid => self%now%fluid)
+         if (abs(fluid%leaked) > leaking*abs(fluid%injected)) then
+            associate (facts => facts_of(self))
+               call self%watch%see(limit_depth, unresolved_depth(self%problem, &
+                                                                 facts%since_switch), &
+                                   self%last_state())
+            end associate
+         end if
+         if (.not. (self%step%ends_at_switch .and. allocated(errors%of_wells))) return
+         do w = 1, size(errors%of_wells)
+            rise = abs(errors%wells%value(w) - errors%wells%first(w))
+            if (.not. rise > 0.0_rk) cycle
+            call self%watch%see(limit_well_error, errors%of_wells(w)/rise, self%last_state())
+         end do
+      end associate
+   end subroutine watch_errors
 
    !> Find a step from the stored state, cut as often as necessary. Growth is unstable where tips
    !! find no equilibrium in a step that is short compared with the time since the wells were
@@ -336,6 +389,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
       call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
+      call self%value_errors%note_wells(self%scene, rows, self%now%stated_errors, facts_of(self))
       self%chronicle%wells = [self%chronicle%wells, rows]
    end subroutine note_well_rows
 
@@ -344,6 +398,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       class(two_levels_t), intent(inout) :: self
       real(rk), intent(in) :: mass_error_relative  !< accumulated error of all steps [-]
       logical :: always(size(self%scene%fractures))
+      real(rk) :: lowest
 
       always = .true.
       associate (summary => self%summary, report => self%step%report)
@@ -351,9 +406,12 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
          summary%condition_estimate = max(summary%condition_estimate, report%condition)
          summary%forward_error_bound = max(summary%forward_error_bound, report%error_bound)
          summary%mass_error_relative = max(summary%mass_error_relative, mass_error_relative)
-         summary%lowest_pressure = min(summary%lowest_pressure, &
-                                       minval(self%problem%rock_pressure(self%now%coarse)), &
-                                       minval(self%problem%fracture_pressure(self%now%coarse)))
+         lowest = min(minval(self%problem%rock_pressure(self%now%coarse)), &
+                      minval(self%problem%fracture_pressure(self%now%coarse)))
+         if (lowest < summary%lowest_pressure) then
+            summary%lowest_pressure = lowest
+            summary%extreme_error(2) = self%value_errors%pressure_error()
+         end if
          summary%cells = self%problem%mesh%n_cells
          summary%fracture_cells = self%problem%mesh%fracture%n_cells
          if (any(self%tip%joined)) call summary%use_after_all(meeting, not_meeting)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterable
 from pathlib import Path
@@ -57,11 +58,14 @@ def _groups() -> str:
 def _files() -> str:
     sections = []
     for file in table()["files"]:
-        rows = ((f"`{r['name']}`", r["unit"], r["runs"], r["meaning"]) for r in file["columns"])
+        rows = (
+            (f"`{r['name']}`", r["unit"], r["runs"], r["meaning"], _error(r["error"]))
+            for r in file["columns"]
+        )
         meaning = textwrap.fill(
             file["meaning"], _WIDTH, break_long_words=False, break_on_hyphens=False
         )
-        head = "name, unit, in runs, meaning"
+        head = "name, unit, in runs, meaning, error"
         sections.append(f"## {file['name']}\n\n{meaning}\n\n{_rows(head, rows)}")
         sections += [
             f"`{entry['name']}` is one of these:\n\n"
@@ -70,6 +74,14 @@ def _files() -> str:
             if entry["file"] == file["name"]
         ]
     return "\n\n".join(sections)
+
+
+def _error(text: str) -> str:
+    """Name of the column with the error as code; a reason as it is."""
+    if text.startswith("none: "):
+        return text
+    name, *rest = re.split("(;| of )", text, maxsplit=1)
+    return f"`{name}`" + "".join(rest)
 
 
 def _limits() -> str:

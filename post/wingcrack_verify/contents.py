@@ -26,6 +26,7 @@ from wingcrack.sweeps.fields import (
 from wingcrack.sweeps.paths import NETWORK, network_table
 from wingcrack.sweeps.selection import Selection
 from wingcrack_verify.economy import Economy
+from wingcrack_verify.held import Held
 from wingcrack_verify.metrics import METRICS
 
 # The physics of a case, in the order of the report; a case names its group in its own file.
@@ -162,6 +163,7 @@ class Check(Entry):
     scale: Positive | None = None
     order: Order | None = None
     economy: Economy | None = None
+    held: Held | None = None
     front: Annotated[float, Field(gt=0.0, lt=1.0)] | None = None
     work_precision: bool = False
     known_gap: Text | None = None

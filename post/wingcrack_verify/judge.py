@@ -14,6 +14,7 @@ from wingcrack.sweeps.selection import Selection, Values, interpolated, select
 from wingcrack_verify.contents import Case, Check, FigureRequest, Run, require_files
 from wingcrack_verify.economy import Front, Saving, front, saving, unknowns_of, work_of
 from wingcrack_verify.execute import Outcome
+from wingcrack_verify.held import Holding, holding
 from wingcrack_verify.metrics import METRICS, Pair, check_tolerance, measure, signal
 from wingcrack_verify.orders import Advice, Fit, Point, advise, observed_order
 
@@ -66,6 +67,7 @@ class CheckReport:
     advice: tuple[Advice, ...]
     saving: Saving | None = None
     front: Front | None = None
+    holding: Holding | None = None
 
     @property
     def worst(self) -> Measured | None:
@@ -182,8 +184,11 @@ def judge_check(
         if not item.ran and not item.broken:
             status = item.outcome.status
             reasons.append(f"{item.run.name}: the run {status}: {item.outcome.reason}")
+    found = _holding(check, measured)
+    if found is not None and not found.good:
+        reasons.append(found.reason)
     for item in measured:
-        if item.judged and item.ran and not item.broken and not item.good:
+        if check.held is None and item.judged and item.ran and not item.broken and not item.good:
             reasons.append(f"{item.run.name}: {item.error:.3g} exceeds {check.tolerance:.3g}")
     reasons += [order.reason for order in orders if not order.good]
     points = _points(measured)
@@ -193,7 +198,9 @@ def judge_check(
     place = None if check.front is None else front(points, check.front, others)
     if place is not None and not place.good:
         reasons.append(place.reason)
-    good = not reasons and all(item.good for item in measured if item.judged)
+    good = not reasons and (
+        check.held is not None or all(item.good for item in measured if item.judged)
+    )
     if broken:
         verdict = ERROR
     elif check.known_gap is not None:
@@ -204,7 +211,17 @@ def judge_check(
         verdict = PASSED if good else FAILED
     advice = tuple(advise(points)) if check.work_precision else ()
     return CheckReport(
-        check, verdict, tuple(reasons), measured, orders, points, advice, saved, place
+        check, verdict, tuple(reasons), measured, orders, points, advice, saved, place, found
+    )
+
+
+def _holding(check: Check, measured: Sequence[Measured]) -> Holding | None:
+    """Whether the values of all judged runs together are within the tolerance, where asked."""
+    if check.held is None:
+        return None
+    pairs = [item.pair for item in measured if item.judged and item.pair is not None]
+    return holding(
+        check.held, check.tolerance, [pair.result - pair.reference for pair in pairs]
     )
 
 

@@ -93,6 +93,7 @@ def _check_record(report: CheckReport) -> dict[str, Any]:
         ],
         "rates": _rates(report) if check.work_precision or check.economy else [],
         "saving": "" if report.saving is None else report.saving.reason,
+        "held": "" if report.holding is None else report.holding.reason,
         "front": "" if report.front is None else report.front.reason,
     }
 

@@ -3,7 +3,8 @@ program test_report_describe
    use base_kinds, only: ik
    use base_timers, only: phase_names
    use contact_law, only: state_name
-   use report_columns, only: contact_words, event_words, record_keys, status_words
+   use report_keys, only: record_keys
+   use report_words, only: contact_words, event_words, status_words
    use report_describe, only: description
    use report_record, only: status_failed, status_finished, status_stopped
    use report_rows, only: event_arrest, event_bifurcation, event_growth, event_growth_onset, &

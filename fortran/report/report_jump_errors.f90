@@ -1,0 +1,180 @@
+!> Relative errors of slip and opening of fracture cells, from the sizes of the cells.
+!!
+!! Cells whose faces move form zones along a fracture. A zone slips and opens as if its ends lay
+!! elsewhere by a share of the cells there, so that a jump at the distance d from an end has the
+!! relative error of that share of the cell over d, with a remainder that does not depend on the
+!! place; sums over a zone (volume, moment) have that of its middle. That of slip falls faster, with
+!! a higher power of the distance. A kink gives rise to an error
+!! in proportion to the sine of its angle. The shares of the two discretizations were measured with
+!! closed forms (Sneddon 1946; one crack under uniform shear) at 4 to 40 cells per half-length, for
+!! Poisson's ratios of 0.1 and 0.3 (verification/stated_errors_all).
+module report_jump_errors
+   use base_kinds, only: ik, rk
+   use base_plane, only: norm2
+   use mesh_types, only: fracture_mesh_t, point_tip
+   implicit none(type, external)
+   private
+
+   public :: finite_elements, finite_volumes, jump_errors_t, jump_law_t, relative_jump_errors, &
+             unevenness
+
+   !> Shares of a discretization, each times a cell's length over a distance [-].
+   type :: jump_law_t
+      real(rk) :: rest = 0.0_rk  !< independent of the place
+      real(rk) :: less = 0.0_rk  !< by which it is less for slip
+      real(rk) :: fall = 0.0_rk  !< by which the power of the distance is higher for slip
+      real(rk) :: at_tip = 0.0_rk  !< end of a zone at a free tip
+      real(rk) :: at_joint = 0.0_rk  !< end of a zone at another end of a fracture
+      real(rk) :: within = 0.0_rk  !< end of a zone where faces stick
+      real(rk) :: of_kink = 0.0_rk  !< times the sine of the kink
+      real(rk) :: of_sum = 0.0_rk  !< sums over a zone, times the power of cell over half-length
+      real(rk) :: power = 1.0_rk
+   end type jump_law_t
+
+   type(jump_law_t), parameter :: finite_volumes = &
+      jump_law_t(0.005_rk, 0.003_rk, 0.25_rk, 0.075_rk, 0.15_rk, 0.5_rk, 0.2_rk, &
+                 0.075_rk, 1.0_rk)
+   type(jump_law_t), parameter :: finite_elements = &
+      jump_law_t(0.001_rk, 0.0_rk, 0.0_rk, 0.006_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
+                 0.35_rk, 1.5_rk)
+
+   !> (fracture cells)
+   type :: jump_errors_t
+      real(rk), allocatable :: share(:)  !< relative error of the opening [-]
+      real(rk), allocatable :: of_slip(:)  !< the same of the slip [-]
+      real(rk), allocatable :: of_sum(:)  !< of sums of openings over its zone [-]
+      real(rk), allocatable :: of_slip_sum(:)  !< the same of slip [-]
+      !> mean of the distances from the ends of its zone by their product: a uniform change of
+      !! traction by s changes the jump by 4 s/E' times it; 0 where no face moves [m]
+      real(rk), allocatable :: reach(:)
+   end type jump_errors_t
+
+contains
+
+   !> Relative errors of the cells.
+   pure function relative_jump_errors(fracture, moves, law) result(errors)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: moves(:)  !< (cells)
+      type(jump_law_t), intent(in) :: law
+      type(jump_errors_t) :: errors
+      integer(ik) :: first, last
+
+      allocate (errors%share(size(moves)), errors%of_sum(size(moves)), source=law%rest)
+      allocate (errors%reach(size(moves)), source=0.0_rk)
+      first = 1
+      do while (first <= fracture%n_cells)
+         last = first
+         do while (last < fracture%n_cells)
+            if (moves(last + 1) .neqv. moves(first)) exit
+            if (fracture%cell_fracture(last + 1) /= fracture%cell_fracture(first)) exit
+            last = last + 1
+         end do
+         if (moves(first)) call add_zone(fracture, first, last, law, errors)
+         first = last + 1
+      end do
+      associate (of_ends => errors%share - law%rest)
+         errors%of_slip = law%rest - law%less + of_ends*min(1.0_rk, of_ends/(2.0_rk*law%at_tip)) &
+                          **law%fall
+      end associate
+      errors%of_slip_sum = errors%of_sum - law%less
+   end function relative_jump_errors
+
+   !> Errors in a zone of adjacent cells.
+   pure subroutine add_zone(fracture, first, last, law, errors)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: first, last  !< cells
+      type(jump_law_t), intent(in) :: law
+      type(jump_errors_t), intent(inout) :: errors
+      real(rk) :: ends(2), half, kinks, size_of(2)
+      integer(ik) :: i
+
+      ends = [fracture%cell_s(1, first), fracture%cell_s(2, last)]
+      size_of = [length_of(first), length_of(last)]
+      half = 0.5_rk*(ends(2) - ends(1))
+      if (.not. half > 0.0_rk) return
+      kinks = law%of_kink*kinked_part(fracture, first, last)/half
+      do i = first, last
+         associate (middle => 0.5_rk*sum(fracture%cell_s(:, i)))
+            if (.not. (middle > ends(1) .and. middle < ends(2))) cycle
+            errors%reach(i) = sqrt((middle - ends(1))*(ends(2) - middle))
+            errors%share(i) = law%rest + kinks &
+                              + max(share_at(first, 1)*size_of(1)/(middle - ends(1)), &
+                                    share_at(last, 2)*size_of(2)/(ends(2) - middle))
+         end associate
+      end do
+      errors%of_sum(first:last) = law%rest + kinks + law%of_sum*(maxval(size_of)/half)**law%power &
+                                  + maxval([share_at(first, 1) - law%at_tip, &
+                                            share_at(last, 2) - law%at_tip])*maxval(size_of)/half
+
+   contains
+
+      pure real(rk) function length_of(cell)
+         integer(ik), intent(in) :: cell
+
+         length_of = fracture%cell_s(2, cell) - fracture%cell_s(1, cell)
+      end function length_of
+
+      !> Share of the cell at an end of the zone.
+      pure real(rk) function share_at(cell, end) result(share)
+         integer(ik), intent(in) :: cell
+         integer, intent(in) :: end  !< 1 start, 2 end
+         integer(ik) :: next
+
+         next = cell + merge(-1_ik, 1_ik, end == 1)
+         share = law%within
+         if (next >= 1 .and. next <= fracture%n_cells) then
+            ! A cell ahead of a tip has no length.
+            if (fracture%cell_fracture(next) == fracture%cell_fracture(cell)) then
+               if (.not. length_of(next) > 0.0_rk) share = law%at_tip
+               return
+            end if
+         end if
+         share = law%at_joint
+         if (fracture%point_kind(fracture%cell_points(end, cell)) == point_tip) share = law%at_tip
+      end function share_at
+
+   end subroutine add_zone
+
+   !> Longest cell at a kink of a zone, times the sine of the kink [m].
+   pure real(rk) function kinked_part(fracture, first, last) result(part)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: first, last  !< cells
+      real(rk) :: along(2, 2), lengths(2)
+      integer(ik) :: i, k
+
+      part = 0.0_rk
+      do i = first, last - 1
+         do k = 1, 2
+            associate (points => fracture%cell_points(:, i + k - 1))
+               along(:, k) = fracture%point_xy(:, points(2)) - fracture%point_xy(:, points(1))
+            end associate
+            lengths(k) = norm2(along(:, k))
+         end do
+         part = max(part, abs(along(1, 1)*along(2, 2) - along(2, 1)*along(1, 2))/minval(lengths))
+      end do
+   end function kinked_part
+
+   !> Differences of the values of cells from the mean of their neighbours on the fracture.
+   pure function unevenness(fracture, values) result(difference)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: values(:)
+      real(rk) :: difference(size(values))
+      real(rk) :: mean
+      integer(ik) :: i, k, n, next
+
+      difference = 0.0_rk
+      do i = 1, fracture%n_cells
+         n = 0
+         mean = 0.0_rk
+         do k = -1, 1, 2
+            next = i + k
+            if (next < 1 .or. next > fracture%n_cells) cycle
+            if (fracture%cell_fracture(next) /= fracture%cell_fracture(i)) cycle
+            n = n + 1
+            mean = mean + values(next)
+         end do
+         if (n > 0) difference(i) = abs(values(i) - mean/n)
+      end do
+   end function unevenness
+
+end module report_jump_errors

@@ -1,0 +1,130 @@
+!> Estimated errors of the fields of a state with a fluid: those of its quantities
+!! (twolevel_value_errors), and in each cell the difference from what its neighbours give.
+module twolevel_field_errors
+   use base_kinds, only: ik, rk
+   use coarse_fields, only: cell_stress
+   use coarse_state, only: state_t
+   use contact_law, only: state_open
+   use mesh_types, only: fracture_mesh_t
+   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors, unevenness
+   use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
+                          matrix_fields_t
+   use scene_types, only: scene_t
+   use twolevel_problem, only: coarse_problem_t
+   use twolevel_value_errors, only: by_pressure_of, moving, of_solution, value_errors_t
+   implicit none(type, external)
+   private
+
+   public :: add_rock_errors, find_fracture_errors, note_joint_errors
+
+   real(rk), parameter :: least = 0.005_rk  !< relative error in space of fields in the rock [-]
+
+contains
+
+   !> Errors of the fields of the fracture cells.
+   subroutine find_fracture_errors(scene, problem, state, errors, fields)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(value_errors_t), intent(in) :: errors
+      type(fracture_fields_t), intent(inout) :: fields
+      type(jump_errors_t) :: jumps
+      real(rk) :: by_pressure(2, size(state%pressure)), of_pressure
+      logical :: moves(size(state%pressure))
+
+      moves = moving(state)
+      of_pressure = errors%pressure_error()
+      associate (fracture => problem%mesh%fracture, e => fields%error)
+         jumps = relative_jump_errors(fracture, moves, finite_volumes)
+         by_pressure = by_pressure_of(scene, problem, state, jumps, errors%in_space())
+         e%jump_n = (jumps%share + errors%of_opening + errors%of_length - errors%given_volume()) &
+                    *abs(fields%jump_n) + by_pressure(1, :) &
+                    + at_ends(fracture, moves, fields%jump_n)
+         e%jump_t = (jumps%of_slip + errors%of_slip + errors%of_length)*abs(fields%jump_t) &
+                    + by_pressure(2, :) + at_ends(fracture, moves, fields%jump_t)
+         e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
+                      + of_solution*abs(fields%pressure)
+         e%flow = unevenness(fracture, fields%flow) + errors%of_flow*abs(fields%flow) &
+                  + errors%time_share()*abs(fields%flow)
+      end associate
+      call note_tractions(scene, problem, state, jumps, fields)
+   end subroutine find_fracture_errors
+
+   !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
+   !! traction that the error of the jump is equal to, and in contact that of the pressure.
+   subroutine note_tractions(scene, problem, state, jumps, fields)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(jump_errors_t), intent(in) :: jumps
+      type(fracture_fields_t), intent(inout) :: fields
+      real(rk) :: by_jump(size(state%pressure)), modulus
+
+      modulus = scene%material%young/(1.0_rk - scene%material%poisson**2)
+      by_jump = 0.0_rk
+      where (jumps%reach > 0.0_rk)
+         by_jump = jumps%of_slip*0.25_rk*modulus/jumps%reach
+      end where
+      associate (e => fields%error, fracture => problem%mesh%fracture, t => state%traction, &
+                 friction => problem%model%cells%law%friction)
+         e%traction_n = max(unevenness(fracture, fields%traction_n), &
+                            0.5_rk*abs(t(1, 2, :) - t(1, 1, :))) &
+                        + by_jump*hypot(fields%jump_n, fields%jump_t) + e%pressure
+         e%traction_t = max(unevenness(fracture, fields%traction_t), &
+                            0.5_rk*abs(t(2, 2, :) - t(2, 1, :))) &
+                        + by_jump*hypot(fields%jump_n, fields%jump_t) + friction*e%pressure
+         where (fields%state == state_open)
+            e%traction_n = 0.0_rk
+            e%traction_t = 0.0_rk
+         end where
+      end associate
+   end subroutine note_tractions
+
+   !> Half of the jump next to a cell whose faces have not moved: the zone may end in it [m].
+   pure function at_ends(fracture, moves, jump) result(error)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: moves(:)
+      real(rk), intent(in) :: jump(:)  !< [m]
+      real(rk) :: error(size(jump))
+      integer(ik) :: i, k, next
+
+      error = 0.0_rk
+      do i = 1, fracture%n_cells
+         if (moves(i)) cycle
+         do k = -1, 1, 2
+            next = i + k
+            if (next < 1 .or. next > fracture%n_cells) cycle
+            if (fracture%cell_fracture(next) /= fracture%cell_fracture(i)) cycle
+            error(i) = max(error(i), 0.5_rk*abs(jump(next)))
+         end do
+      end do
+   end function at_ends
+
+   !> Errors of the pressures of joints.
+   pure subroutine note_joint_errors(errors, fields)
+      type(value_errors_t), intent(in) :: errors
+      type(intersection_fields_t), intent(inout) :: fields
+
+      fields%pressure_error = spread(errors%pressure_error(), 1, size(fields%pressure))
+   end subroutine note_joint_errors
+
+   !> Add the errors of time and of the fractures to those of each cell of the rock.
+   pure subroutine add_rock_errors(scene, problem, state, errors, fields)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(value_errors_t), intent(in) :: errors
+      type(matrix_fields_t), intent(inout) :: fields
+      real(rk) :: share, start
+
+      if (.not. allocated(fields%pressure_error)) return
+      start = scene%initial%pressure
+      if (allocated(problem%model%in_situ)) start = 0.0_rk
+      share = least + errors%of_length + errors%time_share()
+      fields%pressure_error = fields%pressure_error &
+                              + share*abs(state%unknowns(3, :problem%mesh%n_cells) - start)
+      fields%displacement_error = fields%displacement_error &
+                                  + share*maxval(abs(fields%displacement), dim=1)
+   end subroutine add_rock_errors
+
+end module twolevel_field_errors

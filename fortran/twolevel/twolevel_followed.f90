@@ -1,0 +1,106 @@
+!> Errors in time of published quantities, from their values after each step.
+!!
+!! Backward Euler multiplies a mode that decays with exp(-l t) by exp(-l t + l**2 sum h**2/2) in
+!! steps of length h: a quantity has the error sum h**2/2 times its second derivative, of all steps
+!! since the load changed. The second derivative follows from the rates of the last two steps, of
+!! lengths h and h_b: h/(h + h_b) |change - h (rate before)| is h**2/2 times it (twolevel_trend).
+!! This is compared with the sum of these errors of the steps, which holds where the response is
+!! not that of a linear system (contact). An error in time shifts a quantity in time, so that the
+!! sum falls with the rate; at most by half in a step, since a rate may vanish at a maximum. Errors
+!! are added without their signs.
+!!
+!! In the first step after a switch the rate jumps, and the error is that of backward Euler for a
+!! diffusing quantity, 13 % of the change beyond the rate before; none where nothing diffuses.
+module twolevel_followed
+   use base_kinds, only: rk
+   implicit none(type, external)
+   private
+
+   public :: followed_t, followed_step_t
+
+   real(rk), parameter :: after_switch = 0.13_rk  !< least weight of the error of a step [-]
+   real(rk), parameter :: forget = 0.5_rk  !< least factor of rates and errors per step [-]
+
+   !> A step.
+   type :: followed_step_t
+      real(rk) :: time = 0.0_rk  !< after it [s]
+      logical :: is_jump = .false.  !< it consists of unstable growth, and has no rate
+      logical :: is_first = .false.  !< wells or sides were switched at its start
+      real(rk) :: diffusing = 1.0_rk  !< share of the fluid that diffuses [-]
+   end type followed_step_t
+
+   !> Quantities, each in its unit.
+   type :: followed_t
+      real(rk) :: time = 0.0_rk  !< of the last values [s]
+      real(rk) :: step = 0.0_rk  !< length of the last step; 0: no rate is known [s]
+      real(rk) :: squares = 0.0_rk  !< sum of the squares of the steps since the switch [s2]
+      real(rk), allocatable :: first(:)  !< values at the start
+      real(rk), allocatable :: value(:)  !< last values
+      real(rk), allocatable :: rate(:)  !< rates in the last step [1/s]
+      real(rk), allocatable :: largest(:)  !< decaying largest magnitudes of the rates [1/s]
+      real(rk), allocatable :: of_step(:)  !< errors of the last step
+      real(rk), allocatable :: sum(:), linear(:)  !< the two estimates
+      real(rk), allocatable :: error(:)  !< the larger of them
+   contains
+      procedure :: begin
+      procedure :: follow
+   end type followed_t
+
+contains
+
+   !> Begin with the values before the first step.
+   subroutine begin(self, time, values)
+      class(followed_t), intent(out) :: self
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: values(:)
+
+      self%time = time
+      self%first = values
+      self%value = values
+      associate (n => size(values))
+         allocate (self%rate(n), self%largest(n), self%of_step(n), source=0.0_rk)
+         allocate (self%sum(n), self%linear(n), self%error(n), source=0.0_rk)
+      end associate
+   end subroutine begin
+
+   !> Add the error of a step to the given values.
+   subroutine follow(self, step, values)
+      class(followed_t), intent(inout) :: self
+      type(followed_step_t), intent(in) :: step
+      real(rk), intent(in) :: values(:)
+      real(rk) :: change(size(values)), rate(size(values))
+
+      if (.not. allocated(self%value)) call self%begin(step%time, values)
+      associate (dt => step%time - self%time)
+         if (.not. dt > 0.0_rk) return
+         rate = (values - self%value)/dt
+         change = dt*abs(rate - self%rate)
+         self%value = values
+         self%of_step = 0.0_rk
+         if (step%is_first) self%squares = 0.0_rk
+         if (.not. step%is_jump) then
+            self%squares = self%squares + dt**2
+            self%linear = forget*self%linear
+            if (self%step > 0.0_rk) then
+               self%of_step = dt/(dt + self%step)*change
+               self%linear = max(self%linear, self%squares/dt**2*self%of_step)
+            end if
+            if (step%is_first .or. .not. self%step > 0.0_rk) then
+               self%of_step = max(self%of_step, after_switch*step%diffusing*change)
+            end if
+            associate (largest => max(abs(rate), forget*self%largest))
+               where (self%largest > 0.0_rk)
+                  self%sum = self%sum*min(1.0_rk, largest/self%largest)
+               end where
+               self%largest = largest
+            end associate
+            self%sum = self%sum + self%of_step
+            self%error = max(self%sum, self%linear)
+            self%rate = rate
+            self%step = dt
+         end if
+         self%time = step%time
+      end associate
+   end subroutine follow
+
+end module twolevel_followed

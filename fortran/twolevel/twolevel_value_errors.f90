@@ -1,0 +1,521 @@
+!> Estimated errors of the published quantities of a run with a fluid: in time (twolevel_followed)
+!! and in space; no further solution is needed.
+!!
+!! In space:
+!! - Slip, opening and their sums have the relative errors of report_jump_errors. An error of the
+!!   pressure changes them further: by 4/E' times sqrt(d1 d2) of opening per pressure, d1 and d2 the
+!!   distances from the ends of the zone, and of slip per pressure times friction.
+!! - The pressure in fractures, relative to its rise: where the fluid leaks off, the error of the
+!!   layers next to the faces, 3 % where chains resolve them (coarse_layers; measured: 1.2 to 2.5
+!!   %), else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell,
+!!   z: sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2); where the fractures hold the
+!!   fluid, the error of their compliance, that of opening. Both are weighted by their share of the
+!!   fluid.
+!! - The pressure of a well in the rock: Peaceman's index holds for steady flow, 2 % (measured: up
+!!   to 1 %, and 2 % two cells from a side). With z the distance of diffusion over the root of the cell's
+!!   area 0.2/z**2 after a cell is filled, and 0.2/z before.
+!! - Fluid volumes: the errors of leak-off and of what the fractures hold. Where all rates are
+!!   prescribed, their sum is exact, and each is at most the error of the other.
+!! Growing fractures: the relative error of the length, of all these quantities.
+module twolevel_value_errors
+   use base_kinds, only: ik, pi, rk
+   use coarse_rock, only: solid_t
+   use coarse_state, only: state_t
+   use contact_law, only: state_open, state_slip
+   use mesh_geometry, only: cell_area, face_length
+   use mesh_types, only: fracture_mesh_t
+   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors
+   use report_rows, only: history_errors_t, history_row_t, probe_row_t, well_row_t
+   use scene_types, only: scene_t
+   use twolevel_errors, only: stated_errors_t
+   use twolevel_followed, only: followed_step_t, followed_t
+   use twolevel_problem, only: coarse_problem_t
+   use twolevel_results, only: cell_states
+   use twolevel_well_rows, only: well_pressures
+   implicit none(type, external)
+   private
+
+   public :: by_pressure_of, moving, of_solution, step_facts_t, unresolved_depth, value_errors_t
+
+   ! Positions of the quantities of a row that are followed.
+   integer, parameter :: injected = 1, produced = 2, leakoff = 3, outflow = 4, fracture_fluid = 5, &
+                         rock_fluid = 6, rock_outflow = 7, volume = 8, slip = 9, opening = 10, &
+                         moment = 11, slip_rate = 12, pressure = 13, in_rock = 14
+   integer, parameter :: n_followed = 14
+
+   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
+   real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
+   !> relative errors of the pressure of a well in the rock: in steady flow; at the time at which
+   !! the pressure has diffused over its cell [-]
+   real(rk), parameter :: steady_index = 0.02_rk, early_index = 0.2_rk
+   !> relative error of pressures by the solver: the limit of its forward error bound [-]
+   real(rk), parameter :: of_solution = 1.0e-6_rk
+   real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
+   real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
+
+   !> What the errors of a step need besides its row.
+   type :: step_facts_t
+      logical :: is_jump = .false.  !< the step consists of unstable growth
+      logical :: is_first = .false.  !< wells or sides were switched at its start
+      real(rk) :: since_switch = 0.0_rk  !< time since the wells were switched [s]
+      logical :: has_given_rates = .true.  !< a well has a rate, or there is none
+      logical :: has_estimate = .false.  !< errors of lengths are estimated
+      real(rk) :: mass_error = 0.0_rk  !< error of the balance so far [m2]
+   end type step_facts_t
+
+   !> Errors of the last accepted state, and what was followed.
+   type :: value_errors_t
+      type(history_errors_t) :: row
+      real(rk) :: of_pressure = 0.0_rk  !< relative error in space of the pressure in fractures [-]
+      real(rk) :: diffusing = 1.0_rk  !< share of the fluid that has leaked off [-]
+      real(rk) :: of_flow = 0.0_rk  !< the same of a flow that is not prescribed [-]
+      real(rk) :: rise = 0.0_rk  !< of the mean pressure in the fractures [Pa]
+      real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
+      real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
+      real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
+      real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
+      type(followed_step_t) :: step  !< last step
+      type(followed_t) :: quantities
+      type(followed_t) :: wells  !< pressure, flow, volume of each
+      type(followed_t) :: probes  !< pressure, displacement, stress of each
+   contains
+      procedure :: begin
+      procedure :: note_state
+      procedure :: note_wells
+      procedure :: note_probes
+      procedure :: in_space
+      procedure :: given_volume
+      procedure :: pressure_error
+      procedure :: time_share
+   end type value_errors_t
+
+contains
+
+   !> Begin with the state before the first step.
+   subroutine begin(self, scene, problem, state)
+      class(value_errors_t), intent(out) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: values(n_followed), zero(size(scene%injections))
+
+      values = 0.0_rk
+      zero = 0.0_rk
+      values(in_rock) = mean_in_rock(problem, state)
+      if (problem%mesh%fracture%n_cells > 0) then
+         values(volume) = problem%fracture_volume(state)
+         values(slip) = maxval(abs(state%jump(2, :, :)))
+         values(opening) = maxval(state%jump(1, :, :))
+         values(pressure) = mean_pressure(problem, state)
+      end if
+      call self%quantities%begin(state%time, values)
+      call self%wells%begin(state%time, [well_pressures(scene, problem, state%time, state), &
+                                         zero, zero])
+   end subroutine begin
+
+   !> Mean pressure of the cells of the rock, less that in situ [Pa].
+   pure real(rk) function mean_in_rock(problem, state)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+
+      mean_in_rock = sum(state%unknowns(3, :problem%mesh%n_cells))/problem%mesh%n_cells
+   end function mean_in_rock
+
+   !> Mean pressure of the fractures [Pa].
+   pure real(rk) function mean_pressure(problem, state)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: length(problem%mesh%fracture%n_cells)
+
+      length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
+      mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
+   end function mean_pressure
+
+   !> Errors of the row of an accepted state.
+   subroutine note_state(self, scene, problem, state, row, stated, facts)
+      class(value_errors_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(history_row_t), intent(in) :: row
+      type(stated_errors_t), intent(in) :: stated
+      type(step_facts_t), intent(in) :: facts
+      type(jump_errors_t) :: errors
+      real(rk) :: values(n_followed)
+
+      values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
+                row%rock_fluid, row%rock_outflow, row%fracture_volume, row%max_slip, &
+                row%max_opening, row%seismic_moment, row%max_slip_rate, 0.0_rk, &
+                mean_in_rock(problem, state)]
+      if (problem%mesh%fracture%n_cells > 0) values(pressure) = mean_pressure(problem, state)
+      self%diffusing = 1.0_rk
+      if (problem%mesh%fracture%n_cells > 0) then
+         self%diffusing = abs(row%leakoff)/max(abs(row%leakoff) + abs(row%fracture_fluid), &
+                                               tiny(1.0_rk))
+      end if
+      self%step = followed_step_t(row%time, facts%is_jump, facts%is_first, self%diffusing)
+      call self%quantities%follow(self%step, values)
+      self%row = history_errors_t()
+      self%of_length = 0.0_rk
+      if (facts%has_estimate .and. row%fracture_length > 0.0_rk) then
+         self%of_length = max(0.0_rk, stated%length)/row%fracture_length
+      end if
+      self%of_rock = of_well_in_rock(problem, facts%since_switch)
+      if (problem%mesh%fracture%n_cells > 0) then
+         errors = relative_jump_errors(problem%mesh%fracture, moving(state), finite_volumes)
+         self%of_flow = self%diffusing*of_layers(problem, facts%since_switch) &
+                        + (1.0_rk - self%diffusing) &
+                        *max(least, mean_share(problem, state, errors%of_sum))
+         self%of_pressure = 0.0_rk
+         if (facts%has_given_rates) self%of_pressure = self%of_flow
+         self%rise = abs(values(pressure) - self%quantities%first(pressure))
+         call note_jumps(self, scene, problem, state, errors, row)
+      end if
+      call note_fluid(self, scene, problem, row, facts)
+      call note_rest(self, problem, row, stated, facts)
+   end subroutine note_state
+
+   !> Faces of each cell have moved.
+   pure function moving(state) result(moves)
+      type(state_t), intent(in) :: state
+      logical :: moves(size(state%pressure))
+      real(rk), parameter :: rounding = 1.0e-9_rk
+      real(rk) :: jump(size(moves))
+
+      jump = maxval(maxval(abs(state%jump), dim=1), dim=1)
+      moves = jump > rounding*maxval(jump)
+   end function moving
+
+   !> Mean relative error of the sums over zones, weighted by the jumps [-].
+   pure real(rk) function mean_share(problem, state, of_sum) result(share)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: of_sum(:)  !< (fracture cells) relative errors of sums [-]
+      real(rk) :: weight(size(of_sum))
+
+      associate (s => problem%mesh%fracture%cell_s)
+         weight = (s(2, :) - s(1, :))*sum(sum(abs(state%jump), dim=1), dim=1)
+      end associate
+      share = 0.0_rk
+      if (sum(weight) > 0.0_rk) share = sum(weight*of_sum)/sum(weight)
+   end function mean_share
+
+   !> Errors of slip, opening, volume and moment.
+   subroutine note_jumps(self, scene, problem, state, errors, row)
+      class(value_errors_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(jump_errors_t), intent(in) :: errors
+      type(history_row_t), intent(in) :: row
+      real(rk) :: by_pressure(2, size(errors%share)), length(size(errors%share))
+      integer(ik) :: at(2)
+      logical :: is_open(size(errors%share))
+
+      associate (s => problem%mesh%fracture%cell_s, jump => 0.5_rk*sum(state%jump, dim=2))
+         length = s(2, :) - s(1, :)
+         is_open = cell_states(state) == state_open
+         by_pressure = by_pressure_of(scene, problem, state, errors, self%in_space())
+         at = [maxloc(jump(1, :), kind=ik), maxloc(abs(jump(2, :)), kind=ik)]
+         associate (time => self%quantities%error, of_sum => errors%of_sum + self%of_length)
+            self%row%max_opening = time(opening) + by_pressure(1, at(1)) &
+                                   + (errors%share(at(1)) + self%of_length &
+                                      - self%given_volume())*abs(row%max_opening)
+            self%row%max_slip = time(slip) + by_pressure(2, at(2)) &
+                                + (errors%of_slip(at(2)) + self%of_length)*row%max_slip
+            self%row%fracture_volume = time(volume) + sum(length*(of_sum*abs(jump(1, :)) &
+                                                                  + by_pressure(1, :)))
+            self%row%seismic_moment = time(moment) &
+                                      + mean_share(problem, state, errors%of_slip_sum) &
+                                      *row%seismic_moment &
+                                      + self%of_length*row%seismic_moment &
+                                      + problem%model%rock%shear(1)*sum(length*by_pressure(2, :))
+            self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
+                                     + errors%of_slip(at(2))*row%max_slip_rate
+            self%of_opening = 0.0_rk
+            if (row%max_opening > 0.0_rk) self%of_opening = time(opening)/row%max_opening
+            self%of_slip = 0.0_rk
+            if (row%max_slip > 0.0_rk) self%of_slip = time(slip)/row%max_slip
+         end associate
+      end associate
+   end subroutine note_jumps
+
+   !> Errors of opening (1) and slip (2) of the cells by that of the pressure [m].
+   pure function by_pressure_of(scene, problem, state, errors, of_pressure) result(change)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(jump_errors_t), intent(in) :: errors
+      real(rk), intent(in) :: of_pressure(2)  !< of `in_space` [Pa]
+      real(rk) :: change(2, size(errors%share))
+      integer(ik) :: states(size(errors%share))
+      real(rk) :: modulus
+
+      associate (rock => scene%material)
+         modulus = rock%young
+         if (.not. rock%plane_stress) modulus = modulus/(1.0_rk - rock%poisson**2)
+      end associate
+      states = cell_states(state)
+      change(1, :) = 4.0_rk/modulus*errors%reach*of_pressure(1)
+      change(2, :) = 4.0_rk/modulus*errors%reach*of_pressure(2)*problem%model%cells%law%friction
+      where (states /= state_open) change(1, :) = 0.0_rk
+      where (states /= state_slip) change(2, :) = 0.0_rk
+   end function by_pressure_of
+
+   !> Errors of the fluid volumes.
+   subroutine note_fluid(self, scene, problem, row, facts)
+      class(value_errors_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(history_row_t), intent(in) :: row
+      type(step_facts_t), intent(in) :: facts
+      real(rk) :: held, layers, leak
+
+      layers = of_layers(problem, facts%since_switch)
+      associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error))
+         error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
+         error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
+         leak = time(leakoff) + (layers + self%of_length)*abs(row%leakoff) + lost
+         held = time(fracture_fluid) + error%fracture_volume - time(volume) &
+                + self%of_pressure*abs(row%fracture_fluid) + lost
+         error%leakoff = leak
+         error%fracture_fluid = held
+         if (any(scene%injections%is_controlled())) then
+            error%injected = time(injected) + self%of_flow*abs(row%injected) + lost
+            error%produced = time(produced) + self%of_flow*abs(row%produced) + lost
+         else
+            error%leakoff = min(leak, held + error%outflow)
+            error%fracture_fluid = min(held, leak + error%outflow)
+            error%fracture_volume = min(error%fracture_volume, error%fracture_fluid &
+                                  + self%of_pressure*abs(row%fracture_fluid - row%fracture_volume &
+                                                         + self%quantities%first(volume)))
+            error%injected = lost
+            error%produced = lost
+         end if
+         if (problem%mesh%fracture%n_cells == 0) error%leakoff = 0.0_rk
+         error%rock_fluid = error%leakoff + error%rock_outflow + error%injected
+      end associate
+   end subroutine note_fluid
+
+   !> Errors of rates and lengths.
+   subroutine note_rest(self, problem, row, stated, facts)
+      class(value_errors_t), intent(inout) :: self
+      type(coarse_problem_t), intent(in) :: problem
+      type(history_row_t), intent(in) :: row
+      type(stated_errors_t), intent(in) :: stated
+      type(step_facts_t), intent(in) :: facts
+      real(rk) :: grown, longest
+
+      grown = 0.0_rk
+      if (facts%has_estimate) grown = max(0.0_rk, stated%length)
+      associate (error => self%row, fracture => problem%mesh%fracture)
+         if (fracture%n_cells == 0) return
+         longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
+         error%connected_length = grown
+         if (row%stimulated_length > 0.0_rk) error%stimulated_length = grown + 2.0_rk*longest
+         if (row%connected_stimulated > 0.0_rk) then
+            error%connected_stimulated = grown + 2.0_rk*longest
+         end if
+      end associate
+   end subroutine note_rest
+
+   !> Relative error of openings that is none where the volume of the fluid is given: then the error
+   !! of the compliance is one of the pressure [-].
+   pure real(rk) function given_volume(self)
+      class(value_errors_t), intent(in) :: self
+      real(rk), parameter :: most = 0.8_rk  ! of the error that does not depend on the place
+
+      given_volume = 0.0_rk
+      if (self%of_pressure > 0.0_rk) given_volume = most*(1.0_rk - self%diffusing) &
+                                                    *finite_volumes%rest
+   end function given_volume
+
+   !> Error in space of the pressure in fractures: its part by leak-off, which acts on the opening
+   !! (the other part follows from the opening), and all of it [Pa].
+   pure function in_space(self)
+      class(value_errors_t), intent(in) :: self
+      real(rk) :: in_space(2)
+
+      in_space = self%of_pressure*self%rise
+      in_space(1) = in_space(1)*self%diffusing
+   end function in_space
+
+   !> Error of the mean pressure in the fractures, in time and space [Pa].
+   pure real(rk) function pressure_error(self)
+      class(value_errors_t), intent(in) :: self
+
+      pressure_error = 0.0_rk
+      if (.not. allocated(self%quantities%error)) return
+      pressure_error = self%quantities%error(pressure) + self%of_pressure*self%rise
+   end function pressure_error
+
+   !> Relative error in time of pressures in the rock [-].
+   pure real(rk) function time_share(self) result(share)
+      class(value_errors_t), intent(in) :: self
+      integer, parameter :: both(2) = [pressure, in_rock]
+      integer :: i
+
+      share = 0.0_rk
+      if (.not. allocated(self%quantities%error)) return
+      associate (q => self%quantities)
+         do i = 1, 2
+            associate (change => abs(q%value(both(i)) - q%first(both(i))))
+               if (change > 0.0_rk) share = max(share, q%error(both(i))/change)
+            end associate
+         end do
+      end associate
+      share = min(1.0_rk, share)
+   end function time_share
+
+   !> Errors of the wells after a step; also those of rate and injectivity of the row.
+   subroutine note_wells(self, scene, rows, stated, facts)
+      class(value_errors_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(well_row_t), intent(inout) :: rows(:)
+      type(stated_errors_t), intent(in) :: stated
+      type(step_facts_t), intent(in) :: facts
+      real(rk) :: by_length, share
+      integer :: w
+
+      if (size(rows) == 0) return
+      call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
+      by_length = 0.0_rk
+      if (facts%has_estimate) by_length = abs(stated%slope)*max(0.0_rk, stated%length)
+      do w = 1, size(rows)
+         associate (row => rows(w), n => size(rows), time => self%wells%error, &
+                    error => rows(w)%error, well => scene%injections(w))
+            share = self%of_pressure
+            if (well%fracture == 0) share = self%of_rock
+            error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
+                             + of_solution*abs(row%pressure)
+            if (well%is_controlled()) then
+               error%injected = time(2*n + w) + max(share, self%of_flow)*abs(row%injected)
+               ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
+               error%flow = time(n + w)
+               if (abs(row%injected) > 0.0_rk) error%flow = &
+                  & max(error%flow, 3.0_rk*abs(row%flow)*time(2*n + w)/abs(row%injected))
+               error%flow = error%flow + max(share, self%of_flow)*abs(row%flow)
+               error%rate = error%flow
+            end if
+            error%head_pressure = error%pressure &
+                                  + (well%friction + 2.0_rk*well%turbulence*abs(row%flow)) &
+                                  *error%flow
+            if (row%control == "pressure" .or. row%control == "limit") then
+               error%pressure = min(error%pressure, error%head_pressure - error%pressure)
+               error%head_pressure = 0.0_rk
+            else
+               error%rate = 0.0_rk
+            end if
+            associate (rise => abs(row%pressure - self%wells%first(w)))
+               if (rise > 0.0_rk .and. abs(row%flow) > 0.0_rk) error%injectivity = &
+                  & abs(row%injectivity)*(error%pressure/rise + error%flow/abs(row%flow))
+            end associate
+         end associate
+      end do
+      self%of_wells = rows%error%pressure
+      self%row%injection_rate = sum(rows%error%flow)
+      if (size(rows) == 1) self%row%injectivity = rows(1)%error%injectivity
+   end subroutine note_wells
+
+   !> Errors of the probes: add those in time, and of the fractures' effect, to those of the cells.
+   subroutine note_probes(self, time, rise, row)
+      class(value_errors_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: rise  !< range of the pressures of the run so far [Pa]
+      type(probe_row_t), intent(inout) :: row
+      real(rk), allocatable :: values(:, :)
+      real(rk) :: added(6)
+      integer :: i
+
+      allocate (values(6, size(row%pressure)))
+      values(1, :) = row%pressure
+      values(2:3, :) = row%displacement
+      values(4:, :) = row%stress
+      if (.not. allocated(self%probes%value)) call self%probes%begin(time, [values])
+      call self%probes%follow(self%step, [values])
+      do i = 1, size(row%pressure)
+         associate (p => self%probes, at => 6*(i - 1))
+            added = p%error(at + 1:at + 6) + (least + self%of_length) &
+                  *abs(p%value(at + 1:at + 6) - p%first(at + 1:at + 6))
+         end associate
+         row%pressure_error(i) = row%pressure_error(i) + added(1) + of_range*rise
+         row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3)) &
+                                     + of_range*maxval(abs(row%displacement(:, i)))
+         row%stress_error(i) = row%stress_error(i) + maxval(added(4:)) &
+                               + of_range*maxval(abs(row%stress(:, i)))
+      end do
+   end subroutine note_probes
+
+   !> Relative error of the pressure and of the flux where fluid leaks off for a time [-].
+   real(rk) function of_layers(problem, time) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: ratio
+
+      error = of_chain
+      if (problem%model%layers%n > 0) return
+      ratio = unresolved_depth(problem, time)
+      error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
+   end function of_layers
+
+   !> Height of the cells next to the fractures over the distance of diffusion in a time, where no
+   !! layer resolves it; 0 without fractures [-].
+   real(rk) function unresolved_depth(problem, time) result(ratio)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: depth, height
+      integer(ik) :: cell, face, i, side
+
+      ratio = 0.0_rk
+      if (problem%model%layers%n > 0 .or. .not. time > 0.0_rk) return
+      associate (mesh => problem%mesh, fracture => problem%mesh%fracture)
+         do i = 1, fracture%n_cells
+            do side = 1, 2
+               face = fracture%cell_faces(side, i)
+               cell = mesh%face_cells(1, face)
+               height = 2.0_rk*cell_area(mesh, cell)/face_length(mesh, face)
+               depth = sqrt(diffusivity(problem, cell)*time)
+               if (depth > 0.0_rk) ratio = ratio + 2.0_rk/3.0_rk*height/depth
+            end do
+         end do
+         ratio = ratio/max(1, 2*fracture%n_cells)
+      end associate
+   end function unresolved_depth
+
+   !> c of the rock in a cell, at uniaxial strain [m2/s].
+   pure real(rk) function diffusivity(problem, cell)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: cell
+      type(solid_t) :: solid
+
+      associate (rock => problem%model%rock)
+         solid = rock%solid_at(cell)
+         diffusivity = rock%mobility_at(cell) &
+                       /(solid%storage + solid%biot**2/(solid%lame + 2.0_rk*solid%shear))
+      end associate
+   end function diffusivity
+
+   !> Relative error of the pressure of wells in the rock, a time after a switch; 0 without any [-].
+   real(rk) function of_well_in_rock(problem, time) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: depth
+      integer :: w
+
+      error = 0.0_rk
+      if (.not. allocated(problem%rock_cell)) return
+      do w = 1, size(problem%rock_cell)
+         associate (cell => problem%rock_cell(w))
+            if (cell == 0) cycle
+            depth = sqrt(diffusivity(problem, cell)*max(0.0_rk, time) &
+                         /cell_area(problem%mesh, cell))
+            if (depth >= 1.0_rk) then
+               error = max(error, steady_index, early_index/depth**2)
+            else
+               error = max(error, min(1.0_rk, early_index/max(depth, early_index)))
+            end if
+         end associate
+      end do
+   end function of_well_in_rock
+
+end module twolevel_value_errors
