@@ -16,9 +16,9 @@
 !! where other tips have grown past it.
 !!
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
-!! position satisfies the tolerance reliably: two proposals in a row are rejected, or a bisection
-!! goes on to its resolution. Then K_eq between its bounds may be below K_IC by a given share of the
-!! error (`slack`); it never exceeds K_IC by more than the tolerance.
+!! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
+!! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
+!! given share of the error (`slack`); it never exceeds K_IC by more than the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -54,6 +54,7 @@ module growth_advances
       !> trust region, over the distance between the bounds [-]
       real(rk), private :: radius = 1.0_rk
       integer, private :: rejected = 0  !< number of proposals rejected in succession
+      integer, private :: rejected_in_all = 0
       !> (tips) lack of toughness between the bounds at which a search that has stalled ends [-]
       real(rk), allocatable :: slack(:)
       ! Bracket of each tip in the monotone search.
@@ -141,7 +142,7 @@ contains
 
       lack = tolerance
       if (.not. allocated(self%slack)) return
-      if (self%is_monotone .or. self%rejected >= stalled) lack = max(tolerance, self%slack)
+      if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
    end function allowed
 
    !> Whether a tip satisfies its complementarity condition within the tolerance.
@@ -182,6 +183,7 @@ contains
       else
          self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place - self%best)/self%length))
          self%rejected = self%rejected + 1
+         self%rejected_in_all = self%rejected_in_all + 1
       end if
    end subroutine judge
 

@@ -100,6 +100,10 @@ contains
       integer :: k, most
 
       call begin_search(self%tip, self%rules, self%now, dt, is_last, may_jump, search)
+      if (allocated(self%step%places)) then
+         if (.not. may_jump) call self%now%segment%set_out_to(self%step%places)
+         deallocate (self%step%places)
+      end if
       most = merge(jump_tries_max, tries_max, may_jump)
       do k = 1, most
          call find_state(self, search, k == 1, timers, report, trial, error)

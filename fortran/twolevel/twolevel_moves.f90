@@ -11,8 +11,8 @@ module twolevel_moves
    implicit none(type, external)
    private
 
-   public :: arrivals, at_joints, driven_t, first_onset, is_in_play, judge_tips, keep_together, onset
-   public :: separate_tips, tolerance
+   public :: arrivals, at_joints, driven_t, first_onset, is_in_play, judge_tips, keep_together
+   public :: onset, separate_tips, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
 

@@ -28,6 +28,9 @@ module twolevel_window_tip
       integer :: times_finer = 0  !< number of refinements
       !> (of_elements, of_edge) error of the intensities before the last refinement [Pa m^1/2]
       real(rk) :: refined_at(2) = huge(1.0_rk)
+      !> In the body as window its surroundings have elements as small as those of its own window:
+      !! it is, or has been, near its toughness
+      logical :: has_focus = .false.
       logical :: can_withdraw(2) = .false.  !< this refinement can still be taken back
       logical :: was_withdrawn(2) = .false.  !< it has been taken back
       !> intensities of the last solution, without the error by the coarse level
