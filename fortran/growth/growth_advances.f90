@@ -14,6 +14,11 @@
 !! found by bisection. The farthest position with K_eq > K_IC never decreases, so that this search
 !! ends. The search may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or
 !! where other tips have grown past it.
+!!
+!! K of two meshes differs within its error. Where this error is many times the tolerance, no
+!! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
+!! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
+!! given share of the error (`slack`); it never exceeds K_IC by more than the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -49,6 +54,9 @@ module growth_advances
       !> trust region, over the distance between the bounds [-]
       real(rk), private :: radius = 1.0_rk
       integer, private :: rejected = 0  !< number of proposals rejected in succession
+      integer, private :: rejected_in_all = 0
+      !> (tips) lack of toughness between the bounds at which a search that has stalled ends [-]
+      real(rk), allocatable :: slack(:)
       ! Bracket of each tip in the monotone search.
       real(rk), allocatable, private :: near(:)  !< farthest position with K_eq > K_IC [m]
       !> nearest position beyond `near` with K_eq <= K_IC [m]
@@ -57,6 +65,7 @@ module growth_advances
    contains
       procedure :: begin
       procedure :: improve
+      procedure, private :: allowed
       procedure, private :: judge
       procedure, private :: update_matrix
       procedure, private :: propose
@@ -98,7 +107,8 @@ contains
       self%evaluations = self%evaluations + 1
       if (self%evaluations > 1) call self%update_matrix(excess)
       if (.not. self%is_monotone) call self%judge(excess)
-      has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance))
+      has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance, &
+                                           self%allowed(tolerance)))
       if (.not. has_moved) return
       if (.not. self%is_monotone) then
          if (self%evaluations < evaluations_max .and. self%rejected < rejected_max) then
@@ -123,14 +133,30 @@ contains
       end if
    end subroutine improve
 
+   !> Lack of toughness between the bounds at which the search ends [-].
+   pure function allowed(self, tolerance) result(lack)
+      class(advances_t), intent(in) :: self
+      real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
+      integer, parameter :: stalled = 2  ! rejected proposals
+      real(rk) :: lack(size(self%place))
+
+      lack = tolerance
+      if (.not. allocated(self%slack)) return
+      if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
+   end function allowed
+
    !> Whether a tip satisfies its complementarity condition within the tolerance.
-   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance)
+   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance, slack)
       real(rk), intent(in) :: place, lower, upper  !< [m]
       real(rk), intent(in) :: excess, tolerance  !< [-]
+      real(rk), intent(in), optional :: slack  !< lack between the bounds; default: tolerance [-]
+      real(rk) :: lack
 
+      lack = tolerance
+      if (present(slack)) lack = slack
       if (excess > tolerance) then
          in_equilibrium = place >= upper
-      else if (excess < -tolerance) then
+      else if (excess < -lack) then
          in_equilibrium = place <= lower
       else
          in_equilibrium = .true.
@@ -157,6 +183,7 @@ contains
       else
          self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place - self%best)/self%length))
          self%rejected = self%rejected + 1
+         self%rejected_in_all = self%rejected_in_all + 1
       end if
    end subroutine judge
 
@@ -209,15 +236,17 @@ contains
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       logical, intent(out) :: has_moved
       real(rk), parameter :: growth = 2.0_rk**0.25_rk  ! of the least step, per evaluation [-]
-      real(rk) :: step, to
+      real(rk) :: lack(size(self%place)), step, to
       integer :: i
 
+      lack = self%allowed(tolerance)
       self%monotone_steps = self%monotone_steps + 1
       has_moved = .false.
       do i = 1, size(self%place)
          associate (place => self%place(i), near => self%near(i), far => self%far(i), &
                     excess => self%excess(i), length => self%length(i))
-            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance)) cycle
+            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance, &
+                               lack(i))) cycle
             if (excess > 0.0_rk) then
                near = place
                if (far <= near) far = huge(1.0_rk)

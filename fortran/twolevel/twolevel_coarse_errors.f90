@@ -224,10 +224,24 @@ contains
             is_due = is_due .or. norm2(tips(i)%xy - tip%compared_at) &
                      > rules%increment_of(tips(i)%fracture) &
                      .or. .not. norm2([tip%found%k1, tip%found%k2] - tip%compared) &
-                     <= like_before*norm2(tip%compared)
+                     <= admissible_change(tips(i), tip, rules%toughness)
          end associate
       end do
    end function is_due
+
+   !> Change of the intensities of a tip within which its last comparison with the body still
+   !! applies: more where the tip is far below its toughness [Pa m^1/2].
+   pure real(rk) function admissible_change(tip, seen, toughness) result(change)
+      type(tip_t), intent(in) :: tip
+      type(window_tip_t), intent(in) :: seen  !< the tip in its window
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), parameter :: far = 0.5_rk  ! lack of toughness, error included [-]
+
+      change = like_before*norm2(seen%compared)
+      if (tip%excess(toughness) + tip%relative_error(toughness) <= -far) then
+         change = norm2(seen%compared)
+      end if
+   end function admissible_change
 
    !> Errors of a tip from its K in the whole body.
    pure subroutine compare_tip(body, tip)

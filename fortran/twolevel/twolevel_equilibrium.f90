@@ -28,7 +28,7 @@ module twolevel_equilibrium
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_tip_layers, only: close_tips, find_tip_layers, is_viscous
-   use twolevel_moves, only: arrivals, at_joints, first_onset, is_in_play, judge_tips, &
+   use twolevel_moves, only: arrivals, at_joints, driven_t, first_onset, is_in_play, judge_tips, &
                              keep_together, onset, separate_tips, tolerance
    use twolevel_refinement, only: find_refinements, is_uncertain
    use twolevel_well_limits, only: share_before_switch
@@ -38,9 +38,10 @@ module twolevel_equilibrium
 
    public :: accept_equilibrium, find_equilibrium, punctual
 
-   !> Excess K_eq/K_IC - 1 above which no segment begins in a tried step: its direction would be
-   !! that of a state that does not occur [-].
-   real(rk), parameter :: excess_max = 0.2_rk
+   !> Excess K_eq/K_IC - 1 up to which a segment begins in a tried step, and that up to which it
+   !! does where the excess vanishes within the next segment by its slope: the direction of the
+   !! segment would otherwise be that of a state that does not occur [-].
+   real(rk), parameter :: excess_max = 0.2_rk, steep_excess_max = 1.0_rk
 
    !> Time error of the first try, over the tolerance, above which a step is rejected before the
    !! tips move [-].
@@ -99,6 +100,10 @@ contains
       integer :: k, most
 
       call begin_search(self%tip, self%rules, self%now, dt, is_last, may_jump, search)
+      if (allocated(self%step%places)) then
+         if (.not. may_jump) call self%now%segment%set_out_to(self%step%places)
+         deallocate (self%step%places)
+      end if
       most = merge(jump_tries_max, tries_max, may_jump)
       do k = 1, most
          call find_state(self, search, k == 1, timers, report, trial, error)
@@ -192,6 +197,7 @@ contains
       logical, intent(out) :: wants(:)  !< (tips) the tip is to begin a new segment
       type(error_t), allocatable, intent(out) :: error
       logical, dimension(size(self%tip)) :: in_play, moves
+      type(driven_t) :: driven(size(self%tip))
 
       in_play = is_in_play(self%now%segment, self%tip%excess(self%rules%toughness))
       call search%previous_try%update_interaction(self%now%segment, self%tip, &
@@ -201,10 +207,11 @@ contains
       if (allocated(error)) return
       call search%previous_try%begin(self%now%segment, self%tip, self%rules%toughness)
       if (any_moves) search%advances = advances_t()  ! with the measured tip interaction
-      call judge_tips(self%now%segment, self%now%interaction, &
-                      shared_excesses(self%front_state_t, self%now, self%rules), &
-                      are_at_ligaments(self%front_state_t, self%now, self%rules), &
-                      search%kind, search%advances, moves, wants)
+      driven%excess = shared_excesses(self%front_state_t, self%now, self%rules)
+      driven%error = self%tip%relative_error(self%rules%toughness)
+      driven%is_at_ligament = are_at_ligaments(self%front_state_t, self%now, self%rules)
+      call judge_tips(self%now%segment, self%now%interaction, driven, search%kind, &
+                      search%advances, moves, wants)
       wants = wants .and. .not. self%tip%arrested
       any_moves = any_moves .or. any(moves)
    end subroutine move_tips
@@ -311,7 +318,9 @@ contains
 
       beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
-                 before => self%last%front%tip%excess(self%rules%toughness))
+                 before => self%last%front%tip%excess(self%rules%toughness), &
+                 far => overshoots(self%tip%excess(self%rules%toughness), self%now%segment, &
+                                   self%increments()))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
                                            toughness, self%load_pressure), i=1, size(wants))])) then
             call find_refinements(self, self%before%time, trial%refinements)
@@ -321,8 +330,7 @@ contains
          ! A tip that stays at the end of its segment for a part of the step is slower than it will
          ! be: where viscosity decides, its excess says little.
          if (any(wants .and. (search%begun >= segments_max .or. &
-                              (self%tip%excess(toughness) > excess_max .and. &
-                               .not. is_viscous(self%tip))))) then
+                              (far .and. .not. is_viscous(self%tip))))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! jumps have no rates
          end if
@@ -354,6 +362,19 @@ contains
       search%previous_try = previous_try_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted
+
+   !> Whether a tip at the end of its segment exceeds its toughness by so much that it would go too
+   !! far, or that the direction of the next segment would be wrong.
+   elemental logical function overshoots(excess, segment, increment)
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 [-]
+      type(segment_t), intent(in) :: segment
+      real(rk), intent(in) :: increment  !< length of the next segment [m]
+
+      overshoots = excess > excess_max
+      if (overshoots .and. excess <= steep_excess_max) then
+         overshoots = .not. excess < -segment%slope*increment
+      end if
+   end function overshoots
 
    !> Put a tip on its new segment where the search is to start: at the end where tips may jump, as
    !! they mostly do by more than a segment; else where its excess is predicted to vanish, but not

@@ -24,6 +24,9 @@
 !! (measured at 45 degrees, wings of 1 to 5 cells against cells a quarter as large, with and
 !! without leak-off: 0.9 to 0.3 cells; verification/reservoir_scale/stated_errors.py).
 !!
+!! Equal tips that have separated by chance: each of them may as well be where the other one is, so
+!! its position has at least the error of the distance by which one is ahead.
+!!
 !! Layers of viscous flow at a tip need finer cells; their error is not included.
 !!
 !! Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
@@ -70,6 +73,8 @@ module twolevel_errors
       real(rk) :: length = 0.0_rk  !< error of the length of all fractures [m]
       real(rk) :: pressure = 0.0_rk  !< error of the pressure at the wells [Pa]
       real(rk), allocatable :: tip(:)  !< (tips) errors of the positions [m]
+      !> part of `length` by which leads exceed these errors [m]
+      real(rk), private :: by_leads = 0.0_rk
       integer :: tries = 0  !< number of tries of the present step
       real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two tries
       real(rk) :: slope = 0.0_rk  !< derivative of the pressure with respect to the length [Pa/m]
@@ -81,6 +86,7 @@ module twolevel_errors
       procedure :: begin_step
       procedure :: see_try
       procedure :: accept
+      procedure :: add_leads
    end type stated_errors_t
 
 contains
@@ -146,6 +152,7 @@ contains
       self%length = sum(self%tip) + sum(tips%jump)
       call age_time_error(self, step, leaked, age)
       before = self%time_error%error
+      self%by_leads = 0.0_rk
       call self%time_error%follow(step, pressure)
       if (self%has_layers) then
          associate (error => self%time_error%error)
@@ -179,6 +186,18 @@ contains
                            *(self%time/(self%time + step))**(0.5_rk*leaked)
       self%time = self%time + step
    end subroutine age_time_error
+
+   !> Add to the errors of an accepted state what tips have separated by.
+   pure subroutine add_leads(self, lead)
+      class(stated_errors_t), intent(inout) :: self
+      real(rk), intent(in) :: lead(:)  !< (tips) distance to an equal tip; 0: none has separated [m]
+      real(rk) :: before
+
+      before = self%by_leads
+      self%by_leads = sum(max(0.0_rk, lead - self%tip))
+      self%length = self%length + (self%by_leads - before)
+      self%pressure = self%pressure + abs(self%slope)*(self%by_leads - before)
+   end subroutine add_leads
 
    !> Error of the position of a tip by the cells of its bent wing [m].
    elemental real(rk) function error_of_bend(tip) result(error)

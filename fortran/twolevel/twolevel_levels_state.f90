@@ -165,11 +165,11 @@ contains
          do i = 1, size(windows%tip)
             associate (tip => windows%tip(i))
                tips = [tips, real(tip%times_finer, rk), tip%refined_at, &
-                       truths(tip%can_withdraw), tip%found%k1, tip%found%k2, &
+                       truths([tip%can_withdraw, tip%was_withdrawn]), tip%found%k1, tip%found%k2, &
                        tip%found%k1_error, tip%found%k2_error, tip%found%g_domain, tip%lacking, &
                        tip%uncertain, tip%compared, tip%compared_at, tip%of_elements, &
                        tip%of_edge, tip%passing, tip%jump_then, tip%place_then, &
-                       truths([tip%is_compared, tip%was_undrained])]
+                       truths([tip%is_compared, tip%was_undrained, tip%has_focus])]
             end associate
          end do
       end if

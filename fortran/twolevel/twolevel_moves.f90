@@ -11,8 +11,8 @@ module twolevel_moves
    implicit none(type, external)
    private
 
-   public :: arrivals, at_joints, first_onset, is_in_play, judge_tips, keep_together, onset
-   public :: separate_tips, tolerance
+   public :: arrivals, at_joints, driven_t, first_onset, is_in_play, judge_tips, keep_together
+   public :: onset, separate_tips, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
 
@@ -22,6 +22,17 @@ module twolevel_moves
    !> Deficit of K_eq/K_IC before a step below which a tip begins to grow at the start of the step
    !! [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
+
+   !> Lack of toughness at which a search that has stalled ends, over the error of K_eq, and its
+   !! largest value [-].
+   real(rk), parameter :: share_of_error = 0.25_rk, slack_max = 0.05_rk
+
+   !> What drives one tip.
+   type :: driven_t
+      real(rk) :: excess = 0.0_rk  !< of K_eq over K_IC [-]
+      real(rk) :: error = 0.0_rk  !< estimated error of the excess [-]
+      logical :: is_at_ligament = .false.  !< only a ligament is left ahead of the tip
+   end type driven_t
 
 contains
 
@@ -77,25 +88,26 @@ contains
    !> Move the tips on open segments to where their excess is predicted to vanish; other tips begin
    !! a segment if they exceed the toughness. Tips of one group take the largest of their excesses,
    !! and so advance equally.
-   subroutine judge_tips(segments, interaction, alone, is_at_ligament, kind, &
-                         search, moves, wants)
+   subroutine judge_tips(segments, interaction, alone, kind, search, moves, wants)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
       type(interaction_t), intent(in) :: interaction
-      real(rk), intent(in) :: alone(:)  !< (tips) excess of K_eq over K_IC of each tip [-]
-      logical, intent(in) :: is_at_ligament(:)  !< (tips) only a ligament is left ahead of the tip
+      type(driven_t), intent(in) :: alone(:)  !< (tips) each without its group
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
       !> search for the positions of the tips on their segments
       type(advances_t), intent(inout) :: search
       logical, intent(out) :: moves(:), wants(:)  !< (tips)
-      real(rk) :: excess(size(kind))
+      type(driven_t) :: group(size(kind))
       integer(ik) :: i
 
-      excess = [(maxval(alone, mask=kind == kind(i)), i=1, size(kind))]
+      do i = 1, size(kind, kind=ik)
+         group(i) = driven_t(maxval(alone%excess, mask=kind == kind(i)), &
+                             minval(alone%error, mask=kind == kind(i)), alone(i)%is_at_ligament)
+      end do
       ! Only the ligament is left: it breaks as soon as K_eq reaches K_IC, before other tips
       ! advance. Without the increment, equal tips would all wait.
-      where (is_at_ligament) excess = excess + 2.0_rk*tolerance
-      call move_groups(segments, interaction, kind, excess, search, moves)
-      wants = .not. (moves .or. excess <= tolerance)
+      where (group%is_at_ligament) group%excess = group%excess + 2.0_rk*tolerance
+      call move_groups(segments, interaction, kind, group, search, moves)
+      wants = .not. (moves .or. group%excess <= tolerance)
       where (segments%is_open) wants = wants .and. segments%is_complete()
    end subroutine judge_tips
 
@@ -110,11 +122,11 @@ contains
 
    !> Move the tip groups to the next iterate of the search for equilibrium; tips of one group
    !! advance equally.
-   subroutine move_groups(segments, interaction, kind, excess, search, moves)
+   subroutine move_groups(segments, interaction, kind, group, search, moves)
       type(segment_t), intent(inout) :: segments(:)  !< (tips)
       type(interaction_t), intent(in) :: interaction
       integer(ik), intent(in) :: kind(:)  !< (tips) number of the group, from 1
-      real(rk), intent(in) :: excess(:)  !< (tips) excess of K_eq over K_IC [-]
+      type(driven_t), intent(in) :: group(:)  !< (tips) what drives their groups
       type(advances_t), intent(inout) :: search
       logical, intent(out) :: moves(:)
       integer(ik), allocatable :: leader(:), number(:), on_way(:)
@@ -130,7 +142,8 @@ contains
          call search%begin(first%lowest(), first%length, first%reached, &
                            interaction%matrix_for(on_way, number, first), sliver*first%length)
       end if
-      call search%improve(excess(leader), tolerance, has_moved)
+      search%slack = min(slack_max, share_of_error*group(leader)%error)
+      call search%improve(group(leader)%excess, tolerance, has_moved)
       do k = 1, size(leader, kind=ik)
          associate (segment => segments(leader(k)))
             if (search%matrix(k, k) < 0.0_rk) segment%slope = search%matrix(k, k)

@@ -8,6 +8,7 @@ module twolevel_notes
    use growth_front, only: front_state_t
    use growth_network, only: total_length
    use growth_segment, only: segment_t
+   use growth_targets, only: target_none
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use scene_types, only: fracture_t, growth_t, scene_t
@@ -139,26 +140,30 @@ contains
    end subroutine note_competition
 
    !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ
-   !! by more than their errors: only errors have separated them, and it is chance which is ahead.
-   !! Tips that have ended on a target have another reason to stay behind.
+   !! noticeably: only errors have separated them, and it is chance which is ahead; the difference is
+   !! part of the errors of their positions. Tips that have ended on a target have another reason to
+   !! stay behind.
    subroutine note_separation(self, tips, now, toughness, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
-      type(levels_state_t), intent(in) :: now
+      type(levels_state_t), intent(inout) :: now
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: increment(:)  !< (tips) [m]
       type(chronicle_t), intent(inout) :: chronicle
-      real(rk), parameter :: least = 0.1_rk  ! difference of gains, over the shorter increment
+      ! noticeable difference of gains, over the shorter increment and over the larger gain
+      real(rk), parameter :: least = 0.025_rk
       character(len=:), allocatable :: what
+      real(rk) :: by, lead(size(tips))
       integer(ik) :: ahead, behind, i, j
       logical :: is_chance
 
+      lead = 0.0_rk
       if (.not. (allocated(now%groups%kind) .and. allocated(now%stated_errors%tip))) return
       do j = 2, size(tips, kind=ik)
          do i = 1, j - 1
             associate (gain => now%segment([i, j])%gain, groups => now%groups, &
                        error => now%stated_errors%tip, shorter => minval(increment([i, j])))
-               if (any(tips([i, j])%arrested)) then
+               if (any(tips([i, j])%target /= target_none)) then
                   self%relation(i, j) = apart
                else if (groups%kind(i) == groups%kind(j) .and. all(gain > 0.0_rk)) then
                   self%relation(i, j) = together
@@ -172,21 +177,25 @@ contains
                   end if
                   self%relation(i, j) = merge(separated, apart, is_chance)
                end if
-               if (self%relation(i, j) /= separated .or. all(self%has_separated([i, j]))) cycle
-               if (.not. abs(gain(1) - gain(2)) > max(least*shorter, error(i) + error(j))) cycle
+               if (self%relation(i, j) /= separated) cycle
+               by = abs(gain(1) - gain(2))
+               lead([i, j]) = max(lead([i, j]), by)
+               if (all(self%has_separated([i, j]))) cycle
+               if (.not. by > least*max(shorter, maxval(gain))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
                what = "this tip is ahead of an equal one at ("// &
                       brief_text(tips(behind)%xy(1), 4)//", "// &
-                      brief_text(tips(behind)%xy(2), 4)//") m by "// &
-                      brief_text(abs(gain(1) - gain(2)), 3)// &
-                      " m, more than their errors: which one is ahead is chance"
+                      brief_text(tips(behind)%xy(2), 4)//") m by "//brief_text(by, 3)//" m, "// &
+                      merge("more than", "less than", by > error(i) + error(j))// &
+                      " their errors: which one is ahead is chance"
                call chronicle%add_event(now%coarse%time, event_bifurcation, what, &
                                         tips(ahead)%fracture, tips(ahead)%xy)
                self%has_separated([i, j]) = .true.
             end associate
          end do
       end do
+      call now%stated_errors%add_leads(lead)
    end subroutine note_separation
 
    !> Whether errors of length and pressure are estimated: not with increments of prescribed length.

@@ -219,13 +219,13 @@ contains
                call note_error(seen, of_elements, refinements(k)%error)
                call change_elements(self, i, 1)
             case (withdraw_elements)
-               seen%can_withdraw(of_elements) = .false.
+               call withdraw(seen, of_elements)
                call change_elements(self, i, -1)
             case (improve_edge)
                call note_error(seen, of_edge, refinements(k)%error)
                call change_edge(windows, i, 1, seen)
             case (withdraw_edge)
-               seen%can_withdraw(of_edge) = .false.
+               call withdraw(seen, of_edge)
                call change_edge(windows, i, -1, seen)
             case default
                call note_error(seen, of_edge, refinements(k)%error)
@@ -244,7 +244,17 @@ contains
 
       seen%refined_at(part) = error
       seen%can_withdraw(part) = .true.
+      seen%was_withdrawn(part) = .false.
    end subroutine note_error
+
+   !> Note that a refinement is taken back.
+   pure subroutine withdraw(seen, part)
+      type(window_tip_t), intent(inout) :: seen
+      integer, intent(in) :: part  !< of_elements or of_edge
+
+      seen%can_withdraw(part) = .false.
+      seen%was_withdrawn(part) = .true.
+   end subroutine withdraw
 
    !> Make the elements around a tip smaller or larger, in the reference too.
    subroutine change_elements(self, i, by)

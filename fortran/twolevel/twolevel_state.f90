@@ -48,6 +48,9 @@ module twolevel_state
       logical :: is_unstable = .false.  !< tips grew without equilibrium
       type(step_report_t) :: report
       character(len=:), allocatable :: why_cut  !< reason of the last cut
+      !> (tips) positions on their segments in equilibrium before windows were refined, from which
+      !! the same step is tried again [m]
+      real(rk), allocatable :: places(:)
    end type last_step_t
 
    !> Simulation of a scene with a fluid on both levels; `network` is the fine network, which is

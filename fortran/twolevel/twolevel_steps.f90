@@ -226,6 +226,12 @@ contains
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
+      associate (now => self%now%segment, before => self%last%levels%segment)
+         if (all(now%is_open .eqv. before%is_open) .and. &
+             .not. any(abs(now%accepted - before%accepted) > 0.0_rk)) then
+            self%step%places = now%reached
+         end if
+      end associate
       call self%put_back()
       call refine_windows(self, refinements)
       if (allocated(self%now%coarse%tractions)) then

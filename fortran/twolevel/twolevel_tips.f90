@@ -36,7 +36,7 @@ contains
          if (fracture%n_cells > 0) then
             tips%is_shut = shut_tips(tips, now%segment, fracture, now%coarse%jump)
          end if
-         call carry_intensities(scene, problem, windows, active, tips, now)
+         call carry_intensities(scene, problem, windows, tips, now)
          active = active .and. tips%is_loaded()
          call problem%find_values(now%coarse, now%undrained)
          windows%is_beside_body = has_reference
@@ -59,14 +59,13 @@ contains
 
    !> In a network, tips far below their toughness keep their intensities as long as the jump behind
    !! them is nearly constant: K is proportional to the jump. The change of the jump since the last
-   !! evaluation is part of their error. Tips of one window are evaluated together, and tips whose
-   !! errors by the coarse level have not been estimated since are evaluated again; so are all
-   !! after the undrained response, where K is larger for the same jump.
-   subroutine carry_intensities(scene, problem, windows, active, tips, now)
+   !! evaluation is part of their error. Tips whose errors by the coarse level have not been
+   !! estimated since are evaluated again; so are all after the undrained response, where K is
+   !! larger for the same jump.
+   subroutine carry_intensities(scene, problem, windows, tips, now)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(windows_t), intent(in) :: windows
-      logical, intent(in) :: active(:)  !< (tips) active tips
       type(tip_t), intent(inout) :: tips(:)
       type(levels_state_t), intent(in) :: now
       integer, parameter :: few = 8  ! tips are all evaluated
@@ -86,10 +85,6 @@ contains
          end do
          do i = 1, size(tips, kind=ik)
             if (.not. can_be(i)) cycle
-            associate (neighbours => windows%served_with(i))
-               if (any(active(neighbours) .and. tips(neighbours)%is_loaded() &
-                       .and. .not. can_be(neighbours))) cycle
-            end associate
             call tips(i)%carry(windows%intensity_of(i, known(i)), &
                                known(i)%change_of_jump(tip_jump(problem, now, tips(i))))
          end do

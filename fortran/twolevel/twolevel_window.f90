@@ -42,6 +42,7 @@ module twolevel_window
       integer(ik), allocatable :: kept(:)  !< vertices of the network that are in the mesh
       real(rk), allocatable :: place(:, :)  !< (2, tips) positions of the tips [m]
       logical, allocatable :: is_free(:)  !< (tips) free crack ends
+      logical, allocatable :: has_focus(:)  !< (tips) with small elements around them
       logical :: is_projected = .false.  !< the position in the coarse mesh is known
    end type made_for_t
 
@@ -66,6 +67,10 @@ module twolevel_window
       integer(ik), allocatable :: at(:)  !< (tips served) numbers in the mesh; 0: not free
       !> (tips served) interaction integrals, valid as long as the model stays the same
       type(tip_probe_t), allocatable :: probe(:)
+      logical, allocatable :: has_probe(:)  !< (tips served) these are known
+      !> (tips served) they were evaluated in the last solution; others are closed, or far below
+      !! their toughness
+      logical, allocatable :: was_asked(:)
       type(fine_loads_t) :: loads
       type(window_sides_t) :: sides
       !> (2, n_nodes) loads other than those of the sides, where these change with time [N/m]
@@ -89,6 +94,7 @@ module twolevel_window
       procedure :: intensities_with
       procedure :: curved_edge
       procedure :: holds
+      procedure :: lacks_focus
       procedure :: displacement_at
    end type window_t
 
@@ -135,10 +141,12 @@ contains
       spec = window_spec(self%lower, self%upper, self%element_size, scene)
       if (self%is_body) call shape_body(scene, spec)
       if (is_beside_body .and. .not. self%is_body) call grow_away(spec)
-      call focus(scene, network, tips, self%serves, spec, error)
+      call focus(scene, network, tips, self%serves, tips(self%serves)%has_focus .or. &
+                 .not. self%is_body, spec, error)
       if (allocated(error)) return
       allocate (self%made)
       self%made%network = network
+      self%made%has_focus = tips%has_focus
       call straighten_far(network, spec, self%is_body, far_straight, self%made%kept)
       call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
       if (allocated(error)) return
@@ -288,7 +296,7 @@ contains
       type(elasticity_t), allocatable :: elasticity(:)
       integer :: i
 
-      if (allocated(self%probe)) deallocate (self%probe)
+      self%has_probe = spread(.false., 1, size(self%serves))
       elasticity = [constants_of_rock(scene%material, scene, undrained)]
       if (allocated(scene%regions)) then
          elasticity = [elasticity, (constants_of_rock(scene%regions(i)%material, scene, &
@@ -317,7 +325,7 @@ contains
       self%made%is_projected = .true.
    end subroutine project
 
-   !> Load the window with the state of the coarse level, solve, and evaluate its tips.
+   !> Load the window with the state of the coarse level, solve, and evaluate its tips in question.
    subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -340,6 +348,7 @@ contains
          self%loads%pore_pressure = scene%initial%pressure
          if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
       end if
+      if (.not. allocated(self%was_asked)) self%was_asked = self%at > 0
       if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
          call remember_contact(self, state, history)
       end if
@@ -355,11 +364,11 @@ contains
       end if
       call self%model%solve(self%loads, self%displacement, error, history%contact)
       if (allocated(error)) return
-      if (.not. allocated(self%probe)) call find_probes(self, error)
+      call find_probes(self, error)
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => tips(self%serves(i)))
-            if (self%at(i) == 0) cycle
+            if (.not. self%was_asked(i)) cycle
             call tip_intensity(self%model, self%loads, self%displacement, self%probe(i), &
                                tip%found, error)
             if (allocated(error)) return
@@ -367,19 +376,22 @@ contains
       end do
    end subroutine find_intensities
 
-   !> Compute the interaction integrals of the tips.
+   !> Compute the interaction integrals of the tips in question that are not known.
    subroutine find_probes(self, error)
       class(window_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
-      type(tip_probe_t) :: probe(size(self%serves))
       integer(ik) :: i
 
+      if (.not. any(self%has_probe)) then
+         if (allocated(self%probe)) deallocate (self%probe)
+         allocate (self%probe(size(self%serves)))
+      end if
       do i = 1, size(self%serves, kind=ik)
-         if (self%at(i) == 0) cycle
-         call probe_of_tip(self%model, self%at(i), probe(i), error)
+         if (self%has_probe(i) .or. .not. self%was_asked(i)) cycle
+         call probe_of_tip(self%model, self%at(i), self%probe(i), error)
          if (allocated(error)) return
+         self%has_probe(i) = .true.
       end do
-      self%probe = probe
    end subroutine find_probes
 
    !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on sides
@@ -423,7 +435,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => self%serves(i))
-            if (self%at(i) == 0) cycle
+            if (.not. self%was_asked(i)) cycle
             call tip_intensity(self%model, loads, displacement, self%probe(i), result, error, &
                                quickly=.true.)
             if (allocated(error)) return
@@ -431,6 +443,16 @@ contains
          end associate
       end do
    end subroutine intensities_with
+
+   !> Whether the mesh is that of the body, and the elements around some tips are too large.
+   pure logical function lacks_focus(self, tips)
+      class(window_t), intent(in) :: self
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
+
+      lacks_focus = self%is_body .and. allocated(self%made)
+      if (lacks_focus) lacks_focus = any(tips(self%serves)%has_focus .and. &
+                                         .not. self%made%has_focus(self%serves))
+   end function lacks_focus
 
    !> Whether points lie in the window, edges included.
    pure logical function holds(self, points)

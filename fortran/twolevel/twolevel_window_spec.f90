@@ -60,19 +60,24 @@ contains
 
    !> Set elements and rosettes as the tips served require, and the outlines of regions of other
    !! rock.
-   subroutine focus(scene, network, tips, serves, spec, error)
+   subroutine focus(scene, network, tips, serves, has_focus, spec, error)
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: network
       type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
       integer(ik), intent(in) :: serves(:)  !< numbers of the tips served
+      !> (tips served) the elements around others are as large as coarse cells
+      logical, intent(in) :: has_focus(:)
       type(mesh_spec_t), intent(inout) :: spec
       type(error_t), allocatable, intent(out) :: error
       real(rk), allocatable :: piece(:, :)
+      integer(ik), allocatable :: foci(:)
       integer(ik) :: i
 
+      foci = pack(serves, has_focus)
+      if (size(foci) == 0) foci = serves(:1)
       spec%focus_slope = along
       spec%focus_size = max(spec%size_fracture, scene%discretization%size_fracture)
-      allocate (spec%foci(2, size(serves)))
+      spec%foci = reshape([(tip_place(network, tips(foci(i))), i=1, size(foci))], [2, size(foci)])
       piece = end_pieces(network)
       spec%end_radius = spread(spread(0.0_rk, 1, 2), 2, size(piece, 2))
       if (any(scene%fractures%cell_size > 0.0_rk)) then
@@ -86,12 +91,16 @@ contains
       end if
       do i = 1, size(serves, kind=ik)
          associate (tip => tips(serves(i)))
-            spec%foci(:, i) = tip_place(network, tip)
-            spec%end_radius(tip%end, tip%fracture) = &
-               tip%rosette_radius(scene, piece(tip%end, tip%fracture))
-            if (.not. allocated(scene%regions)) cycle
-            call keep_off(spec%foci(:, i), scene, spec%end_radius(tip%end, tip%fracture), error)
-            if (allocated(error)) return
+            associate (radius => spec%end_radius(tip%end, tip%fracture), &
+                       last => piece(tip%end, tip%fracture))
+               radius = tip%rosette_radius(scene, last)
+               if (.not. has_focus(i)) then
+                  radius = max(radius, min(scene%cell_size_of(tip%fracture), 0.5_rk*last))
+               end if
+               if (.not. allocated(scene%regions)) cycle
+               call keep_off(tip_place(network, tip), scene, radius, error)
+               if (allocated(error)) return
+            end associate
          end associate
       end do
       if (any(regions_of_other_rock(scene))) then

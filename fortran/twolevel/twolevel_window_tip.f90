@@ -14,7 +14,8 @@ module twolevel_window_tip
    integer, parameter :: of_edge = 2  !< by a larger window, or by the body as window
 
    !> A refinement has had no effect if the error is still more than this share of the error before
-   !! [-], until the error has become so many times as large [-].
+   !! [-], until the error has become so many times as large [-]. One that has been taken back is
+   !! not repeated before, whatever the error is.
    real(rk), parameter :: no_effect = 0.9_rk, other_state = 2.0_rk
 
    !> Largest number of refinements. Each halves the rosette; from the second on each also halves
@@ -27,7 +28,11 @@ module twolevel_window_tip
       integer :: times_finer = 0  !< number of refinements
       !> (of_elements, of_edge) error of the intensities before the last refinement [Pa m^1/2]
       real(rk) :: refined_at(2) = huge(1.0_rk)
+      !> In the body as window its surroundings have elements as small as those of its own window:
+      !! it is, or has been, near its toughness
+      logical :: has_focus = .false.
       logical :: can_withdraw(2) = .false.  !< this refinement can still be taken back
+      logical :: was_withdrawn(2) = .false.  !< it has been taken back
       !> intensities of the last solution, without the error by the coarse level
       type(intensity_t) :: found
       !> Contribution of the coarse level to the errors of K_I and K_II (twolevel_coarse_errors), by
@@ -100,8 +105,8 @@ contains
       real(rk), intent(in) :: error  !< of the intensities now [Pa m^1/2]
 
       associate (before => self%refined_at(part))
-         is_futile = before < huge(1.0_rk) .and. error > no_effect*before .and. &
-                     error < other_state*before
+         is_futile = before < huge(1.0_rk) .and. error < other_state*before .and. &
+                     (error > no_effect*before .or. self%was_withdrawn(part))
       end associate
    end function is_futile
 

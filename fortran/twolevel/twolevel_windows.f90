@@ -33,6 +33,11 @@ module twolevel_windows
    !! which this window is meshed again: intensities change by a small part of it [-].
    real(rk), parameter :: noticeable = 1.0e-3_rk
 
+   !> Number of tips up to which all are in the focus of the body as window, and lack of toughness,
+   !! error included, beyond which other tips are not [-].
+   integer, parameter :: few = 8
+   real(rk), parameter :: far = 0.5_rk
+
    !> Error in the evaluation of a window.
    type :: failure_t
       type(error_t), allocatable :: error
@@ -94,6 +99,7 @@ contains
          known%tip(i)%fracture = tips(i)%fracture
          known%tip(i)%end = tips(i)%end
       end do
+      known%tip%has_focus = size(tips) <= few
       do i = 1, n_windows
          allocate (self%slot(i)%window)
          associate (window => self%slot(i)%window)
@@ -162,6 +168,40 @@ contains
       type(state_t), intent(in) :: state
       type(windows_state_t), intent(inout) :: known
       type(error_t), allocatable, intent(out) :: error
+      logical :: is_due(size(self%slot))
+      integer(ik) :: w
+
+      call find_focus(front%tip, scene%material%toughness, known%tip)
+      is_due = [(any(active(self%slot(w)%window%serves)), w=1, size(self%slot))]
+      call evaluate_windows(self, scene, front, is_due, problem, state, known, error)
+      if (allocated(error)) return
+      ! Tips that have come near their toughness, in the body as window.
+      call find_focus(front%tip, scene%material%toughness, known%tip)
+      is_due = is_due .and. [(self%slot(w)%window%lacks_focus(known%tip), w=1, size(self%slot))]
+      if (.not. any(is_due)) return
+      call evaluate_windows(self, scene, front, is_due, problem, state, known, error)
+   end subroutine evaluate
+
+   !> Focus of the body on tips near their toughness: they keep it.
+   elemental subroutine find_focus(tip, toughness, seen)
+      type(tip_t), intent(in) :: tip
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      type(window_tip_t), intent(inout) :: seen
+
+      seen%has_focus = seen%has_focus .or. (tip%is_loaded() .and. tip%excess(toughness) &
+                                            + tip%relative_error(toughness) > -far)
+   end subroutine find_focus
+
+   !> Evaluate windows, those with the largest meshes first.
+   subroutine evaluate_windows(self, scene, front, is_due, problem, state, known, error)
+      type(windows_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(front_state_t), intent(inout) :: front
+      logical, intent(in) :: is_due(:)  !< (windows)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(windows_state_t), intent(inout) :: known
+      type(error_t), allocatable, intent(out) :: error
       type(failure_t) :: failure(size(self%slot))
       integer(ik) :: i, w, largest_first(size(self%slot))
 
@@ -175,7 +215,7 @@ contains
       do i = 1, size(self%slot, kind=ik)
          w = largest_first(i)
          if (.not. self%is_active(w, front%tip)) cycle
-         if (.not. any(active(self%slot(w)%window%serves))) cycle
+         if (.not. is_due(w)) cycle
          !$omp task firstprivate(w) default(shared)
          call evaluate_window(self, w, scene, front, problem, state, known, failure(w)%error)
          !$omp end task
@@ -183,7 +223,7 @@ contains
       !$omp end single
       !$omp end parallel
       call first_failure(failure, error)
-   end subroutine evaluate
+   end subroutine evaluate_windows
 
    !> Windows in the order of their mesh sizes, the largest first, so that threads end at about the
    !! same time.
@@ -226,7 +266,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
 
-      if (has_to_be_meshed(self%slot(w)%window, front%tip)) then
+      if (has_to_be_meshed(self%slot(w)%window, front%tip) .or. &
+          self%slot(w)%window%lacks_focus(known%tip)) then
          call renew(self%slot(w), scene, front%network, front%tip, self%is_beside_body, known%tip, &
                     known%history(w), error)
          if (allocated(error)) return
@@ -241,12 +282,13 @@ contains
             call window%set_rock(scene, undrained, error)
             if (allocated(error)) return
          end if
+         window%was_asked = window%at > 0 .and. front%tip(window%serves)%is_loaded()
          call window%find_intensities(scene, problem%mesh, problem%values, state, seen, &
                                       known%history(w), error)
          if (allocated(error)) return
          do i = 1, size(window%serves, kind=ik)
             associate (t => window%serves(i), tip => front%tip(window%serves(i)))
-               if (.not. tip%is_free) cycle
+               if (.not. window%was_asked(i)) cycle
                seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end)
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
                tip%rosette_radius = window%mesh%fracture%tip_radius(window%at(i))
@@ -279,7 +321,7 @@ contains
          call slot%window%take_plan(slot%kept)
       end if
       associate (window => slot%window)
-         follows = allocated(window%made)
+         follows = allocated(window%made) .and. .not. window%lacks_focus(seen)
          if (follows) follows = all(tips%is_free .eqv. window%made%is_free)
          if (follows) call follow_tips(slot, scene, network, seen, follows, error)
          if (.not. (follows .or. allocated(error))) then

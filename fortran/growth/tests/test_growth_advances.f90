@@ -38,6 +38,7 @@ program test_growth_advances
    call test_order()
    call test_retreat()
    call test_steep_guess()
+   call test_noise()
    call checks%finish()
 
 contains
@@ -87,6 +88,41 @@ contains
       end do
       call checks%is_close(advances%place(1), 0.2_rk, tolerance, "in equilibrium")
    end subroutine test_steep_guess
+
+   !> K of every mesh is off by up to 3 % of K_IC, six times the tolerance, within its stated error
+   !! of 20 %. The search ends after a few evaluations, with K_eq at most the tolerance above K_IC
+   !! and at most the slack below, and so at a place that is off by both and the noise.
+   subroutine test_noise()
+      real(rk), parameter :: slack = 0.05_rk, noise = 0.03_rk, slope = 2.3_rk
+      integer, parameter :: problems = 500
+      type(advances_t) :: advances
+      type(random_t) :: random
+      real(rk) :: excess(1)
+      integer :: i, most, total
+      logical :: has_moved
+
+      call random%start(11_lk)
+      total = 0
+      most = 0
+      do i = 1, problems
+         call advances%begin([0.025_rk], [0.5_rk], [0.025_rk], reshape([-slope], [1, 1]))
+         advances%slack = [slack]
+         do
+            excess = 0.2_rk - slope*advances%place &
+                     + noise*(2.0_rk*real(random%below(1000), rk)/999.0_rk - 1.0_rk)
+            call advances%improve(excess, tolerance, has_moved)
+            if (.not. has_moved .or. advances%evaluations > 100) exit
+         end do
+         total = total + advances%evaluations
+         most = max(most, advances%evaluations)
+         call checks%is_true(excess(1) <= tolerance .and. excess(1) >= -slack, &
+                             "noise: in equilibrium")
+         call checks%is_close(advances%place(1), 0.2_rk/slope, (slack + noise)/slope, &
+                              "noise: place")
+      end do
+      call checks%is_true(real(total, rk)/problems <= 6.0_rk, "noise: 6 evaluations on average")
+      call checks%is_true(most <= 25, "noise: 25 evaluations at most")
+   end subroutine test_noise
 
    !> Double cantilever beam of 1 m at a given opening: K falls as the length to the power of -2.
    subroutine test_cantilever()

@@ -156,8 +156,10 @@ contains
 
       call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.029_rk) == 1, "by chance")
       call checks%is_true(n_separations(equal, [0.05_rk, 0.11_rk], 0.029_rk) == 1, "the other one")
-      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.031_rk) == 0, "within errors")
-      call checks%is_true(n_separations(equal, [0.11_rk, 0.107_rk], 0.0_rk) == 0, "hardly")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.05_rk], 0.031_rk) == 1, "within errors")
+      call checks%is_true(n_separations(equal, [0.11_rk, 0.108_rk], 0.0_rk) == 0, "hardly")
+      call checks%is_true(n_separations(equal, [0.0011_rk, 0.001_rk], 0.0_rk) == 0, &
+                          "hardly, over the increment")
       call checks%is_true(n_separations(equal, [0.11_rk, 0.107_rk], 0.0_rk, increments= &
                                         [0.02_rk, 0.04_rk]) == 1, "of the shorter increment")
       call checks%is_true(n_separations(other, [0.11_rk, 0.05_rk], 0.0_rk) == 0, "with a reason")
@@ -215,7 +217,12 @@ contains
       ! What they are later does not matter.
       simulation%tip%drive%intensity = toughness
       simulation%now%segment%gain = gain
-      if (present(arrested)) simulation%tip(minloc(gain, dim=1))%arrested = arrested
+      if (present(arrested)) then
+         associate (behind => simulation%tip(minloc(gain, dim=1)))
+            behind%arrested = arrested
+            if (arrested) behind%target = target_boundary
+         end associate
+      end if
       do k = 1, 2
          call note(simulation, increment)
       end do
@@ -226,6 +233,10 @@ contains
                                  0.0_rk, "the one ahead")
          end associate
          call checks%is_true(simulation%chronicle%events(1)%kind == event_bifurcation, "event")
+         ! Each of the two may as well be where the other one is; added once.
+         call checks%is_close(simulation%now%stated_errors%length, &
+                              2.0_rk*max(0.0_rk, abs(gain(1) - gain(2)) - error), 1.0e-15_rk, &
+                              "the lead beyond the errors of the positions")
       end if
    end function n_separations
 
