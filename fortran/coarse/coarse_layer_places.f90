@@ -101,7 +101,7 @@ contains
       type(solid_t) :: solid
 
       solid = rock%solid_at(cell)
-      uniaxial_storage = solid%storage + solid%biot**2/(solid%lame + 2.0_rk*solid%shear)
+      uniaxial_storage = solid%uniaxial_storage()
    end function uniaxial_storage
 
    !> The chains, their places among the unknowns, and the cells they lie in.

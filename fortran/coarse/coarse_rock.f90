@@ -55,6 +55,7 @@ module coarse_rock
       procedure :: crack_modulus
       procedure :: poisson
       procedure :: storage_at_stress
+      procedure :: uniaxial_storage
    end type solid_t
 
    real(rk), parameter :: nothing = 1.0e-9_rk  !< share of a cell that is rounding [-]
@@ -266,5 +267,13 @@ contains
 
       storage_at_stress = self%storage + self%biot**2/(self%lame + self%shear)
    end function storage_at_stress
+
+   !> The same at constant stress in one direction and no strain in the others, as in layers and
+   !! around wells, S + alpha^2/(lambda + 2 G) [1/Pa].
+   elemental real(rk) function uniaxial_storage(self)
+      class(solid_t), intent(in) :: self
+
+      uniaxial_storage = self%storage + self%biot**2/(self%lame + 2.0_rk*self%shear)
+   end function uniaxial_storage
 
 end module coarse_rock

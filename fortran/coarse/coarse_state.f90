@@ -79,6 +79,8 @@ module coarse_state
       real(rk), allocatable :: well_head(:)  !< pressure at the head [Pa]
       real(rk), allocatable :: well_rate(:)  !< into the well at its head, mean of the step [m2/s]
       integer(ik), allocatable :: rock_well_control(:)  !< of coarse_wells: of those in rock
+      !> (ring_count, all wells in the rock) of coarse_well_rings; unallocated: there are none [Pa]
+      real(rk), allocatable :: rings(:, :)
       real(rk), allocatable :: injection(:)  !< (n) of wells into the cells in the last step [m2/s]
       real(rk), allocatable :: leakoff(:)  !< (n) flux into the rock, both sides [m/s]
       type(guess_t) :: guess  !< extrapolation to the next step

@@ -52,9 +52,17 @@ contains
       if (allocated(error)) return
       paths = self%flow_paths_t
       if (self%rock_wells%n > 0) then
+         call self%rock_wells%find_indices(self%wells, dt, state%rings)
          call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
       else
          call solve_step(self, mesh, paths, dt, state, timers, report, error)
+      end if
+      if (allocated(error) .or. .not. report%converged) return
+      if (.not. allocated(state%rings)) return
+      if (self%rock_wells%n > 0) then
+         call self%rock_wells%update_rings(dt, state%well_flow(self%wells%n + 1:), state%rings)
+      else
+         call self%rock_wells%update_rings(dt, [real(rk) ::], state%rings)
       end if
    end subroutine advance
 

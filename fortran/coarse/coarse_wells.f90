@@ -7,16 +7,18 @@
 !! fracture or rock at the well, plus the pressure loss of the flow to this point.
 !!
 !! Wells in the rock whose rate depends on pressures. A well at p_w in a cell of the pressure p_c
-!! supplies it with q = w (p_w - p_c), with a well index w (Peaceman 1978) that includes the
-!! pressure loss in the well. Under each control this is a source less a conductance times p_c, so
-!! it is part of the matrix of the rock and no unknown:
-!!   at a pressure P    q = w (P - p_c)
+!! supplies it with q = w (p_w - p_0 - p_c), with a well index w that depends on the length of the
+!! step and includes the pressure loss in the well, and with what is left of the flow before, p_0
+!! (coarse_well_rings). Under each control this is a source less a conductance times p_c, so it is
+!! part of the matrix of the rock and no unknown:
+!!   at a pressure P    q = w (P - p_0 - p_c)
 !!   at a rate Q        q + C (p_w - p_w,before)/dt = Q with the storage C of the well
 !! The control under a limit is tried: a step whose result contradicts it is repeated.
 module coarse_wells
    use base_kinds, only: ik, pi, rk
    use base_tolerances, only: same_value
    use coarse_matrix, only: matrix_t
+   use coarse_well_rings, only: well_rings_t
    implicit none(type, external)
    private
 
@@ -54,7 +56,13 @@ module coarse_wells
    type :: rock_wells_t
       integer(ik) :: n = 0
       integer(ik), allocatable :: cell(:)  !< (n)
-      real(rk), allocatable :: index(:)  !< (n) flow per p_w - p_c [m2/(Pa s)]
+      real(rk), allocatable :: index(:)  !< (n) flow per p_w - p_0 - p_c [m2/(Pa s)]
+      real(rk), allocatable :: left_over(:)  !< (n) p_0 [Pa]
+      ! All wells in the rock:
+      type(well_rings_t), allocatable :: rings(:)
+      integer(ik), allocatable :: ring_number(:)  !< (rings) among all wells of the scene
+      integer(ik), allocatable :: ring_of(:)  !< (n) ring of each pressure-controlled well
+      real(rk), allocatable :: ring_flow(:)  !< (rings) prescribed in the present step [m2/s]
       real(rk), allocatable :: source(:)  !< (n) q of the step where p_c is 0 [m2/s]
       !> (n) decrease of q per p_c, part of the matrix [m2/(Pa s)]
       real(rk), allocatable :: conductance(:)
@@ -62,6 +70,9 @@ module coarse_wells
       !> (n) control that is tried: control_shut, _rate or _pressure
       integer(ik), allocatable :: control(:)
    contains
+      procedure :: beyond_cell
+      procedure :: find_indices
+      procedure :: update_rings
       procedure :: choose_controls
       procedure :: set_terms
       procedure :: find_flows
@@ -114,6 +125,53 @@ contains
       well_index = 2.0_rk*pi*mobility/log(radius_of_cell*sqrt(area)/radius)
    end function well_index
 
+   !> Pressure of a well less that of its cell; none before there are rings [Pa].
+   pure real(rk) function beyond_cell(self, well, flow, pressure)
+      class(rock_wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well  !< among all of the scene
+      real(rk), intent(in) :: flow  !< of the step to the present state [m2/s]
+      real(rk), allocatable, intent(in) :: pressure(:, :)  !< (ring_count, rings) [Pa]
+      integer(ik) :: k
+
+      beyond_cell = 0.0_rk
+      if (.not. allocated(pressure)) return
+      k = findloc(self%ring_number, well, dim=1, kind=ik)
+      beyond_cell = self%rings(k)%beyond_cell(flow, pressure(:, k))
+   end function beyond_cell
+
+   !> Indices of the wells for a step, and what is left of the flow before it.
+   pure subroutine find_indices(self, wells, dt, pressure)
+      class(rock_wells_t), intent(inout) :: self
+      type(wells_t), intent(in) :: wells
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: pressure(:, :)  !< (ring_count, rings) before the step [Pa]
+      integer(ik) :: w
+
+      do w = 1, self%n
+         associate (rings => self%rings(self%ring_of(w)))
+            ! The loss in the well is a resistance in series.
+            self%index(w) = 1.0_rk/(rings%resistance(dt) + wells%friction(wells%n + w))
+            self%left_over(w) = rings%left_over(dt, pressure(:, self%ring_of(w)))
+         end associate
+      end do
+   end subroutine find_indices
+
+   !> The rings of all wells after a step.
+   pure subroutine update_rings(self, dt, flow, pressure)
+      class(rock_wells_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: flow(:)  !< (n) of the pressure-controlled wells [m2/s]
+      real(rk), intent(inout) :: pressure(:, :)  !< (ring_count, rings) [Pa]
+      real(rk) :: all(size(pressure, 2))
+      integer :: k
+
+      all = self%ring_flow
+      if (self%n > 0) all(self%ring_of) = flow
+      do k = 1, size(all)
+         call self%rings(k)%take_in(dt, all(k), pressure(:, k))
+      end do
+   end subroutine update_rings
+
    !> The controls that are tried first: those prescribed, or under a limit those of the last step.
    pure subroutine choose_controls(self, wells, last)
       class(rock_wells_t), intent(inout) :: self
@@ -147,13 +205,14 @@ contains
          if (wells%control(at) /= control_shut) then
             associate (index => self%index(w))
                if (self%control(w) == control_pressure) then
-                  self%source(w) = index*wells%pressure(at)
+                  self%source(w) = index*(wells%pressure(at) - self%left_over(w))
                   conductance = index
                else
                   ! Under a limit nothing may flow.
                   rate = merge(wells%rate(at), 0.0_rk, self%control(w) == control_rate)
                   stored = wells%storage(at)/dt
-                  self%source(w) = index*(rate + stored*head_before(w))/(stored + index)
+                  self%source(w) = index*(rate + stored*(head_before(w) - self%left_over(w))) &
+                                   /(stored + index)
                   conductance = index*stored/(stored + index)
                end if
             end associate
@@ -181,7 +240,7 @@ contains
       real(rk), intent(out) :: rate(:)  !< (n) into the well at its head [m2/s]
 
       flow = self%source - self%conductance*pressure(self%cell)
-      head = pressure(self%cell) + flow/self%index
+      head = pressure(self%cell) + self%left_over + flow/self%index
       rate = flow + wells%storage(wells%n + 1:)*(head - head_before)/dt
       ! Prescribed rates are exact.
       where (self%control == control_shut) rate = 0.0_rk

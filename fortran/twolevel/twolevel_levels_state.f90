@@ -136,7 +136,8 @@ contains
                               numbers(state%joint_pressure)]), &
               part_t("flow in wells", [numbers(state%well_flow), numbers(state%well_head), &
                                        numbers(state%well_rate), &
-                                       integers(state%rock_well_control)]), &
+                                       integers(state%rock_well_control), &
+                                       flat(state%rings)]), &
               part_t("guess", [state%guess%dt, numbers(state%guess%change)])]
    end function coarse_parts
 

@@ -10,6 +10,8 @@ module twolevel_problem
    use coarse_model, only: coarse_model_t
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
+   use coarse_rock, only: solid_t
+   use coarse_well_rings, only: new_well_rings, ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
    use mesh_builder, only: locate, mesher_t
@@ -86,6 +88,7 @@ contains
             if (allocated(error)) return
             self%rock_cell(w) = cell(1)
          end do
+         call place_rings(self, scene)
          if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, scene, error)
       end associate
    end subroutine feed_wells
@@ -122,6 +125,31 @@ contains
       end associate
    end subroutine part_twins
 
+   !> Rings of all wells in the rock.
+   pure subroutine place_rings(self, scene)
+      class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(solid_t) :: solid
+      integer(ik) :: k, w
+
+      associate (rock => self%model%rock_wells)
+         rock%ring_number = pack([(w, w=1, size(scene%injections, kind=ik))], self%rock_cell > 0)
+         rock%ring_flow = spread(0.0_rk, 1, size(rock%ring_number))
+         if (allocated(rock%rings)) deallocate (rock%rings)
+         allocate (rock%rings(size(rock%ring_number)))
+         do k = 1, size(rock%rings, kind=ik)
+            w = rock%ring_number(k)
+            associate (cell => self%rock_cell(w))
+               solid = self%model%rock%solid_at(cell)
+               rock%rings(k) = new_well_rings(scene%injections(w)%radius, &
+                                              cell_area(self%mesh, cell), &
+                                              self%model%rock%mobility_at(cell), &
+                                              solid%uniaxial_storage())
+            end associate
+         end do
+      end associate
+   end subroutine place_rings
+
    !> Cells and well indices of the wells in the rock whose rate depends on pressures.
    pure subroutine place_rock_wells(self, scene, error)
       class(coarse_problem_t), intent(inout) :: self
@@ -141,8 +169,9 @@ contains
                              "narrower than its cell: use a smaller radius or larger cells")
             return
          end if
-         ! The loss in the well is a resistance in series.
-         rock%index = 1.0_rk/(1.0_rk/rock%index + wells%friction(wells%n + 1:))
+         rock%left_over = spread(0.0_rk, 1, int(rock%n))
+         rock%ring_of = [(findloc(rock%ring_number, wells%number(wells%n + k), dim=1, kind=ik), &
+                          k=1, rock%n)]
       end associate
    end subroutine place_rock_wells
 
@@ -152,6 +181,10 @@ contains
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(inout) :: state
 
+      if (allocated(self%model%rock_wells%rings)) then
+         if (allocated(state%rings)) deallocate (state%rings)
+         allocate (state%rings(ring_count, size(self%model%rock_wells%rings)), source=0.0_rk)
+      end if
       associate (wells => self%model%wells)
          if (wells%n_all == 0) return
          state%well_flow = spread(0.0_rk, 1, int(wells%n_all))
@@ -246,6 +279,7 @@ contains
       integer(ik) :: w
 
       self%model%source = 0.0_rk
+      self%model%rock_wells%ring_flow = rates(self%model%rock_wells%ring_number)
       do w = 1, size(rates, kind=ik)
          if (self%rock_cell(w) == 0) cycle
          associate (fluid => self%model%source(3, self%rock_cell(w)))

@@ -306,6 +306,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       if (self%step%is_unstable .and. .not. self%stepper%tolerance > 0.0_rk) then
          self%stepper%next = wanted
       end if
+      if (self%step%ends_at_switch) call shorten_for_wells(self)
       call self%now%trend%accept(self%before, self%now%coarse, self%step%dt)
       ! The rates of a step in which cracks have joined do not apply to the next step.
       if (trial%has_joined) call self%follow_trend(at_rest=.false.)
@@ -316,6 +317,19 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       ! The rates of unstable growth do not apply to the next step.
       call self%follow_trend(at_rest=.false.)
    end subroutine accept_step
+
+   !> Begin a stage with a short step where wells lie in the rock: their pressures are not part of
+   !! the time error.
+   subroutine shorten_for_wells(self)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), parameter :: share = 1.0e-4_rk  ! of the stage [-]
+
+      if (.not. (allocated(self%now%coarse%rings) .and. self%stepper%tolerance > 0.0_rk)) return
+      associate (now => self%now%coarse%time)
+         if (.not. now < self%scene%time%end) return
+         self%stepper%next = min(self%stepper%next, share*(next_switch(self%scene, now) - now))
+      end associate
+   end subroutine shorten_for_wells
 
    !> Report the tips that have advanced without equilibrium.
    subroutine note_jumps(self)

@@ -123,6 +123,7 @@ contains
       end if
       call transfer_rock(map, mesh_before, mesh, before, after)
       if (allocated(before%rock_well_control)) after%rock_well_control = before%rock_well_control
+      if (allocated(before%rings)) after%rings = before%rings
       allocate (after%jump(2, 2, n), after%traction(2, 2, n), after%leakoff(n), source=0.0_rk)
       allocate (after%slip_before(2, n), source=0.0_rk)
       if (allocated(before%slip_path)) then

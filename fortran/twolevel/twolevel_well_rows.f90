@@ -1,8 +1,6 @@
 !> Results of the wells, one row of wells.csv per well.
 module twolevel_well_rows
    use base_kinds, only: ik, rk
-   use coarse_wells, only: well_index
-   use mesh_geometry, only: cell_area
    use coarse_state, only: state_t
    use report_rows, only: well_row_t
    use scene_types, only: scene_t
@@ -152,8 +150,7 @@ contains
                  share => problem%share(:, w), s => problem%mesh%fracture%cell_s)
          if (well%fracture == 0) then
             pressure = pressure + state%unknowns(3, cell) &
-                       + flow/well_index(well%radius, cell_area(problem%mesh, cell), &
-                                         problem%model%rock%mobility_at(cell))
+                       + problem%model%rock_wells%beyond_cell(w, flow, state%rings)
             return
          end if
          pressure = pressure + dot_product(share, state%pressure) &
