@@ -47,10 +47,10 @@ contains
                            "both")
    end subroutine test_strips
 
-   !> The layer of a pressure dp that began a time t ago, dp erfc(n/(2 sqrt(c t))), against the closed
-   !! form of docs/theory.md times the half moment of the layer, linear between its nodes, over that
-   !! of the profile (2 sqrt(2 c t)^(1/2) Gamma(3/4)/sqrt(pi)). What lies beyond the other tip, 0.4 m
-   !! away, is (n/0.4 m)^(3/2) of the layer, at most 0.4 %.
+   !> The layer of a pressure dp that began a time t ago, dp erfc(n/(2 sqrt(c t))), against the
+   !! closed form of docs/theory.md times the half moment of the layer, linear between its nodes,
+   !! over that of the profile (2 sqrt(2) (c t)^(1/4) Gamma(3/4)/sqrt(pi)). What lies beyond the
+   !! other tip, 0.4 m away, is (n/0.4 m)^(3/2) of the layer, at most 0.4 %.
    subroutine test_layer()
       real(rk), parameter :: dp = 1.0e6_rk  ! [Pa]
       type(two_levels_t) :: simulation
@@ -58,7 +58,7 @@ contains
       type(layer_t) :: data
       type(error_t), allocatable :: error
       real(rk) :: exact, moment(2), reach
-      integer(ik) :: end, l, side
+      integer(ik) :: cell, end, l, side
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
       call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
@@ -82,12 +82,12 @@ contains
             end do
          end associate
          do end = 1, 2
-            data = layer_at_tip(problem%mesh, problem%model%rock, state, problem%values%nodal(3, :), &
-                                1_ik, end)
+            data = layer_at_tip(problem%mesh, problem%model%rock, state, &
+                                problem%values%nodal(3, :), 1_ik, end)
             associate (fracture => problem%mesh%fracture, layers => problem%model%layers)
                do side = 1, 2
-                  l = problem%mesh%face_layer(fracture%cell_faces(side, merge(1_ik, &
-                                                                  fracture%n_cells, end == 1)))
+                  cell = merge(1_ik, fracture%n_cells, end == 1)
+                  l = problem%mesh%face_layer(fracture%cell_faces(side, cell))
                   associate (place => layers%chain(l)%place, n => layers%chain(l)%n)
                      moment(side) = half_moment([0.0_rk, place], &
                                                 [dp, state%layer(:n - 1, l), 0.0_rk])
