@@ -114,6 +114,7 @@ contains
       self%uncertain = 0.0_rk
       self%of_edge = 0.0_rk
       self%passing = 0.0_rk
+      self%back_stress = 0.0_rk
    end subroutine forget_coarse_error
 
    !> Store the jump behind the tip at an evaluation.
