@@ -92,11 +92,6 @@ def test_a_viscous_fluid_holds_them_together(tmp_path: Path) -> None:
     assert "bifurcation" not in [row["kind"] for row in rows(out / "events.csv")]
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="with layers on the coarse level, which windows do not see, the fracture without a well "
-    "grows too; with layers = 'off' it does not",
-)
 def test_none_goes_along_below_its_toughness(tmp_path: Path) -> None:
     """At the start all four tips grow alike; after that the well drives those of its fracture.
 

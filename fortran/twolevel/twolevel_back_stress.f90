@@ -69,9 +69,10 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture_cell
       real(rk) :: drained_tip, stiffness, undrained
+      integer(ik) :: face
 
-      associate (solid => problem%model%rock%solid_at(problem%mesh%face_cells(1, &
-                             problem%mesh%fracture%cell_faces(1, fracture_cell))))
+      face = problem%mesh%fracture%cell_faces(1, fracture_cell)
+      associate (solid => problem%model%rock%solid_at(problem%mesh%face_cells(1, face)))
          stiffness = solid%lame + 2.0_rk*solid%shear
          undrained = solid%lame + solid%biot**2/solid%storage
          drained_tip = (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &

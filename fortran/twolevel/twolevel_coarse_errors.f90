@@ -26,13 +26,14 @@
 !! pressure of the fractures are not included.
 !!
 !! Layers of fluid pressure thinner than a coarse cell: windows take the rock's own pressure
-!! (coarse_own_pressure). Within sqrt(c t) of the faces the
-!! pressure is that of the fluid. Where this distance is less than a cell two effects are missing,
-!! both known in closed form for a layer that is thin compared with the fracture (docs/theory.md):
-!!   - the tip is drained where the surrounding rock is not: K is (1 - nu_u)/(1 - nu) times that of
-!!     undrained rock, however thin the layer is, and the result of the window lies between;
-!!   - the layer presses the faces together. A difference dp between fluid and rock since the time t
-!!     lowers K_I by sqrt(2) eta/Gamma(5/4) dp (c t)^(1/4), eta = alpha G/(lambda + 2 G).
+!! (coarse_own_pressure). Within sqrt(c t) of the faces the pressure is that of the fluid. Where
+!! this distance is less than a cell there are two effects (docs/theory.md):
+!!   - the tip is drained where the surrounding rock is not. K of the window is too large by up to a
+!!     fifth of 1 - F times K, F = (1 - nu_u)/(1 - nu);
+!!   - the layer presses the faces together. Where the coarse level has the layer K_I contains this
+!!     (twolevel_back_stress). Where it does not, the stated error does: a difference dp between
+!!     fluid and rock since the time t lowers K_I by
+!!     (1 + F)/2 sqrt(2) eta/Gamma(5/4) dp (c t)^(1/4), eta = alpha G/(lambda + 2 G).
 module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -58,7 +59,7 @@ module twolevel_coarse_errors
    type :: layer_t
       real(rk) :: cell = 0.0_rk  !< length of the coarse fracture cell at the tip [m]
       real(rk) :: diffusivity = 0.0_rk  !< c [m2/s]
-      real(rk) :: drained_tip = 1.0_rk  !< (1 - nu_u)/(1 - nu) [-]
+      real(rk) :: drained_tip = 1.0_rk  !< F = (1 - nu_u)/(1 - nu) [-]
       real(rk) :: eta = 0.0_rk  !< poroelastic stress coefficient [-]
       !> pressure of the fluid minus the rock's own pressure at the faces [Pa]
       real(rk) :: jump = 0.0_rk

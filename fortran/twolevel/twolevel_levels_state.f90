@@ -169,7 +169,7 @@ contains
                        truths([tip%can_withdraw, tip%was_withdrawn]), tip%found%k1, tip%found%k2, &
                        tip%found%k1_error, tip%found%k2_error, tip%found%g_domain, tip%lacking, &
                        tip%uncertain, tip%compared, tip%compared_at, tip%of_elements, &
-                       tip%of_edge, tip%passing, tip%jump_then, tip%place_then, &
+                       tip%of_edge, tip%passing, tip%back_stress, tip%jump_then, tip%place_then, &
                        truths([tip%is_compared, tip%was_undrained, tip%has_focus])]
             end associate
          end do

@@ -119,6 +119,7 @@ contains
       self%uncertain = 0.0_rk
       self%of_edge = 0.0_rk
       self%passing = 0.0_rk
+      self%back_stress = 0.0_rk
    end subroutine forget_coarse_error
 
    !> Store the jump behind the tip at an evaluation.
@@ -180,8 +181,8 @@ contains
       call complete_errors(crack_modulus, intensity)
    end function with_coarse_error
 
-   !> Add K_I of layers of fluid pressure on the faces (twolevel_back_stress), unless the faces touch
-   !! at the tip. It may close the tip.
+   !> Add K_I of layers of fluid pressure on the faces (twolevel_back_stress), unless the faces
+   !! touch at the tip. It may close the tip.
    pure subroutine add_back_stress(k1, crack_modulus, intensity)
       real(rk), intent(in) :: k1  !< [Pa m^1/2]
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]

@@ -1,23 +1,24 @@
-"""Crack in poroelastic rock under a sudden pressure or shear: boundary elements in Laplace's variable.
+"""Crack in poroelastic rock under a sudden load: boundary elements in Laplace's variable.
 
-`python make_reference.py` writes reference.csv: K over p sqrt(pi a) after a time in rock at rest, of
+`python make_reference.py` writes reference.csv: K over p sqrt(pi a) at a time in rock at rest, of
     mode_1    a sudden traction p on the faces, whose fluid stays at the pressure 0,
     mode_2    a sudden fluid pressure p in the rock's pores at the faces, without traction,
     shear     a sudden shear traction p.
-A sudden pressure of the fluid in the crack has p - sigma times the first, sigma the compression that
-held it closed, and p - p_0 times the second, p_0 the pressure of the rock.
+A sudden pressure of the fluid in the crack has p - sigma times the first, sigma the compression
+that held it closed, and p - p_0 times the second, p_0 the pressure of the rock.
 
 With the heat kernel K0(q r)/(2 pi c), q^2 = s/c, the jumps and sources of Detournay and Cheng (Int.
 J. Solids Struct. 27 (1991)) that are constant on an element have closed forms on the line of the
-crack. Elements grow by a constant ratio from the tips, whose smallest are 0.02 sqrt(c t); the values
-are extrapolated (Romberg) from the ratios 1.2, 1.1, 1.05, 1.025 to 1, and inverted by Stehfest's
-method with 8 terms. K is the jump near the tip over that in drained rock.
+crack. Elements grow by a constant ratio from the tips, whose smallest are 0.02 sqrt(c t). The
+values are extrapolated (Romberg) from the ratios 1.2, 1.1, 1.05, 1.025 to 1, and inverted by
+Stehfest's method with 8 terms. K is the jump near the tip over that in drained rock.
 """
 
 from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
+from itertools import pairwise
 from math import factorial, log
 from pathlib import Path
 
@@ -142,9 +143,7 @@ def extrapolated(rock: Rock, half_length: float, time: float) -> Array:
     """Romberg's extrapolation to elements of equal neighbours."""
     values = [intensities(rock, half_length, time, ratio) for ratio in RATIOS]
     for k in range(1, len(RATIOS)):
-        values = [
-            (2.0**k * b - a) / (2.0**k - 1.0) for a, b in zip(values[:-1], values[1:], strict=True)
-        ]
+        values = [(2.0**k * b - a) / (2.0**k - 1.0) for a, b in pairwise(values)]
     return values[0]
 
 

@@ -14,7 +14,8 @@ program test_twolevel_thin_layers
    !> The weight function of a half-plane crack times the pressure that diffuses from its faces,
    !! integrated in Python [Pa m^1/2].
    real(rk), parameter :: of_layer = 0.8983566782682296e6_rk
-   real(rk), parameter :: drained = 0.93_rk  !< (1 + F)/2: the rock at the tip deforms as drained [-]
+   !> (1 + F)/2: the rock at the tip deforms as drained rock [-].
+   real(rk), parameter :: drained = 0.93_rk
 
    call test_thin_layer()
    call test_wide_layer()
@@ -23,8 +24,8 @@ program test_twolevel_thin_layers
 contains
 
    !> A layer far thinner than a cell counts in full where the coarse level does not have it, and
-   !! by 0.15 of its back stress where it does; the drained tip by a fifth of what it changes. K_I of
-   !! closed tips is zero.
+   !! by 0.15 of its back stress where it does; the drained tip by a fifth of 1 - F. K_I of closed
+   !! tips is zero.
    subroutine test_thin_layer()
       real(rk), parameter :: back_stress = -1.0e5_rk  ! [Pa m^1/2]
       type(layer_t) :: known
