@@ -234,6 +234,12 @@ contains
          end do
          call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
                                      total_length(front%network), now%trend%pressure_rise(), leaked)
+         if (.not. scene%growth%enabled) return
+         call now%stated_errors%await_growth(any(tip%is_loaded() .and. tip%excess(toughness) &
+                                                 + tips%error >= 0.0_rk), any(tips%grows), &
+                                             total_length(front%network), &
+                                             sum(problem%model%condensed%length &
+                                                 *now%coarse%aperture))
       end associate
    end subroutine note_stated_errors
 
