@@ -20,7 +20,8 @@
 !!
 !! Before the first growth a tip whose K_eq equals K_IC within its error may have grown. The fluid
 !! that the fractures have taken up since then may be in new faces, at the mean opening of all:
-!! this is the error of the length.
+!! this is the error of the length. For as long after the onset as its time is uncertain, the growth
+!! of the tip is part of the error.
 !!
 !! Equal tips that have separated by chance: each of them may as well be where the other one is, so
 !! its position has at least the error of the distance by which one is ahead.
@@ -60,7 +61,8 @@ module twolevel_errors
       real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
       real(rk) :: wing = 0.0_rk  !< distance of the tip from where it began to grow [m]
       real(rk) :: bend = 0.0_rk  !< sine of the angle of this wing with its fracture [-]
-      real(rk) :: jump = 0.0_rk  !< length of a jump that is uncertain in time (twolevel_jumps) [m]
+      !> length of a jump (twolevel_jumps), or growth since the onset, that is uncertain in time [m]
+      real(rk) :: jump = 0.0_rk
    end type tip_excess_t
 
    !> Estimated errors, and the data of the last tries and of the last step.

@@ -82,7 +82,7 @@ contains
       end if
       if (states_errors(self%scene%growth)) then
          call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
-                                 self%now, self%notes%jumps)
+                                 self%now, self%notes)
       end if
       call note_well_rows(self)
       call note_state(self, row%mass_error_relative)
