@@ -139,9 +139,9 @@ contains
    end subroutine note_competition
 
    !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ
-   !! noticeably: only errors have separated them, and it is chance which is ahead; the difference is
-   !! part of the errors of their positions. Tips that have ended on a target have another reason to
-   !! stay behind.
+   !! noticeably: only errors have separated them, and it is chance which is ahead; the difference
+   !! is part of the errors of their positions. Tips that have ended on a target have another reason
+   !! to stay behind.
    subroutine note_separation(self, tips, now, toughness, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)

@@ -73,8 +73,8 @@ contains
       end if
    end function uncertainty
 
-   !> Growth of the tip that may not have begun: for as long after the onset as its time is uncertain
-   !! [m].
+   !> Growth of the tip that may not have begun: for as long after the onset as its time is
+   !! uncertain [m].
    elemental real(rk) function early_growth(self, gain, time, tolerance)
       class(approach_t), intent(in) :: self
       real(rk), intent(in) :: gain  !< growth of the tip so far [m]
