@@ -24,6 +24,11 @@
 !! (measured at 45 degrees, wings of 1 to 5 cells against cells a quarter as large, with and
 !! without leak-off: 0.9 to 0.3 cells; verification/reservoir_scale/stated_errors.py).
 !!
+!! Before the first growth a tip whose K_eq equals K_IC within its error may have grown. The fluid
+!! that the fractures have taken up since then may be in new faces, at the mean opening of all:
+!! this is the error of the length. For as long after the onset as its time is uncertain, the growth
+!! of the tip is part of the error.
+!!
 !! Equal tips that have separated by chance: each of them may as well be where the other one is, so
 !! its position has at least the error of the distance by which one is ahead.
 !!
@@ -65,7 +70,8 @@ module twolevel_errors
       real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
       real(rk) :: wing = 0.0_rk  !< distance of the tip from where it began to grow [m]
       real(rk) :: bend = 0.0_rk  !< sine of the angle of this wing with its fracture [-]
-      real(rk) :: jump = 0.0_rk  !< length of a jump that is uncertain in time (twolevel_jumps) [m]
+      !> length of a jump (twolevel_jumps), or growth since the onset, that is uncertain in time [m]
+      real(rk) :: jump = 0.0_rk
    end type tip_excess_t
 
    !> Estimated errors, and the data of the last tries and of the last step.
@@ -75,6 +81,11 @@ module twolevel_errors
       real(rk), allocatable :: tip(:)  !< (tips) errors of the positions [m]
       !> part of `length` by which leads exceed these errors [m]
       real(rk), private :: by_leads = 0.0_rk
+      logical, private :: has_grown = .false.  !< a tip has grown
+      logical, private :: may_have_grown = .false.  !< a tip may have, within the error of its K_eq
+      !> volume of the fractures in the last state, and in the last one in which no tip may have
+      !! grown [m2]
+      real(rk), private :: volume = 0.0_rk, volume_then = 0.0_rk
       integer :: tries = 0  !< number of tries of the present step
       real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two tries
       real(rk) :: slope = 0.0_rk  !< derivative of the pressure with respect to the length [Pa/m]
@@ -87,6 +98,7 @@ module twolevel_errors
       procedure :: see_try
       procedure :: accept
       procedure :: add_leads
+      procedure :: await_growth
    end type stated_errors_t
 
 contains
@@ -186,6 +198,25 @@ contains
                            *(self%time/(self%time + step))**(0.5_rk*leaked)
       self%time = self%time + step
    end subroutine age_time_error
+
+   !> Add to the errors of an accepted state the growth that may have begun before.
+   pure subroutine await_growth(self, may_have_grown, grows, length, volume)
+      class(stated_errors_t), intent(inout) :: self
+      logical, intent(in) :: may_have_grown  !< K_eq of a tip equals K_IC within its error
+      logical, intent(in) :: grows  !< a tip has grown in the step
+      real(rk), intent(in) :: length  !< of all fractures [m]
+      real(rk), intent(in) :: volume  !< of all fractures [m2]
+      real(rk) :: by_onset
+
+      self%has_grown = self%has_grown .or. grows
+      if (may_have_grown .and. .not. self%may_have_grown) self%volume_then = self%volume
+      self%may_have_grown = may_have_grown
+      self%volume = volume
+      if (self%has_grown .or. .not. may_have_grown .or. .not. volume > self%volume_then) return
+      by_onset = length*(1.0_rk - self%volume_then/volume)
+      self%length = self%length + by_onset
+      self%pressure = self%pressure + abs(self%slope)*by_onset
+   end subroutine await_growth
 
    !> Add to the errors of an accepted state what tips have separated by.
    pure subroutine add_leads(self, lead)

@@ -25,7 +25,7 @@ module twolevel_moves
 
    !> Lack of toughness at which a search that has stalled ends, over the error of K_eq, and its
    !! largest value [-].
-   real(rk), parameter :: share_of_error = 0.25_rk, slack_max = 0.05_rk
+   real(rk), parameter :: share_of_error = 0.5_rk, slack_max = 0.1_rk
 
    !> What drives one tip.
    type :: driven_t

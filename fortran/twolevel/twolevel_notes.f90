@@ -140,9 +140,9 @@ contains
    end subroutine note_competition
 
    !> Tips that have grown in one group and have separated with equal K_eq, once their gains differ
-   !! noticeably: only errors have separated them, and it is chance which is ahead; the difference is
-   !! part of the errors of their positions. Tips that have ended on a target have another reason to
-   !! stay behind.
+   !! noticeably: only errors have separated them, and it is chance which is ahead; the difference
+   !! is part of the errors of their positions. Tips that have ended on a target have another reason
+   !! to stay behind.
    subroutine note_separation(self, tips, now, toughness, increment, chronicle)
       class(notes_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -206,13 +206,13 @@ contains
    end function states_errors
 
    !> Update the estimated errors of length and pressure after a step of length dt.
-   subroutine note_stated_errors(scene, front, problem, dt, now, jumps)
+   subroutine note_stated_errors(scene, front, problem, dt, now, notes)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: dt  !< [s]
       type(levels_state_t), intent(inout) :: now
-      type(jumps_t), intent(inout) :: jumps
+      type(notes_t), intent(inout) :: notes
       type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked, position_error(size(front%tip))
       integer(ik) :: i
@@ -229,7 +229,9 @@ contains
          tips%cell = tip_cell_lengths(tip, problem)
          position_error = 0.0_rk
          if (allocated(now%stated_errors%tip)) position_error = now%stated_errors%tip
-         call jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump)
+         call notes%jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump)
+         tips%jump = max(tips%jump, notes%approach%early_growth(now%segment%gain, now%coarse%time, &
+                                                                tolerance*tip%scale_of(toughness)))
          do i = 1, size(tips, kind=ik)
             call find_wing(scene%fractures(tip(i)%fracture), tip(i), tips(i)%wing, tips(i)%bend)
          end do
@@ -238,6 +240,12 @@ contains
                                        total_length(front%network), now%trend%pressure_rise(), &
                                        leaked, now%coarse%time &
                                        - last_switch(scene, now%coarse%time - 0.5_rk*dt))
+         if (.not. scene%growth%enabled) return
+         call now%stated_errors%await_growth(any(tip%is_loaded() .and. tip%excess(toughness) &
+                                                 + tips%error >= 0.0_rk), any(tips%grows), &
+                                             total_length(front%network), &
+                                             sum(problem%model%condensed%length &
+                                                 *now%coarse%aperture))
       end associate
    end subroutine note_stated_errors
 

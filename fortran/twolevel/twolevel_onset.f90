@@ -20,6 +20,7 @@ module twolevel_onset
       procedure :: follow
       procedure :: onset_before
       procedure :: uncertainty
+      procedure :: early_growth
    end type approach_t
 
 contains
@@ -71,5 +72,19 @@ contains
          uncertainty = (abs(self%drive%error) + self%drive_error + tolerance)/self%drive%rate
       end if
    end function uncertainty
+
+   !> Growth of the tip that may not have begun: for as long after the onset as its time is
+   !! uncertain [m].
+   elemental real(rk) function early_growth(self, gain, time, tolerance)
+      class(approach_t), intent(in) :: self
+      real(rk), intent(in) :: gain  !< growth of the tip so far [m]
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: tolerance  !< tolerance of K_eq of growing tips [Pa m^1/2]
+
+      early_growth = 0.0_rk
+      associate (error => self%uncertainty(tolerance))
+         if (error < huge(1.0_rk) .and. time < self%time + error) early_growth = gain
+      end associate
+   end function early_growth
 
 end module twolevel_onset

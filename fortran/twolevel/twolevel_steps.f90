@@ -87,7 +87,7 @@ contains
       end if
       if (states_errors(self%scene%growth)) then
          call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
-                                 self%now, self%notes%jumps)
+                                 self%now, self%notes)
          self%position_error = self%now%stated_errors%tip
       end if
       if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)

@@ -46,6 +46,15 @@ module twolevel_window
       logical :: is_projected = .false.  !< the position in the coarse mesh is known
    end type made_for_t
 
+   !> A tip that a window serves.
+   type :: served_t
+      !> it is evaluated in the solutions of the window; others are closed, or far below their
+      !! toughness
+      logical :: is_evaluated = .false.
+      logical :: has_probe = .false.  !< the probe is known
+      type(tip_probe_t) :: probe  !< interaction integrals, valid as long as the model is the same
+   end type served_t
+
    !> One window. Its data follow from the scene, the network and the coarse state, and from the
    !! time of its meshing; its history is in window_history_t.
    type :: window_t
@@ -65,12 +74,7 @@ module twolevel_window
       logical :: follows_other = .false.  !< the unmoved mesh is in another window
       type(fine_model_t) :: model
       integer(ik), allocatable :: at(:)  !< (tips served) numbers in the mesh; 0: not free
-      !> (tips served) interaction integrals, valid as long as the model stays the same
-      type(tip_probe_t), allocatable :: probe(:)
-      logical, allocatable :: has_probe(:)  !< (tips served) these are known
-      !> (tips served) they were evaluated in the last solution; others are closed, or far below
-      !! their toughness
-      logical, allocatable :: was_asked(:)
+      type(served_t), allocatable :: served(:)  !< (tips served)
       type(fine_loads_t) :: loads
       type(window_sides_t) :: sides
       !> (2, n_nodes) loads other than those of the sides, where these change with time [N/m]
@@ -90,6 +94,7 @@ module twolevel_window
       procedure :: set_rock
       procedure :: crack_modulus
       procedure :: project
+      procedure :: choose_tips
       procedure :: find_intensities
       procedure :: intensities_with
       procedure :: curved_edge
@@ -296,7 +301,7 @@ contains
       type(elasticity_t), allocatable :: elasticity(:)
       integer :: i
 
-      self%has_probe = spread(.false., 1, size(self%serves))
+      if (allocated(self%served)) deallocate (self%served)
       elasticity = [constants_of_rock(scene%material, scene, undrained)]
       if (allocated(scene%regions)) then
          elasticity = [elasticity, (constants_of_rock(scene%regions(i)%material, scene, &
@@ -325,6 +330,15 @@ contains
       self%made%is_projected = .true.
    end subroutine project
 
+   !> Choose the tips that are evaluated in the next solutions.
+   pure subroutine choose_tips(self, is_evaluated)
+      class(window_t), intent(inout) :: self
+      logical, intent(in) :: is_evaluated(:)  !< (tips served)
+
+      if (.not. allocated(self%served)) allocate (self%served(size(self%serves)))
+      self%served%is_evaluated = is_evaluated
+   end subroutine choose_tips
+
    !> Load the window with the state of the coarse level, solve, and evaluate its tips in question.
    subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
       class(window_t), intent(inout) :: self
@@ -348,7 +362,7 @@ contains
          self%loads%pore_pressure = scene%initial%pressure
          if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
       end if
-      if (.not. allocated(self%was_asked)) self%was_asked = self%at > 0
+      if (.not. allocated(self%served)) call self%choose_tips(self%at > 0)
       if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
          call remember_contact(self, state, history)
       end if
@@ -368,8 +382,8 @@ contains
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => tips(self%serves(i)))
-            if (.not. self%was_asked(i)) cycle
-            call tip_intensity(self%model, self%loads, self%displacement, self%probe(i), &
+            if (.not. self%served(i)%is_evaluated) cycle
+            call tip_intensity(self%model, self%loads, self%displacement, self%served(i)%probe, &
                                tip%found, error)
             if (allocated(error)) return
          end associate
@@ -382,15 +396,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer(ik) :: i
 
-      if (.not. any(self%has_probe)) then
-         if (allocated(self%probe)) deallocate (self%probe)
-         allocate (self%probe(size(self%serves)))
-      end if
       do i = 1, size(self%serves, kind=ik)
-         if (self%has_probe(i) .or. .not. self%was_asked(i)) cycle
-         call probe_of_tip(self%model, self%at(i), self%probe(i), error)
-         if (allocated(error)) return
-         self%has_probe(i) = .true.
+         associate (tip => self%served(i))
+            if (tip%has_probe .or. .not. tip%is_evaluated) cycle
+            call probe_of_tip(self%model, self%at(i), tip%probe, error)
+            if (allocated(error)) return
+            tip%has_probe = .true.
+         end associate
       end do
    end subroutine find_probes
 
@@ -435,9 +447,9 @@ contains
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)
          associate (tip => self%serves(i))
-            if (.not. self%was_asked(i)) cycle
-            call tip_intensity(self%model, loads, displacement, self%probe(i), result, error, &
-                               quickly=.true.)
+            if (.not. self%served(i)%is_evaluated) cycle
+            call tip_intensity(self%model, loads, displacement, self%served(i)%probe, result, &
+                               error, quickly=.true.)
             if (allocated(error)) return
             k(:, tip) = [result%k1, result%k2]
          end associate

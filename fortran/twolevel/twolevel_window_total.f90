@@ -27,7 +27,8 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: far = 0.3_rk  ! lack of toughness, error included [-]
+      ! lack of toughness, error included, beyond which tips are evaluated once per step [-]
+      real(rk), parameter :: far = 0.1_rk
       type(tip_t) :: tips(size(self%tip))
       integer(ik) :: n, n_body
 

@@ -282,13 +282,13 @@ contains
             call window%set_rock(scene, undrained, error)
             if (allocated(error)) return
          end if
-         window%was_asked = window%at > 0 .and. front%tip(window%serves)%is_loaded()
+         call window%choose_tips(window%at > 0 .and. front%tip(window%serves)%is_loaded())
          call window%find_intensities(scene, problem%mesh, problem%values, state, seen, &
                                       known%history(w), error)
          if (allocated(error)) return
          do i = 1, size(window%serves, kind=ik)
             associate (t => window%serves(i), tip => front%tip(window%serves(i)))
-               if (.not. window%was_asked(i)) cycle
+               if (.not. window%served(i)%is_evaluated) cycle
                seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end)
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
                tip%rosette_radius = window%mesh%fracture%tip_radius(window%at(i))

@@ -10,6 +10,7 @@ program test_twolevel_errors
 
    call test_growth()
    call test_bent()
+   call test_onset()
    call test_steps()
    call checks%finish()
 
@@ -59,6 +60,24 @@ contains
       call checks%is_close(stated_errors%tip(2), 1.0e-3_rk + 5.0e-3_rk*2.0_rk/4.0_rk, 1.0e-12_rk, &
                            "longer wing")
    end subroutine test_bent
+
+   !> A fracture of 20 m takes up 2 of 8 units of fluid after K_eq has first been equal to K_IC
+   !! within its error, so a quarter of its length may be new. After growth it is not counted.
+   subroutine test_onset()
+      type(stated_errors_t) :: stated_errors
+
+      call stated_errors%await_growth(.false., .false., 20.0_rk, 6.0_rk)
+      call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "no tip may have grown")
+      call stated_errors%await_growth(.true., .false., 20.0_rk, 8.0_rk)
+      call checks%is_close(stated_errors%length, 5.0_rk, 1.0e-12_rk, "one may have grown")
+      stated_errors%length = 0.0_rk
+      call stated_errors%await_growth(.false., .false., 20.0_rk, 10.0_rk)
+      call stated_errors%await_growth(.true., .false., 20.0_rk, 10.0_rk)
+      call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "another start, no fluid since")
+      call stated_errors%await_growth(.true., .true., 20.5_rk, 12.0_rk)
+      call stated_errors%await_growth(.true., .false., 20.5_rk, 14.0_rk)
+      call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "after growth")
+   end subroutine test_onset
 
    !> p' = 2 t by backward Euler with the step h is h t too large at t; the error h**2 of the first
    !! step, which has no rate to compare with, is not known.

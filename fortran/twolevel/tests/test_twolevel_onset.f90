@@ -10,6 +10,7 @@ program test_twolevel_onset
 
    call test_curved()
    call test_flat()
+   call test_early_growth()
    call checks%finish()
 
 contains
@@ -57,5 +58,19 @@ contains
       call approach%follow(1.0_rk, 1.0_rk, 0.0_rk, 2.0_rk)
       call checks%is_true(approach%uncertainty(0.01_rk) > 1.0e300_rk, "no rise")
    end subroutine test_flat
+
+   !> K_eq rises by 0.1 per second and is known to 0.3, with a tolerance of 0.01: the onset is known
+   !! to 3.1 s after the last state at 1 s, and so long the growth may not have begun.
+   subroutine test_early_growth()
+      type(approach_t) :: approach
+
+      call approach%follow(0.0_rk, 1.8_rk, 0.0_rk, 2.0_rk)
+      call approach%follow(1.0_rk, 1.9_rk, 0.3_rk, 2.0_rk)
+      call checks%is_close(approach%early_growth(5.0_rk, 4.0_rk, 0.01_rk), 5.0_rk, 0.0_rk, "early")
+      call checks%is_close(approach%early_growth(5.0_rk, 4.2_rk, 0.01_rk), 0.0_rk, 0.0_rk, "later")
+      call approach%follow(2.0_rk, 1.9_rk, 0.3_rk, 2.0_rk)
+      call checks%is_close(approach%early_growth(5.0_rk, 4.0_rk, 0.01_rk), 0.0_rk, 0.0_rk, &
+                           "no rise, no estimate")
+   end subroutine test_early_growth
 
 end program test_twolevel_onset
