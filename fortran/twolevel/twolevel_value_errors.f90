@@ -274,8 +274,8 @@ contains
             error%leakoff = min(leak, held + error%outflow)
             error%fracture_fluid = min(held, leak + error%outflow)
             error%fracture_volume = min(error%fracture_volume, error%fracture_fluid &
-                                  + self%of_pressure*abs(row%fracture_fluid - row%fracture_volume &
-                                                         + self%quantities%first(volume)))
+                                   + self%of_pressure*abs(row%fracture_fluid - row%fracture_volume &
+                                                               + self%quantities%first(volume)))
             error%injected = lost
             error%produced = lost
          end if
@@ -423,7 +423,7 @@ contains
       do i = 1, size(row%pressure)
          associate (p => self%probes, at => 6*(i - 1))
             added = p%error(at + 1:at + 6) + (least + self%of_length) &
-                  *abs(p%value(at + 1:at + 6) - p%first(at + 1:at + 6))
+                    *abs(p%value(at + 1:at + 6) - p%first(at + 1:at + 6))
          end associate
          row%pressure_error(i) = row%pressure_error(i) + added(1) + of_range*rise
          row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3)) &

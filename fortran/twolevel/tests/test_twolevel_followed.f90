@@ -2,9 +2,9 @@
 !!
 !! Backward Euler of a decaying mode and of diffusion into a half-space at a constant flux, whose
 !! exact solutions are exp(-l t) and 2 sqrt(t/pi); steps that are equal, and steps that grow by 1.5
-!! and 2. Budget: the true error is at most the stated one from the second step on, and in the median
-!! the stated one is at most 10 times larger; with equal steps the estimate of a mode is exact up to
-!! l h of 0.1, within 25 %.
+!! and 2. Budget: the true error is at most the stated one from the second step on, and in the
+!! median the stated one is at most 10 times larger; with equal steps the estimate of a mode is
+!! exact up to l h of 0.1, within 25 %.
 program test_twolevel_followed
    use base_kinds, only: pi, rk
    use testing_checks, only: checks_t

@@ -85,5 +85,5 @@ def test_a_run_gives_errors(tmp_path: Path) -> None:
     assert run.error("max_opening_m") is None  # of an older run
     axes = run.plot_history("max_slip_m")
     (band,) = axes.collections
-    heights = band.get_paths()[0].vertices[:, 1]
+    heights = np.asarray(band.get_paths()[0].vertices)[:, 1]
     assert np.ptp(heights[np.isfinite(heights)]) == pytest.approx(2.1, rel=1.0e-12)  # [mm]
