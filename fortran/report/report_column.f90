@@ -36,7 +36,7 @@ module report_column
    character(len=*), parameter :: of_step = "none: a mean over one time step, whose length decides"
    character(len=*), parameter :: placed = "none: a point of the mesh, exact"
    character(len=*), parameter :: states = &
-      "none: states of cells; where they change is known to one cell"
+                                  "none: states of cells; where they change is known to one cell"
 
    !> A column of a table, a key of a JSON file (a dot leads into an object, brackets into a list)
    !! or a field of a VTU file.

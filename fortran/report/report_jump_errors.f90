@@ -32,11 +32,11 @@ module report_jump_errors
    end type jump_law_t
 
    type(jump_law_t), parameter :: finite_volumes = &
-      jump_law_t(0.005_rk, 0.003_rk, 0.25_rk, 0.075_rk, 0.15_rk, 0.5_rk, 0.2_rk, &
-                 0.075_rk, 1.0_rk)
+                        jump_law_t(0.005_rk, 0.003_rk, 0.25_rk, 0.075_rk, 0.15_rk, 0.5_rk, 0.2_rk, &
+                                             0.075_rk, 1.0_rk)
    type(jump_law_t), parameter :: finite_elements = &
-      jump_law_t(0.001_rk, 0.0_rk, 0.0_rk, 0.006_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
-                 0.35_rk, 1.5_rk)
+                          jump_law_t(0.001_rk, 0.0_rk, 0.0_rk, 0.006_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
+                                             0.35_rk, 1.5_rk)
 
    !> (fracture cells)
    type :: jump_errors_t

@@ -10,14 +10,13 @@ module twolevel_field_errors
    use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
                           matrix_fields_t
    use scene_types, only: scene_t
+   use twolevel_pressure_errors, only: least
    use twolevel_problem, only: coarse_problem_t
    use twolevel_value_errors, only: by_pressure_of, moving, of_solution, value_errors_t
    implicit none(type, external)
    private
 
    public :: add_rock_errors, find_fracture_errors, note_joint_errors
-
-   real(rk), parameter :: least = 0.005_rk  !< relative error in space of fields in the rock [-]
 
 contains
 

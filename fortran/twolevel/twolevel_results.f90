@@ -174,7 +174,7 @@ contains
             other = sum(mesh%face_cells(:, mesh%cell_faces(k, cell))) - cell
             if (other == 0) cycle
             stress = max(stress, 0.5_rk*maxval(abs(cell_stress(regions, state%tractions, other) &
-                                                - cell_stress(regions, state%tractions, cell))))
+                                                   - cell_stress(regions, state%tractions, cell))))
          end do
       end associate
    end subroutine find_local_errors

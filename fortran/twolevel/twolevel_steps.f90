@@ -17,11 +17,12 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_limits, only: watch_levels
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
+   use twolevel_pressure_errors, only: unresolved_depth
    use twolevel_refinement, only: refine_windows
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
-   use twolevel_value_errors, only: step_facts_t, unresolved_depth
+   use twolevel_value_errors, only: step_facts_t
    use twolevel_window_total, only: limit_windows
    implicit none(type, external)
 

@@ -6,36 +6,29 @@
 !!   pressure changes them further: by 4/E' times sqrt(d1 d2) of opening per pressure, d1 and d2 the
 !!   distances from the ends of the zone, and of slip per pressure times friction.
 !! - The pressure in fractures, relative to its rise: where the fluid leaks off, the error of the
-!!   layers next to the faces, 3 % where chains resolve them (coarse_layers; measured: 1.2 to 2.5
-!!   %), else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell,
-!!   z: sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2); where the fractures hold the
-!!   fluid, the error of their compliance, that of opening. Both are weighted by their share of the
-!!   fluid.
-!! - The pressure of a well in the rock: Peaceman's index holds for steady flow, 2 % (measured: up
-!!   to 1 %, and 2 % two cells from a side). With z the distance of diffusion over the root of the cell's
-!!   area 0.2/z**2 after a cell is filled, and 0.2/z before.
+!!   layers next to the faces (twolevel_pressure_errors); where the fractures hold the fluid, the
+!!   error of their compliance, that of opening. Both are weighted by their share of the fluid.
+!! - The pressure of wells in the rock: twolevel_pressure_errors.
 !! - Fluid volumes: the errors of leak-off and of what the fractures hold. Where all rates are
 !!   prescribed, their sum is exact, and each is at most the error of the other.
 !! Growing fractures: the relative error of the length, of all these quantities.
 module twolevel_value_errors
-   use base_kinds, only: ik, pi, rk
-   use coarse_rock, only: solid_t
+   use base_kinds, only: ik, rk
    use coarse_state, only: state_t
    use contact_law, only: state_open, state_slip
-   use mesh_geometry, only: cell_area, face_length
-   use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors
    use report_rows, only: history_errors_t, history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
+   use twolevel_pressure_errors, only: least, of_layers, of_well_in_rock
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
 
-   public :: by_pressure_of, moving, of_solution, step_facts_t, unresolved_depth, value_errors_t
+   public :: by_pressure_of, moving, of_solution, step_facts_t, value_errors_t
 
    ! Positions of the quantities of a row that are followed.
    integer, parameter :: injected = 1, produced = 2, leakoff = 3, outflow = 4, fracture_fluid = 5, &
@@ -43,14 +36,8 @@ module twolevel_value_errors
                          moment = 11, slip_rate = 12, pressure = 13, in_rock = 14
    integer, parameter :: n_followed = 14
 
-   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
-   real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
-   !> relative errors of the pressure of a well in the rock: in steady flow; at the time at which
-   !! the pressure has diffused over its cell [-]
-   real(rk), parameter :: steady_index = 0.02_rk, early_index = 0.2_rk
    !> relative error of pressures by the solver: the limit of its forward error bound [-]
    real(rk), parameter :: of_solution = 1.0e-6_rk
-   real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
    real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
 
    !> What the errors of a step need besides its row.
@@ -287,8 +274,8 @@ contains
             error%leakoff = min(leak, held + error%outflow)
             error%fracture_fluid = min(held, leak + error%outflow)
             error%fracture_volume = min(error%fracture_volume, error%fracture_fluid &
-                                  + self%of_pressure*abs(row%fracture_fluid - row%fracture_volume &
-                                                         + self%quantities%first(volume)))
+                                   + self%of_pressure*abs(row%fracture_fluid - row%fracture_volume &
+                                                               + self%quantities%first(volume)))
             error%injected = lost
             error%produced = lost
          end if
@@ -436,7 +423,7 @@ contains
       do i = 1, size(row%pressure)
          associate (p => self%probes, at => 6*(i - 1))
             added = p%error(at + 1:at + 6) + (least + self%of_length) &
-                  *abs(p%value(at + 1:at + 6) - p%first(at + 1:at + 6))
+                    *abs(p%value(at + 1:at + 6) - p%first(at + 1:at + 6))
          end associate
          row%pressure_error(i) = row%pressure_error(i) + added(1) + of_range*rise
          row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3)) &
@@ -445,77 +432,5 @@ contains
                                + of_range*maxval(abs(row%stress(:, i)))
       end do
    end subroutine note_probes
-
-   !> Relative error of the pressure and of the flux where fluid leaks off for a time [-].
-   real(rk) function of_layers(problem, time) result(error)
-      type(coarse_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: time  !< [s]
-      real(rk) :: ratio
-
-      error = of_chain
-      if (problem%model%layers%n > 0) return
-      ratio = unresolved_depth(problem, time)
-      error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
-   end function of_layers
-
-   !> Height of the cells next to the fractures over the distance of diffusion in a time, where no
-   !! layer resolves it; 0 without fractures [-].
-   real(rk) function unresolved_depth(problem, time) result(ratio)
-      type(coarse_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: time  !< [s]
-      real(rk) :: depth, height
-      integer(ik) :: cell, face, i, side
-
-      ratio = 0.0_rk
-      if (problem%model%layers%n > 0 .or. .not. time > 0.0_rk) return
-      associate (mesh => problem%mesh, fracture => problem%mesh%fracture)
-         do i = 1, fracture%n_cells
-            do side = 1, 2
-               face = fracture%cell_faces(side, i)
-               cell = mesh%face_cells(1, face)
-               height = 2.0_rk*cell_area(mesh, cell)/face_length(mesh, face)
-               depth = sqrt(diffusivity(problem, cell)*time)
-               if (depth > 0.0_rk) ratio = ratio + 2.0_rk/3.0_rk*height/depth
-            end do
-         end do
-         ratio = ratio/max(1, 2*fracture%n_cells)
-      end associate
-   end function unresolved_depth
-
-   !> c of the rock in a cell, at uniaxial strain [m2/s].
-   pure real(rk) function diffusivity(problem, cell)
-      type(coarse_problem_t), intent(in) :: problem
-      integer(ik), intent(in) :: cell
-      type(solid_t) :: solid
-
-      associate (rock => problem%model%rock)
-         solid = rock%solid_at(cell)
-         diffusivity = rock%mobility_at(cell) &
-                       /(solid%storage + solid%biot**2/(solid%lame + 2.0_rk*solid%shear))
-      end associate
-   end function diffusivity
-
-   !> Relative error of the pressure of wells in the rock, a time after a switch; 0 without any [-].
-   real(rk) function of_well_in_rock(problem, time) result(error)
-      type(coarse_problem_t), intent(in) :: problem
-      real(rk), intent(in) :: time  !< [s]
-      real(rk) :: depth
-      integer :: w
-
-      error = 0.0_rk
-      if (.not. allocated(problem%rock_cell)) return
-      do w = 1, size(problem%rock_cell)
-         associate (cell => problem%rock_cell(w))
-            if (cell == 0) cycle
-            depth = sqrt(diffusivity(problem, cell)*max(0.0_rk, time) &
-                         /cell_area(problem%mesh, cell))
-            if (depth >= 1.0_rk) then
-               error = max(error, steady_index, early_index/depth**2)
-            else
-               error = max(error, min(1.0_rk, early_index/max(depth, early_index)))
-            end if
-         end associate
-      end do
-   end function of_well_in_rock
 
 end module twolevel_value_errors

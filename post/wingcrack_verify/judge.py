@@ -220,9 +220,7 @@ def _holding(check: Check, measured: Sequence[Measured]) -> Holding | None:
     if check.held is None:
         return None
     pairs = [item.pair for item in measured if item.judged and item.pair is not None]
-    return holding(
-        check.held, check.tolerance, [pair.result - pair.reference for pair in pairs]
-    )
+    return holding(check.held, check.tolerance, [pair.result - pair.reference for pair in pairs])
 
 
 def _points(measured: tuple[Measured, ...]) -> tuple[Point, ...]:

@@ -59,6 +59,7 @@ def plot_history(run: Results, column: str | None, ax: Axes | None, **look: Any)
     axes = new_axes(ax)
     unit = fitting_unit(name, values)
     draw_history(axes, run, name, unit, **look)
+    draw_band(axes, run, name, unit)
     axes.set_ylabel(f"{column_words(name)} [{unit.name}]")
     return axes
 
@@ -76,6 +77,17 @@ def draw_history(axes: Axes, run: Results, column: str, unit: Unit, **look: Any)
     look = {"color": style.CYCLE[0], "marker": style.lone_marker(time.size), **look}
     axes.plot(time, unit.of(values), **look)
     axes.set_xlabel(below)
+
+
+def draw_band(axes: Axes, run: Results, column: str, unit: Unit) -> None:
+    """Draw the estimated error of a column of the history as a band, where it is stated."""
+    errors = run.error(column)
+    if errors is None:
+        return
+    values = _numbers(run, column)
+    time, _ = abscissa(run.files, run.moments)
+    low, high = unit.of(values - errors), unit.of(values + errors)
+    axes.fill_between(time, low, high, color=axes.lines[-1].get_color(), alpha=0.2, linewidth=0)
 
 
 def fitting_unit(column: str, *values: FloatArray) -> Unit:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError, SceneError
 from wingcrack.figures.fields import Snapshot, read_series
 from wingcrack.figures.table import FloatArray, Table, read_table
+from wingcrack.names import error_column
 from wingcrack.runs.fields import Fields, read_fields
 from wingcrack.runs.scene_files import SceneFile
 from wingcrack.runs.units import column_unit
@@ -132,6 +133,27 @@ class Results:
             If the table has no such column, or is damaged.
         """
         return column(self.table(table), name)
+
+    def error(self, name: str, table: str = "history") -> npt.NDArray[Any] | None:
+        """Estimated errors of a column, as an array.
+
+        `None` if none is stated for it in this table (docs/output.md has the reasons), or if the
+        run has no such column. Values of -1, where a run has no estimate, are NaN.
+
+        Parameters
+        ----------
+        name : str
+            Of the column whose errors are wanted, as ``max_slip_m``.
+        table : str
+            As for `column`.
+        """
+        wanted = error_column(f"{table}.csv", name)
+        if wanted is None or not self.table(table).has(wanted):
+            return None
+        errors = self.column(wanted, table)
+        if errors.dtype.kind != "f":
+            return errors
+        return np.where(errors < 0.0, np.nan, errors)
 
     def table(self, name: str) -> Table:
         """Table as it stands in its file; see `column` and the properties for more comfort."""

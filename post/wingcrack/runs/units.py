@@ -24,7 +24,7 @@ _ENDS = (
     ("_s", "s"),
 )
 # those that their name alone does not tell: per metre of thickness
-_OF_COLUMNS = {"seismic_moment_nm": "N m/m"}
+_OF_COLUMNS = {"seismic_moment_nm": "N m/m", "seismic_moment_error_nm": "N m/m"}
 
 NONE = "-"
 

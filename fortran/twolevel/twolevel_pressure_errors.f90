@@ -1,0 +1,122 @@
+!> Relative errors in space of the pressures of wells and fractures.
+!!
+!! - Where the fluid of a fracture leaks off: that of the layers next to the faces, 3 % where chains
+!!   resolve them (coarse_layers; measured: 1.2 to 2.5 %), else by the distance sqrt(c t) of
+!!   diffusion since the last switch over the size of a cell, z: sqrt(pi)/(2 z), and below 0.15/z**2
+!!   (measured: 0.07/z**2).
+!! - The pressure of a well in the rock: Peaceman's index holds for steady flow, within 1 %, and
+!!   0.25 times the area of the cell over the squared distance of a side (measured: 2.6 and 4 % at
+!!   2 and 1.5 cells). With z the distance of diffusion over the root of the cell's
+!!   area 0.2/z**2 after a cell is filled, and 0.2/z before.
+module twolevel_pressure_errors
+   use base_kinds, only: ik, pi, rk
+   use base_plane, only: norm2
+   use coarse_rock, only: solid_t
+   use mesh_geometry, only: cell_area, cell_centre, face_length
+   use twolevel_problem, only: coarse_problem_t
+   implicit none(type, external)
+   private
+
+   public :: least, of_layers, of_well_in_rock, unresolved_depth
+
+   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
+   real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
+   !> relative errors of the pressure of a well in the rock: in steady flow; at the time at which
+   !! the pressure has diffused over its cell [-]
+   real(rk), parameter :: steady_index = 0.01_rk, early_index = 0.2_rk
+   !> the same by a side of the body, times the cell's area over its squared distance
+   real(rk), parameter :: by_side = 0.25_rk
+   real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
+
+contains
+
+   !> Relative error of the pressure and of the flux where fluid leaks off for a time [-].
+   real(rk) function of_layers(problem, time) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: ratio
+
+      error = of_chain
+      if (problem%model%layers%n > 0) return
+      ratio = unresolved_depth(problem, time)
+      error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
+   end function of_layers
+
+   !> Height of the cells next to the fractures over the distance of diffusion in a time, where no
+   !! layer resolves it; 0 without fractures [-].
+   real(rk) function unresolved_depth(problem, time) result(ratio)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: depth, height
+      integer(ik) :: cell, face, i, side
+
+      ratio = 0.0_rk
+      if (problem%model%layers%n > 0 .or. .not. time > 0.0_rk) return
+      associate (mesh => problem%mesh, fracture => problem%mesh%fracture)
+         do i = 1, fracture%n_cells
+            do side = 1, 2
+               face = fracture%cell_faces(side, i)
+               cell = mesh%face_cells(1, face)
+               height = 2.0_rk*cell_area(mesh, cell)/face_length(mesh, face)
+               depth = sqrt(diffusivity(problem, cell)*time)
+               if (depth > 0.0_rk) ratio = ratio + 2.0_rk/3.0_rk*height/depth
+            end do
+         end do
+         ratio = ratio/max(1, 2*fracture%n_cells)
+      end associate
+   end function unresolved_depth
+
+   !> c of the rock in a cell, at uniaxial strain [m2/s].
+   pure real(rk) function diffusivity(problem, cell)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: cell
+      type(solid_t) :: solid
+
+      associate (rock => problem%model%rock)
+         solid = rock%solid_at(cell)
+         diffusivity = rock%mobility_at(cell) &
+                       /(solid%storage + solid%biot**2/(solid%lame + 2.0_rk*solid%shear))
+      end associate
+   end function diffusivity
+
+   !> Relative error of the pressure of wells in the rock, a time after a switch; 0 without any [-].
+   real(rk) function of_well_in_rock(problem, time) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: area, depth
+      integer :: w
+
+      error = 0.0_rk
+      if (.not. allocated(problem%rock_cell)) return
+      do w = 1, size(problem%rock_cell)
+         associate (cell => problem%rock_cell(w))
+            if (cell == 0) cycle
+            area = cell_area(problem%mesh, cell)
+            depth = sqrt(diffusivity(problem, cell)*max(0.0_rk, time)/area)
+            if (depth >= 1.0_rk) then
+               error = max(error, steady_index + by_side*area/distance_of_side(problem, cell)**2, &
+                           early_index/depth**2)
+            else
+               error = max(error, min(1.0_rk, early_index/max(depth, early_index)))
+            end if
+         end associate
+      end do
+   end function of_well_in_rock
+
+   !> Least distance of a cell from the middle of a face on the outer boundary [m].
+   pure real(rk) function distance_of_side(problem, cell) result(distance)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: cell
+      integer(ik) :: f
+
+      distance = huge(1.0_rk)
+      associate (mesh => problem%mesh, middle => cell_centre(problem%mesh, cell))
+         do f = 1, mesh%n_faces
+            if (mesh%face_side(f) == 0) cycle
+            distance = min(distance, norm2(0.5_rk*sum(mesh%xy(:, mesh%face_nodes(:, f)), dim=2) &
+                                           - middle))
+         end do
+      end associate
+   end function distance_of_side
+
+end module twolevel_pressure_errors
