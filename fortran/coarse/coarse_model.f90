@@ -191,8 +191,8 @@ contains
 
       call timers%start(phase_assemble)
       call take_sides(self, scene)
-     call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ, &
-                       self%layers%relief)
+      call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, &
+                       self%in_situ, self%layers%relief)
       if (self%joints%n > 0) call renew_outlets(mesh, self%sides, self%joints)
       call timers%stop(phase_assemble)
    end subroutine change_sides
