@@ -106,14 +106,18 @@ contains
       real(rk), intent(in) :: total  !< [-]
       integer(ik), intent(in) :: n
       integer, parameter :: halvings = 60
-      real(rk) :: high, low
+      real(rk) :: high, low, series
       integer(ik) :: i, k
 
       low = 1.0_rk
       high = max(2.0_rk, total)
       do k = 1, halvings
          ratio = 0.5_rk*(low + high)
-         if (sum([(ratio**i, i=0, n - 1)]) > total) then
+         series = 1.0_rk
+         do i = 2, n
+            series = 1.0_rk + ratio*series
+         end do
+         if (series > total) then
             high = ratio
          else
             low = ratio

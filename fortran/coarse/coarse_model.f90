@@ -63,6 +63,7 @@ module coarse_model
       !> Undrained response to the load: the fractures have the pressure of the adjacent rock, and
       !! no fluid flows along them, through joints or wells.
       module subroutine equilibrate(self, mesh, dt, state, timers, report, error)
+         implicit none(type, external)
          class(coarse_model_t), intent(inout) :: self
          type(mesh_t), intent(in) :: mesh
          real(rk), intent(in) :: dt  !< a time in which no fluid moves noticeably [s]
@@ -75,6 +76,7 @@ module coarse_model
       !> One backward Euler step. The state changes only if the step converges (report%converged);
       !! an error is raised where the equations cannot be solved at all.
       module subroutine advance(self, mesh, dt, state, timers, report, error)
+         implicit none(type, external)
          class(coarse_model_t), intent(inout) :: self
          type(mesh_t), intent(in) :: mesh
          real(rk), intent(in) :: dt  !< [s]
@@ -189,8 +191,8 @@ contains
 
       call timers%start(phase_assemble)
       call take_sides(self, scene)
-     call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, self%in_situ, &
-                       self%layers%relief)
+      call renew_sides(mesh, self%rock, self%sides, self%regions, self%matrix, error, &
+                       self%in_situ, self%layers%relief)
       if (self%joints%n > 0) call renew_outlets(mesh, self%sides, self%joints)
       call timers%stop(phase_assemble)
    end subroutine change_sides

@@ -8,7 +8,7 @@
 !! the steps accumulate with their signs. Where fluid leaks off, each of them decays like the
 !! pressure of a pulse that diffuses from the fracture, with the root of the time since the wells
 !! were switched; what has accumulated before a switch counts by magnitude after it. With layers a
-!! step counts by half of its error as far as fluid leaks off: the layers divide it (coarse_chain),
+!! step counts by 0.3 of its error as far as fluid leaks off: the layers divide it (coarse_chain),
 !! which leaves a fourth of the error in closed forms.
 !!
 !! The error of the coarse cells is added: at each tip a crack opens, slips and leaks as if it were
@@ -168,7 +168,7 @@ contains
       call self%time_error%follow(step, pressure)
       if (self%has_layers) then
          associate (error => self%time_error%error)
-            error = error - 0.5_rk*leaked*(error - before)
+            error = error - 0.7_rk*leaked*(error - before)
          end associate
       end if
       if (any(tips%grows)) then

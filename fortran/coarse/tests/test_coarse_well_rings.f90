@@ -40,8 +40,9 @@ contains
          rise = rings%near%inlet*flow + p(1)
          if (width > 0.01_rk*radius .and. width < 0.03_rk*radius) then
             ! A plane wall, and the next term of its curvature
-            largest(1) = max(largest(1), abs(rise/(unit*(width/radius)*(2.0_rk/sqrt(pi) &
-                                                         - 0.5_rk*width/radius)) - 1.0_rk))
+            associate (plane => 2.0_rk/sqrt(pi) - 0.5_rk*width/radius)
+               largest(1) = max(largest(1), abs(rise/(unit*(width/radius)*plane) - 1.0_rk))
+            end associate
          else if (width > 6.0_rk*radius) then
             largest(2) = max(largest(2), abs(rise/(0.5_rk*unit*exponential_integral( &
                                                    0.25_rk*(radius/width)**2)) - 1.0_rk))
