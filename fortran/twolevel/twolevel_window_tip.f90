@@ -182,16 +182,18 @@ contains
    end function with_coarse_error
 
    !> Add K_I of layers of fluid pressure on the faces (twolevel_back_stress), unless the faces
-   !! touch at the tip. It may close the tip.
-   pure subroutine add_back_stress(k1, crack_modulus, intensity)
-      real(rk), intent(in) :: k1  !< [Pa m^1/2]
+   !! touch at the tip. It may close the tip; opening, it is at most what the tip has without it, so
+   !! that K_I does not jump where faces begin to touch.
+   pure subroutine add_back_stress(of_layers, crack_modulus, intensity)
+      real(rk), intent(in) :: of_layers  !< [Pa m^1/2]
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]
       type(intensity_t), intent(inout) :: intensity
-      real(rk) :: before
+      real(rk) :: before, k1
 
-      if (intensity%closed .or. .not. abs(k1) > 0.0_rk) return
       before = intensity%k1
-      intensity%k1 = max(0.0_rk, intensity%k1 + k1)
+      k1 = min(of_layers, max(0.0_rk, before))
+      if (intensity%closed .or. .not. abs(k1) > 0.0_rk) return
+      intensity%k1 = max(0.0_rk, before + k1)
       intensity%k1_inner = max(0.0_rk, intensity%k1_inner + k1)
       intensity%k1_dc = max(0.0_rk, intensity%k1_dc + k1)
       intensity%k1_corrected = intensity%k1_corrected + intensity%k1 - before
