@@ -60,6 +60,7 @@ module twolevel_value_errors
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
       real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
+      real(rk), allocatable :: risen(:)  !< largest changes of the wells' pressures so far [Pa]
       real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
       type(followed_step_t) :: step  !< last step
       type(followed_t) :: quantities
@@ -400,6 +401,8 @@ contains
          end associate
       end do
       self%of_wells = rows%error%pressure
+      if (.not. allocated(self%risen)) self%risen = 0.0_rk*self%of_wells
+      self%risen = max(self%risen, abs(rows%pressure - self%wells%first(:size(rows))))
       self%row%injection_rate = sum(rows%error%flow)
       if (size(rows) == 1) self%row%injectivity = rows(1)%error%injectivity
    end subroutine note_wells
