@@ -28,6 +28,7 @@ module twolevel_followed
    type :: followed_step_t
       real(rk) :: time = 0.0_rk  !< after it [s]
       logical :: is_jump = .false.  !< it consists of unstable growth, and has no rate
+      logical :: is_growing = .false.  !< tips have grown in it, in equilibrium
       logical :: is_first = .false.  !< wells or sides were switched at its start
       real(rk) :: diffusing = 1.0_rk  !< share of the fluid that diffuses [-]
    end type followed_step_t
@@ -95,7 +96,13 @@ contains
                if (self%n_steps == 2) self%of_step = self%of_step*(1.0_rk &
                                                                    - in_second*step%diffusing)
             end if
-            self%linear = max(forget*self%linear, self%squares/dt**2*self%of_step)
+            self%linear = forget*self%linear
+            ! Growth changes rates at once; and where steps become short the rates say little about
+            ! the time before.
+            if (.not. step%is_growing) then
+               self%linear = max(self%linear, min(self%squares/dt**2, real(self%n_steps, rk)) &
+                                 *self%of_step)
+            end if
             associate (largest => max(abs(rate), forget*self%largest))
                where (self%largest > 0.0_rk)
                   self%sum = self%sum*min(1.0_rk, largest/self%largest)
