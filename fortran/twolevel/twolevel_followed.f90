@@ -10,7 +10,9 @@
 !! are added without their signs.
 !!
 !! In the first step after a switch the rate jumps, and the error is that of backward Euler for a
-!! diffusing quantity, 13 % of the change beyond the rate before; none where nothing diffuses.
+!! diffusing quantity, 13 % of the change beyond the rate before; none where nothing diffuses. In
+!! the second step the rate of the first one is a poor measure of the second derivative of such a
+!! quantity: four times too large or more (exact for sqrt(t): 5 with equal steps).
 module twolevel_followed
    use base_kinds, only: rk
    implicit none(type, external)
@@ -19,12 +21,14 @@ module twolevel_followed
    public :: followed_t, followed_step_t
 
    real(rk), parameter :: after_switch = 0.13_rk  !< least weight of the error of a step [-]
+   real(rk), parameter :: in_second = 0.75_rk  !< by which that of the second is less [-]
    real(rk), parameter :: forget = 0.5_rk  !< least factor of rates and errors per step [-]
 
    !> A step.
    type :: followed_step_t
       real(rk) :: time = 0.0_rk  !< after it [s]
       logical :: is_jump = .false.  !< it consists of unstable growth, and has no rate
+      logical :: is_growing = .false.  !< tips have grown in it, in equilibrium
       logical :: is_first = .false.  !< wells or sides were switched at its start
       real(rk) :: diffusing = 1.0_rk  !< share of the fluid that diffuses [-]
    end type followed_step_t
@@ -33,6 +37,7 @@ module twolevel_followed
    type :: followed_t
       real(rk) :: time = 0.0_rk  !< of the last values [s]
       real(rk) :: step = 0.0_rk  !< length of the last step; 0: no rate is known [s]
+      integer :: n_steps = 0  !< steps since the switch
       real(rk) :: squares = 0.0_rk  !< sum of the squares of the steps since the switch [s2]
       real(rk), allocatable :: first(:)  !< values at the start
       real(rk), allocatable :: value(:)  !< last values
@@ -77,16 +82,26 @@ contains
          change = dt*abs(rate - self%rate)
          self%value = values
          self%of_step = 0.0_rk
-         if (step%is_first) self%squares = 0.0_rk
+         if (step%is_first) then
+            self%squares = 0.0_rk
+            self%n_steps = 0
+         end if
          if (.not. step%is_jump) then
             self%squares = self%squares + dt**2
-            self%linear = forget*self%linear
-            if (self%step > 0.0_rk) then
+            self%n_steps = self%n_steps + 1
+            if (self%n_steps == 1) then
+               self%of_step = after_switch*step%diffusing*change
+            else if (self%step > 0.0_rk) then
                self%of_step = dt/(dt + self%step)*change
-               self%linear = max(self%linear, self%squares/dt**2*self%of_step)
+               if (self%n_steps == 2) self%of_step = self%of_step*(1.0_rk &
+                                                                   - in_second*step%diffusing)
             end if
-            if (step%is_first .or. .not. self%step > 0.0_rk) then
-               self%of_step = max(self%of_step, after_switch*step%diffusing*change)
+            self%linear = forget*self%linear
+            ! Growth changes rates at once; and where steps become short the rates say little about
+            ! the time before.
+            if (.not. step%is_growing) then
+               self%linear = max(self%linear, min(self%squares/dt**2, real(self%n_steps, rk)) &
+                                 *self%of_step)
             end if
             associate (largest => max(abs(rate), forget*self%largest))
                where (self%largest > 0.0_rk)

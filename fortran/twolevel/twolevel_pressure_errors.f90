@@ -5,7 +5,7 @@
 !!   diffusion since the last switch over the size of a cell, z: sqrt(pi)/(2 z), and below 0.15/z**2
 !!   (measured: 0.07/z**2).
 !! - The pressure of a well in the rock: Peaceman's index holds for steady flow, within 1 %, and
-!!   0.25 times the area of the cell over the squared distance of a side (measured: 2.6 and 4 % at
+!!   0.4 times the area of the cell over the squared distance of a side (measured: 2.6 and 4 % at
 !!   2 and 1.5 cells). With z the distance of diffusion over the root of the cell's
 !!   area 0.2/z**2 after a cell is filled, and 0.2/z before.
 module twolevel_pressure_errors
@@ -25,7 +25,7 @@ module twolevel_pressure_errors
    !! the pressure has diffused over its cell [-]
    real(rk), parameter :: steady_index = 0.01_rk, early_index = 0.2_rk
    !> the same by a side of the body, times the cell's area over its squared distance
-   real(rk), parameter :: by_side = 0.25_rk
+   real(rk), parameter :: by_side = 0.4_rk
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains

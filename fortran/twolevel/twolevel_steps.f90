@@ -105,6 +105,7 @@ contains
       integer :: w
 
       facts%is_jump = self%step%is_unstable
+      facts%is_growing = any(self%tip%advance > 0.0_rk)
       facts%is_first = self%step%is_after_switch
       facts%since_switch = self%now%coarse%time - last_switch(self%scene, self%before%time)
       facts%has_estimate = states_errors(self%scene%growth)
@@ -118,10 +119,9 @@ contains
    end function facts_of
 
    !> Check the depth of diffusion against the cells, and at the end of a stage the error of the
-   !! pressure of the wells over its rise.
+   !! pressure of the wells that flow over its largest change.
    subroutine watch_errors(self)
       class(two_levels_t), intent(inout) :: self
-      real(rk) :: rise
       integer :: w
 
       if (self%is_initial) return
@@ -135,9 +135,9 @@ contains
          end if
          if (.not. (self%step%ends_at_switch .and. allocated(errors%of_wells))) return
          do w = 1, size(errors%of_wells)
-            rise = abs(errors%wells%value(w) - errors%wells%first(w))
-            if (.not. rise > 0.0_rk) cycle
-            call self%watch%see(limit_well_error, errors%of_wells(w)/rise, self%last_state())
+            if (.not. (errors%risen(w) > 0.0_rk .and. errors%flows(w))) cycle
+            call self%watch%see(limit_well_error, errors%of_wells(w)/errors%risen(w), &
+                                self%last_state())
          end do
       end associate
    end subroutine watch_errors

@@ -43,6 +43,7 @@ module twolevel_value_errors
    !> What the errors of a step need besides its row.
    type :: step_facts_t
       logical :: is_jump = .false.  !< the step consists of unstable growth
+      logical :: is_growing = .false.  !< tips have grown in the step, in equilibrium
       logical :: is_first = .false.  !< wells or sides were switched at its start
       real(rk) :: since_switch = 0.0_rk  !< time since the wells were switched [s]
       logical :: has_given_rates = .true.  !< a well has a rate, or there is none
@@ -60,6 +61,8 @@ module twolevel_value_errors
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
       real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
+      logical, allocatable :: flows(:)  !< (wells) the well has a flow
+      real(rk), allocatable :: risen(:)  !< largest changes of the wells' pressures so far [Pa]
       real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
       type(followed_step_t) :: step  !< last step
       type(followed_t) :: quantities
@@ -140,7 +143,8 @@ contains
          self%diffusing = abs(row%leakoff)/max(abs(row%leakoff) + abs(row%fracture_fluid), &
                                                tiny(1.0_rk))
       end if
-      self%step = followed_step_t(row%time, facts%is_jump, facts%is_first, self%diffusing)
+      self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
+                                  self%diffusing)
       call self%quantities%follow(self%step, values)
       self%row = history_errors_t()
       self%of_length = 0.0_rk
@@ -400,6 +404,9 @@ contains
          end associate
       end do
       self%of_wells = rows%error%pressure
+      self%flows = abs(rows%flow) > 0.0_rk
+      if (.not. allocated(self%risen)) self%risen = 0.0_rk*self%of_wells
+      self%risen = max(self%risen, abs(rows%pressure - self%wells%first(:size(rows))))
       self%row%injection_rate = sum(rows%error%flow)
       if (size(rows) == 1) self%row%injectivity = rows(1)%error%injectivity
    end subroutine note_wells
