@@ -225,7 +225,8 @@ contains
       real(rk) :: before
 
       before = self%by_leads
-      self%by_leads = sum(max(0.0_rk, lead - self%tip))
+      ! Of two tips one would have the length that the other one has: counted once.
+      self%by_leads = 0.5_rk*sum(max(0.0_rk, lead - self%tip))
       self%length = self%length + (self%by_leads - before)
       self%pressure = self%pressure + abs(self%slope)*(self%by_leads - before)
    end subroutine add_leads
