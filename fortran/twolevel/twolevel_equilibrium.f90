@@ -40,8 +40,10 @@ module twolevel_equilibrium
 
    !> Excess K_eq/K_IC - 1 up to which a segment begins in a tried step, and that up to which it
    !! does where the excess vanishes within the next segment by its slope: the direction of the
-   !! segment would otherwise be that of a state that does not occur [-].
-   real(rk), parameter :: excess_max = 0.2_rk, steep_excess_max = 1.0_rk
+   !! segment would otherwise be that of a state that does not occur. Where K_IC is far below the K
+   !! that the loads may bring about, the second one is a share of that K, as the least scales of
+   !! tips are [-].
+   real(rk), parameter :: excess_max = 0.2_rk, steep_excess_max = 1.0_rk, least_scales = 5.0_rk
 
    !> Time error of the first try, over the tolerance, above which a step is rejected before the
    !! tips move [-].
@@ -319,7 +321,7 @@ contains
       beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
                  before => self%last%front%tip%excess(self%rules%toughness), &
-                 far => overshoots(self%tip%excess(self%rules%toughness), self%now%segment, &
+                 far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
                                    self%increments()))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
                                            toughness, self%load_pressure), i=1, size(wants))])) then
@@ -365,15 +367,19 @@ contains
 
    !> Whether a tip at the end of its segment exceeds its toughness by so much that it would go too
    !! far, or that the direction of the next segment would be wrong.
-   elemental logical function overshoots(excess, segment, increment)
-      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 [-]
+   elemental logical function overshoots(tip, segment, toughness, increment)
+      type(tip_t), intent(in) :: tip
       type(segment_t), intent(in) :: segment
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: increment  !< length of the next segment [m]
 
-      overshoots = excess > excess_max
-      if (overshoots .and. excess <= steep_excess_max) then
-         overshoots = .not. excess < -segment%slope*increment
-      end if
+      associate (excess => tip%excess(toughness), &
+                 of_loads => least_scales*tip%least_scale/tip%scale_of(toughness))
+         overshoots = excess > excess_max
+         if (overshoots .and. excess <= max(steep_excess_max, of_loads)) then
+            overshoots = .not. excess < -segment%slope*increment
+         end if
+      end associate
    end function overshoots
 
    !> Put a tip on its new segment where the search is to start: at the end where tips may jump, as

@@ -32,6 +32,7 @@ program test_twolevel_carried
    call test_rejected()
    call test_few()
    call test_near_toughness()
+   call test_focus()
    call test_cell_length()
    call test_reopening()
    call test_same_jump()
@@ -204,6 +205,26 @@ contains
       call checks%is_true(any(simulation%tip%is_carried), "some of those far below are kept")
       call checks%is_true(.not. any(simulation%tip%is_carried .and. is_near), "no other one is")
    end subroutine test_near_toughness
+
+   !> In the body as one window the elements are small around tips near their toughness only; K of
+   !! the others is within the stated errors of what it is with small elements.
+   subroutine test_focus()
+      type(two_levels_t), allocatable :: far, near
+      integer :: i
+
+      allocate (far, near)
+      call start(far, 5, 1.0e8_rk, .true.)
+      call start(near, 5, 1.0e4_rk, .true.)
+      call checks%is_true(.not. any(far%now%windows%tip%has_focus), "far: none")
+      call checks%is_true(all(near%now%windows%tip%has_focus), "near: all")
+      call checks%is_true(1.1_rk*far%windows%n_unknowns(far%tip) &
+                          < near%windows%n_unknowns(near%tip), "fewer unknowns")
+      do i = 1, size(far%tip)
+         associate (a => far%tip(i)%intensity, b => near%tip(i)%intensity)
+            call checks%is_close(a%k2, b%k2, a%k2_error + b%k2_error, "K_II")
+         end associate
+      end do
+   end subroutine test_focus
 
    !> What is compared is the jump over the root of the length of its cell, so a cell of
    !! another length alone does not change it. The mean opening of a cell of length d at a tip
