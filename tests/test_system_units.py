@@ -46,6 +46,17 @@ ROUNDING = (
     "rock_fluid_m2",
     "fracture_length_error_m",
     "well_pressure_error_pa",
+    # which contain the error of the length, or that of the fluid balance
+    "position_error_m",
+    *(f"{name}_error_m2" for name in ("injected", "produced", "leakoff", "outflow")),
+    *(f"{name}_error_m2" for name in ("fracture_fluid", "rock_fluid", "rock_outflow")),
+    "fracture_volume_error_m2",
+    "max_slip_error_m",
+    "max_opening_error_m",
+    "seismic_moment_error_nm",
+    "injectivity_error_m2_s_pa",
+    *(f"{name}_error_m" for name in ("stimulated_length", "connected_length")),
+    "connected_stimulated_error_m",
 )
 
 
