@@ -6,14 +6,13 @@
 !! Windows are evaluated in parallel on the available threads; the results do not depend on their
 !! number.
 module twolevel_windows
-   use base_errors, only: error_t, raise_error
+   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
    use base_tolerances, only: same_place
    use coarse_state, only: state_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
-   use mesh_builder, only: mesher_t, transfer_mesher
    use mesh_types, only: network_t
    use scene_types, only: scene_t
    use report_scene, only: has_other_toughness, relative_toughness
@@ -22,6 +21,7 @@ module twolevel_windows
    use twolevel_back_stress, only: back_stress_of
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window, only: window_t
+   use twolevel_window_slot, only: renew, slot_t
    use twolevel_window_tip, only: window_tip_t
    use twolevel_windows_state, only: window_history_t, windows_state_t
    implicit none(type, external)
@@ -42,13 +42,6 @@ module twolevel_windows
    type :: failure_t
       type(error_t), allocatable :: error
    end type failure_t
-
-   !> A window, and its copy.
-   type :: slot_t
-      type(window_t), allocatable :: window
-      !> window of the last accepted state, if the window has been meshed since
-      type(window_t), allocatable :: kept
-   end type slot_t
 
    !> The windows, separate from the state; their history is in windows_state_t.
    type :: windows_t
@@ -117,18 +110,7 @@ contains
 
       if (.not. allocated(self%slot)) return
       do w = 1, size(self%slot, kind=ik)
-         associate (slot => self%slot(w))
-            if (.not. allocated(slot%kept)) cycle
-            if (slot%window%follows_other) then
-               if (slot%kept%has_moved) then
-                  call transfer_mesher(slot%kept%as_made, slot%window%as_made)
-               else
-                  call transfer_mesher(slot%kept%mesher, slot%window%as_made)
-               end if
-               slot%window%follows_other = .false.
-            end if
-            deallocate (slot%kept)
-         end associate
+         call self%slot(w)%accept()
       end do
    end subroutine begin_step
 
@@ -139,12 +121,7 @@ contains
 
       if (.not. allocated(self%slot)) return
       do w = 1, size(self%slot, kind=ik)
-         associate (slot => self%slot(w))
-            if (.not. allocated(slot%kept)) cycle
-            call slot%kept%model%take_order(slot%window%model)
-            deallocate (slot%window)
-            call move_alloc(slot%kept, slot%window)
-         end associate
+         call self%slot(w)%put_back()
       end do
    end subroutine put_back
 
@@ -299,68 +276,6 @@ contains
          end do
       end associate
    end subroutine evaluate_window
-
-   !> Mesh a window again, or move its mesh with the tips if nothing else has changed in it.
-   subroutine renew(slot, scene, network, tips, is_beside_body, seen, history, error)
-      type(slot_t), intent(inout) :: slot
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(tip_t), intent(in) :: tips(:)
-      logical, intent(in) :: is_beside_body
-      type(window_tip_t), intent(in) :: seen(:)  !< (tips)
-      type(window_history_t), intent(inout) :: history
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: i
-      logical :: follows
-
-      call history%leave_mesh(slot%window%model%mesh)
-      ! Also where it is to be meshed again: the contact of the accepted state is on this mesh.
-      if (slot%window%model%mesh%n_nodes > 0 .and. .not. allocated(slot%kept)) then
-         call move_alloc(slot%window, slot%kept)
-         allocate (slot%window)
-         call slot%window%take_plan(slot%kept)
-      end if
-      associate (window => slot%window)
-         follows = allocated(window%made) .and. .not. window%lacks_focus(seen)
-         if (follows) follows = all(tips%is_free .eqv. window%made%is_free)
-         if (follows) call follow_tips(slot, scene, network, seen, follows, error)
-         if (.not. (follows .or. allocated(error))) then
-            call window%build(scene, network, seen, is_beside_body, error)
-         end if
-         if (allocated(error)) return
-         if (any(tips(window%serves)%is_free .and. window%at == 0)) then
-            call raise_error(error, "evaluate", "a window does not contain its tip")
-            return
-         end if
-         window%made%is_projected = .false.
-         window%made%is_free = tips%is_free
-         window%made%place = reshape([(tips(i)%xy, i=1, size(tips))], [2, size(tips)])
-      end associate
-   end subroutine renew
-
-   !> Move the original mesh with the tips; it is in the window, or in its copy.
-   subroutine follow_tips(slot, scene, network, seen, is_done, error)
-      type(slot_t), intent(inout) :: slot
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(window_tip_t), intent(in) :: seen(:)  !< (tips)
-      logical, intent(out) :: is_done
-      type(error_t), allocatable, intent(out) :: error
-      type(mesher_t) :: as_made
-
-      associate (window => slot%window)
-         if (.not. window%follows_other) then
-            if (.not. window%has_moved) call transfer_mesher(window%mesher, window%as_made)
-            call transfer_mesher(window%as_made, as_made)
-            call window%follow(scene, network, seen, as_made, is_done, error)
-            call transfer_mesher(as_made, window%as_made)
-         else if (slot%kept%has_moved) then
-            call window%follow(scene, network, seen, slot%kept%as_made, is_done, error)
-         else
-            call window%follow(scene, network, seen, slot%kept%mesher, is_done, error)
-         end if
-      end associate
-   end subroutine follow_tips
 
    !> Intensities of a tip in the last solution of its window, with the errors of both levels.
    pure function intensity_of(self, tip, seen) result(intensity)
