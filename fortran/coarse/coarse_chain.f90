@@ -195,7 +195,7 @@ contains
          response(m, 2) = response(m, 2) + h*self%conductance(m)*k/scheme%parts
          response(:, 3) = response(:, 3) + self%volume(:m)/scheme%parts
          do i = 1, 3
-            call solve(self, scheme, response(:, i))
+            call solve(scheme, response(:, i))
          end do
          first = first + response(1, :)/scheme%parts
          last = last + response(m, :)/scheme%parts
@@ -212,8 +212,7 @@ contains
    end subroutine add_response
 
    !> Solve T p = b in place.
-   pure subroutine solve(self, scheme, p)
-      class(chain_t), intent(in) :: self
+   pure subroutine solve(scheme, p)
       type(scheme_t), intent(in) :: scheme
       real(rk), intent(inout) :: p(:)  !< (N - 1) b [m2], then [Pa]
       integer(ik) :: i, m
@@ -252,7 +251,7 @@ contains
                   p(1) = p(1) + from_ends(1)
                   p(m) = p(m) + from_ends(2)
                end if
-               call solve(self, scheme, p)
+               call solve(scheme, p)
                means = means + scheme%share/parts*p([1, m])
             end do
             rho = rho + scheme%share*p
