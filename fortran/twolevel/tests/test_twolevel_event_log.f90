@@ -233,9 +233,9 @@ contains
                                  0.0_rk, "the one ahead")
          end associate
          call checks%is_true(simulation%chronicle%events(1)%kind == event_bifurcation, "event")
-         ! Each of the two may as well be where the other one is; added once.
+         ! One of the two may as well be where the other one is; added once.
          call checks%is_close(simulation%now%stated_errors%length, &
-                              2.0_rk*max(0.0_rk, abs(gain(1) - gain(2)) - error), 1.0e-15_rk, &
+                              max(0.0_rk, abs(gain(1) - gain(2)) - error), 1.0e-15_rk, &
                               "the lead beyond the errors of the positions")
       end if
    end function n_separations
