@@ -42,11 +42,11 @@ contains
       is_first = .not. self%has_begun
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
       self%has_begun = .true.
+      call self%begin_step()
       if (self%scene%growth%enabled) then
          call limit_windows(self, timers, error)
          if (allocated(error)) return
       end if
-      call self%begin_step()
       if (self%is_initial) then
          call find_initial_state(self, timers, error)
       else

@@ -22,7 +22,8 @@ module twolevel_window_total
 
 contains
 
-   !> Replace the windows by the body where they have more unknowns, and evaluate the tips in it.
+   !> Replace the windows by the body where they have more unknowns, and evaluate the tips in it, at
+   !! the beginning of a step: the slip of the accepted state is the history of this solution too.
    subroutine limit_windows(self, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(timers_t), intent(inout) :: timers
@@ -51,9 +52,11 @@ contains
       call self%windows%share_body(self%now%windows%tip)
       call self%chronicle%add_event(self%now%coarse%time, event_window, "the body as one "// &
                                     "window for all tips: fewer unknowns than in their windows")
-      if (.not. allocated(self%now%coarse%tractions)) return
-      call self%evaluate(timers, error)
-      if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+      if (allocated(self%now%coarse%tractions)) then
+         call self%evaluate(timers, error)
+         if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+      end if
+      if (.not. allocated(error)) call self%begin_step()
    end subroutine limit_windows
 
    !> Number of unknowns of the body as one window for all tips, with elements as small as those of
