@@ -149,6 +149,9 @@ contains
       scene%growth%new_volume = new_volume
       scene%growth%increment = increment
       scene%time%step = 100.0_rk
+      ! The bounds on K_eq in test_equilibrium are those of growth without layers: new faces that
+      ! take in fluid at once lower K_eq to 0.79 where a segment begins.
+      scene%discretization%layers = "off"
       call add_fracture(scene, "middle", [0.85_rk, 1.15_rk], [0.85_rk, 1.15_rk], 0.3_rk, 0.01_rk)
       scene%injections = [injection_t(fracture=1, rate=[1.0e-7_rk])]
    end function symmetric_scene
