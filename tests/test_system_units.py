@@ -59,6 +59,9 @@ ROUNDING = (
     "connected_stimulated_error_m",
 )
 
+# Quotients by small differences: a rise of pressure in the first steps, a step of time.
+QUOTIENTS = ("injectivity_m2_s_pa", "max_slip_rate_m_s", "max_slip_rate_error_m_s")
+
 
 @pytest.fixture(scope="module")
 def given(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -82,7 +85,8 @@ def test_growth_in_other_units(tmp_path: Path, given: Path, units: Units) -> Non
         assert max(row.get("fracture_length_m", 20.5) for row in wanted) > 20.3
         found = differences(wanted, table(out / name, units), ROUNDING)
         assert len(found) > 15
-        assert {column: error for column, error in found.items() if not error <= 1.0e-7} == {}
+        rounding = {column: 1.0e-5 if column in QUOTIENTS else 1.0e-7 for column in found}
+        assert {c: error for c, error in found.items() if not error <= rounding[c]} == {}
 
 
 @pytest.mark.parametrize("scene", ["crossing", "l_panel"])

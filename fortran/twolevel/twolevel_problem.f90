@@ -302,7 +302,8 @@ contains
       pressure = self%fracture_pressure(state)
       between = between_cells(scene%injections, self%share)
       do w = 1, size(between, kind=ik)
-         if (.not. between(w)) cycle
+         ! Before the first step nothing flows.
+         if (.not. (between(w) .and. allocated(self%model%condensed%length))) cycle
          associate (length => self%model%condensed%length, &
                     viscosity => self%model%settings%viscosity, thickness => self%thickness(state))
             where (self%share(:, w) > 0.0_rk)
