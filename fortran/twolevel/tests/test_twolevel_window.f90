@@ -425,9 +425,9 @@ contains
       scene%discretization%fine_ratio = 0.25_rk
       scene%discretization%window = 10.0_rk
       call start(scene, 0.1_rk, degree, apart)
-      ! Elements away from its tip: at six sizes from 0.3 to 0.1 K_II differs by 0.5 to 1.1e-3, with
-      ! displacement correlation by 0.6 to 1.3e-3; without small elements at the kink by up to 1.7e-3,
-      ! though by less than 1e-3 at the size of this test.
+      ! Elements away from its tip: at six sizes from 0.3 to 0.1 K_II differs by 0.5 to 1.1e-3,
+      ! with displacement correlation by 0.6 to 1.3e-3; without small elements at the kink by up to
+      ! 1.7e-3, though by less than 1e-3 at the size of this test.
       call compare(together, apart%tip%intensity, 1.5e-3_rk, "the body")
       call estimate_coarse_errors(together, timers, error)
       call checks%no_error(error, "errors")
