@@ -59,8 +59,6 @@ ROUNDING = (
     "connected_stimulated_error_m",
 )
 
-DIGITS = "layers lose digits in the first steps: K 3e-6, injectivity 6e-6 (without layers 1e-12)"
-
 
 @pytest.fixture(scope="module")
 def given(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -71,9 +69,7 @@ def given(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     "units",
     [
-        pytest.param(
-            Units(length=0.0625, stress=4.0, time=1.0), marks=pytest.mark.xfail(reason=DIGITS)
-        ),
+        Units(length=0.0625, stress=4.0, time=1.0),
         Units(length=4.0**6, stress=1.0, time=4.0**8),
     ],
     ids=["1.25 m", "82 km"],

@@ -158,18 +158,21 @@ contains
    pure subroutine factorize(self, scheme)
       class(chain_t), intent(inout) :: self
       type(scheme_t), intent(inout) :: scheme
-      real(rk) :: h
+      real(rk) :: h, left
       integer(ik) :: i, m
 
       m = self%n - 1
       h = self%dt/scheme%parts
-      scheme%pivot = self%storage*self%volume(:m) &
-                     + h*(self%conductance(:m - 1) + self%conductance(1:m))
+      scheme%pivot = self%storage*self%volume(:m)
       if (.not. allocated(scheme%factor)) allocate (scheme%factor(m))
       scheme%factor(1) = 0.0_rk
+      ! Pivots less the conductance outwards are sums of positive terms: no digits are lost.
+      left = scheme%pivot(1) + h*self%conductance(0)
+      scheme%pivot(1) = left + h*self%conductance(1)
       do i = 2, m
          scheme%factor(i) = h*self%conductance(i - 1)/scheme%pivot(i - 1)
-         scheme%pivot(i) = scheme%pivot(i) - scheme%factor(i)*h*self%conductance(i - 1)
+         left = scheme%pivot(i) + scheme%factor(i)*left
+         scheme%pivot(i) = left + h*self%conductance(i)
       end do
       scheme%pivot = 1.0_rk/scheme%pivot
    end subroutine factorize
