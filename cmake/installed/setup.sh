@@ -15,7 +15,7 @@ case ${1:-} in
     run | check) needed_modules=() ;; # and figures say themselves what they lack
     verify | bench | test | build | format | lint | docs)
         fail "$exit_usage" "$1 needs the folder of the sources; installed are run, check, plot," \
-            'view, new, import, network and study'
+            'analyse, view, new, import, network and study'
         ;;
 esac
 

@@ -33,7 +33,7 @@ CHEAP = ("mine.nml",)
 
 def stand_in(words: list[str]) -> list[str]:
     """Put something in place of what the reader has, and drop the brackets of what is optional."""
-    bare = [word.strip("[]") for word in words]
+    bare = [word if "=" in word else word.strip("[]") for word in words]
     return [STAND_INS.get(word, word) for word in bare]
 
 

@@ -28,7 +28,8 @@ def make_workplace(place: Path) -> Path:
     for name in ("inputs", "packaging", "verification"):
         (place / name).symlink_to(TOP / name)
     (place / "map.geojson").write_text(json.dumps(_MAP))
-    for run in ("onset", "wing_crack", "outcrop"):
+    (place / "record.csv").write_text("")
+    for run in ("onset", "wing_crack", "outcrop", "dfit"):
         (place / "out" / run).mkdir(parents=True)
     scene = TOP / "inputs" / "paper_c" / "onset.nml"
     done = solver.call("run", scene, "--out", place / "out" / "onset", "--quiet")

@@ -31,7 +31,7 @@ example:
 """
 # Modules with the names of what is declared in them; each is imported when a command is named.
 _MODULES = {
-    "run_commands": ("run", "check", "plot", "view", "study"),
+    "run_commands": ("run", "check", "plot", "analyse", "view", "study"),
     "scene_commands": ("new", "import", "network"),
     "developer_commands": ("verify", "bench", "test", "build", "format", "lint", "docs"),
 }

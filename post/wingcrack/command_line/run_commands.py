@@ -1,4 +1,4 @@
-"""Commands that use runs: plot, view and study."""
+"""Commands that use runs: run, check, plot, analyse, view and study."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from wingcrack.command_line.declaring import (
     command,
     flag,
 )
-from wingcrack.command_line.values import absolute, each_of, place, whole
+from wingcrack.command_line.values import absolute, each_of, place, positive, whole
 from wingcrack.figures.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
 from wingcrack.figures.durations import parse_times
+from wingcrack.welltest.units import read_columns
 
 _SCENE = Parameter("scene", "SCENE.nml", read=place)
 
@@ -151,6 +152,44 @@ def plot(given: SimpleNamespace) -> None:
         raise UsageError("plot needs the directory of a run, as in ./wingcrack plot out/onset")
     for directory in given.directories:
         _judge_folder(directory)
+
+
+@command(
+    "analyse",
+    "wingcrack.welltest.cli:analyse",
+    Parameter("path", "DIR|RECORD.csv", read=Path, required=True),
+    Parameter(
+        "--columns",
+        "MAP",
+        "of a record: header, quantity and unit of its columns, as"
+        " 'injectionRate=rate [bpm],pressure=pressure [psi],time=time [s]'"
+        " (default: the headers time_s, rate_m2_s, pressure_pa)",
+        read_columns,
+        read_columns("time_s=time [s],rate_m2_s=rate [m2/s],pressure_pa=pressure [Pa]"),
+    ),
+    Parameter("--viscosity", "PA_S", "of the fluid of a record [Pa s]", positive),
+    Parameter("--storage", "S", "of the rock of a record, at uniaxial strain [1/Pa]", positive),
+    Parameter(
+        "--out", "DIR", "for the results (default: the run, or out/NAME of the record)", Path
+    ),
+    _FORMATS,
+    flag("--quiet", "print nothing but errors"),
+    about="""\
+Finds the shut-ins of every well, and for each: instantaneous shut-in pressure; Bourdet derivative;
+lines of linear and radial flow with what follows from them (A sqrt(k), k h, pressure of the
+reservoir); closure by the usual picks, and of a run when its first and last open cell close.
+Writes well_test.csv and figures/well_test_WELL_N.png (docs/howto_wells.md).
+""",
+    statuses="0 done; 2 bad input or usage, or no shut-in.",
+    example="""\
+./wingcrack analyse out/field
+./wingcrack analyse record.csv --columns 'q=rate [l/s],p=pressure [bar],t=time [min]'
+""",
+)
+def analyse(given: SimpleNamespace) -> None:
+    """Analyse the shut-ins of a run or of a measured record."""
+    if not given.path.exists():
+        raise UsageError(f"there is no run or record {given.path}")
 
 
 @command(

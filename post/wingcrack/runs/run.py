@@ -18,6 +18,7 @@ from wingcrack.runs.results import Results
 from wingcrack.runs.scene_files import SceneFile
 
 if TYPE_CHECKING:
+    import pandas
     import pyvista
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -88,6 +89,22 @@ class Run(Results):
 
         outcomes = draw_figures(self.directory, tuple(only), tuple(formats))
         return [file for outcome in outcomes for file in outcome.files]
+
+    def well_test(self) -> pandas.DataFrame:
+        """Analysis of the shut-ins of all wells: a row for each, as ``wingcrack analyse``.
+
+        Raises
+        ------
+        AbsentError
+            If the run has no wells.
+        """
+        import pandas
+
+        from wingcrack.welltest.record import records_of_run
+        from wingcrack.welltest.results import evaluate, rock_of_scene
+
+        rock = rock_of_scene(self._scene_file)
+        return pandas.DataFrame([row for _, row in evaluate(records_of_run(self.files), rock)])
 
     def figure(self, name: str) -> Figure:
         """Give one of the figures of ``wingcrack plot`` by its name, as 'story' or 'fracture_1'.
