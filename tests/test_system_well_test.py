@@ -44,7 +44,7 @@ def _analysed(folder: Path, text: str) -> tuple[Path, dict[str, str], str]:
     out = run(folder, text)
     done = call(folder, "analyse", "out")
     assert done.returncode == 0, done.stderr
-    (row,) = rows(out / "well_test.csv")
+    (row,) = rows(out / "figures" / "well_test.csv")
     return out, row, done.stdout
 
 
@@ -76,4 +76,4 @@ def test_run_without_a_shut_in_is_refused(tmp_path: Path) -> None:
     done = call(tmp_path, "analyse", "out")
     assert done.returncode == 2
     assert "no well is shut in after an injection (there are: w)" in done.stderr
-    assert not (out / "well_test.csv").exists()
+    assert not (out / "figures" / "well_test.csv").exists()

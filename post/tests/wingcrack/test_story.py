@@ -23,11 +23,11 @@ TITLES = [
     "(d)  where the fluid is",
     "(e)  length: connected with a well, stimulated",
     "(f)  seismic moment of all slip",
-    "(g)  slip events",
+    "(g)  slip events: seismic (orange), aseismic",
 ]
 HEAD = (
     "event,time_s,end_s,fracture,x_m,y_m,s_from_m,s_to_m,area_m2,mean_slip_m,moment_nm,"
-    "magnitude,open_share,sudden_share,ended_by\n"
+    "magnitude,open_share,sudden_share,ended_by,kind\n"
 )
 MET = 10 * 3600.0  # when the second fracture is met [s]
 
@@ -57,8 +57,8 @@ def stimulated(own_run: Path) -> Path:
         writer.writerows(rows)
     (own_run / "slip_events.csv").write_text(
         HEAD
-        + "1,3600.0,36000.0,1,0.98,0.98,0.0,0.05,0.5,1e-05,1e5,-2.73,0.0,0.0,stick\n"
-        + "2,72000.0,234000.0,1,1.02,1.02,0.0,0.1,1.0,1e-04,1e7,-1.4,0.5,0.1,run\n",
+        + "1,3600.0,36000.0,1,0.98,0.98,0.0,0.05,0.5,1e-05,1e5,-2.73,0.0,0.0,stick,aseismic\n"
+        + "2,72000.0,234000.0,1,1.02,1.02,0.0,0.1,1.0,1e-04,1e7,-1.4,0.5,0.1,run,seismic\n",
         encoding="utf-8",
     )
     with (own_run / "scene.nml").open("a", encoding="utf-8") as file:
@@ -121,8 +121,7 @@ def test_marks_tell_what_happened(stimulated: Path) -> None:
     words = "\n".join(text.get_text() for axes in figure.axes for text in axes.texts)
     assert "1: flaw and flaw meet, 10 h\n" in words + "\n"
     assert "g: growth begins" in words
-    assert "2 slip events," in words
-    assert "largest $M_w$ = $-1.40$ (10 m thick)" in words
+    assert "1 seismic event, largest $M_w$ = $-1.40$\n1 aseismic slip, moment 1e+05 N m\n" in words
 
 
 def test_a_well_along_a_fracture_stands_on_what_the_scene_has_of_it(stimulated: Path) -> None:

@@ -157,7 +157,8 @@ def test_figures_follow_each_other_by_kind_and_number(wet_run: Path, tmp_path: P
         (tmp_path / f"{name}.png").touch()
     page = _Page()
     order = ("summary", "story", "fracture", "balance")
-    page.feed(write_page(read_run(wet_run), tmp_path, order).read_text(encoding="utf-8"))
+    (file,) = write_page(read_run(wet_run), tmp_path, order)
+    page.feed(file.read_text(encoding="utf-8"))
     assert [link.removesuffix(".png") for link in page.links[::2]] == [
         "summary",
         "story",

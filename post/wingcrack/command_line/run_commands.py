@@ -178,7 +178,7 @@ def plot(given: SimpleNamespace) -> None:
 Finds the shut-ins of every well, and for each: instantaneous shut-in pressure; Bourdet derivative;
 lines of linear and radial flow with what follows from them (A sqrt(k), k h, pressure of the
 reservoir); closure by the usual picks, and of a run when its first and last open cell close.
-Writes well_test.csv and figures/well_test_WELL_N.png (docs/howto_wells.md).
+Writes figures/well_test.csv and figures/well_test_WELL_N.png (docs/howto_wells.md).
 """,
     statuses="0 done; 2 bad input or usage, or no shut-in.",
     example="""\

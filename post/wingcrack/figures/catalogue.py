@@ -151,11 +151,11 @@ def _page(run: Run, record: Drawn, way: Sequence[str]) -> Outcome:
     if found is not None:
         return Outcome("index", tuple(found[0]), unchanged=True)
     record.forget("index")
-    write: Callable[[Run, Path, Sequence[str]], Path]
+    write: Callable[[Run, Path, Sequence[str]], list[Path]]
     write = import_module("wingcrack.figures.page").write_page
-    file = write(run, folder, [figures.name for figures in _FIGURES])
-    record.note("index", known, (file,), "")
-    return Outcome("index", (file,))
+    files = write(run, folder, [figures.name for figures in _FIGURES])
+    record.note("index", known, files, "")
+    return Outcome("index", tuple(files))
 
 
 def figure_of(run: Run, name: str) -> Figure:

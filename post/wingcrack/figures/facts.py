@@ -11,6 +11,7 @@ from wingcrack.figures.load import abscissa, has_load
 from wingcrack.figures.pressures import highest_pressures, injected_and_produced
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
+from wingcrack.figures.slip import slip_words
 from wingcrack.figures.units import MEGAPASCAL, area_unit, displacement_unit, stress_unit
 
 _MOST_WELLS = 4  # with a line of their own, those with the highest pressures
@@ -100,7 +101,7 @@ def _results(run: Run) -> list[str]:
         elif injected > 0.0 and history.has("leakoff_m2"):
             line += f", leaked off {100.0 * history.number('leakoff_m2')[-1] / injected:.0f} %"
         lines.append(line)
-    return [*lines, *_of_fractures(run), *_of_events(run)]
+    return [*lines, *_of_fractures(run), *slip_words(run)]
 
 
 def _of_fractures(run: Run) -> list[str]:
@@ -129,15 +130,6 @@ def _of_fractures(run: Run) -> list[str]:
     if joints:
         lines.append(f"places where fractures have met since the start: {len(joints)}")
     return lines
-
-
-def _of_events(run: Run) -> list[str]:
-    events = run.slip_events
-    if events is None or events.rows == 0:
-        return []
-    largest = float(events.number("magnitude").max())
-    plural = "s" if events.rows != 1 else ""
-    return [f"{events.rows} slip event{plural}, largest $M_w$ = ${largest:.2f}$"]
 
 
 def _errors(run: Run) -> list[str]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
 from wingcrack.figures.facts import Facts, gather_facts
 from wingcrack.figures.read import Run
+from wingcrack.figures.report import Cell, report_rows, write_report
 from wingcrack.figures.text_files import read_json, write_whole
 
 NAME = "index.html"
@@ -19,6 +20,19 @@ _COSTS = (
     ("cpu_s", "processor time", "s"),
     ("peak_memory_mb", "memory", "MB"),
 )
+_REPORTED = {  # columns of report.csv on the page
+    "begin_s": "from [s]",
+    "end_s": "to [s]",
+    "pressure_at_begin_pa": "pressure at first [MPa]",
+    "pressure_at_end_pa": "at last [MPa]",
+    "highest_pressure_pa": "highest [MPa]",
+    "injected_m2": "injected [m²]",
+    "produced_m2": "produced [m²]",
+    "injectivity_m2_s_pa": "injectivity [m²/(s Pa)]",
+    "stimulated_length_m": "stimulated [m]",
+    "growth_events": "growth",
+    "seismic_events": "seismic",
+}
 _MATH = ((r"$K_\mathrm{eq}/K_\mathrm{IC}$", "K_eq/K_IC"), ("$M_w$", "M_w"), ("$", ""))
 
 _PAGE = Template("""\
@@ -37,6 +51,8 @@ h2 { font-size: 1rem; margin: 1rem 0 .2rem; }
 ul { margin: 0; padding-left: 1.1rem; overflow-wrap: anywhere; }
 figure { margin: 1rem 0; break-inside: avoid; } figcaption { font-size: .85rem; }
 img { max-width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: .85rem; display: block; overflow-x: auto; }
+th, td { text-align: right; padding: .15rem .5rem; border-bottom: 1px solid #ddd; }
 </style>
 </head>
 <body>
@@ -45,14 +61,17 @@ img { max-width: 100%; height: auto; }
 <div class="parts">
 $parts
 </div>
+$report
 $figures
 </body>
 </html>
 """)
 
 
-def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
-    """Write the page into the folder of the figures; it appears whole.
+def write_page(run: Run, folder: Path, order: Sequence[str]) -> list[Path]:
+    """Write the page, and the table of wells by stage that it shows, into a folder of figures.
+
+    Each appears whole.
 
     `folder`: where the figures are. `order`: names of figures, or their beginnings, as they shall
     follow each other.
@@ -64,16 +83,39 @@ def write_page(run: Run, folder: Path, order: Sequence[str]) -> Path:
         return min(kinds, default=len(order)), _natural(name)
 
     pictures = sorted((path.name for path in folder.glob("[!.]*.png")), key=place)
+    rows = report_rows(run)
     text = _PAGE.substitute(
         name=html.escape(run.name),
         title=html.escape(_plain(facts.title)),
         status=html.escape(facts.status, quote=True),
         ended=html.escape(facts.ended),
         parts="\n".join(_parts(facts, _costs(run.directory))),
+        report=_report(rows),
         figures="\n".join(_figures(folder, pictures)),
     )
     folder.mkdir(parents=True, exist_ok=True)
-    return write_whole(folder / NAME, text)
+    return [*write_report(rows, folder), write_whole(folder / NAME, text)]
+
+
+def _report(rows: Sequence[Mapping[str, Cell]]) -> str:
+    """The wells by stage as a table, in units that are easy to read; nothing without wells."""
+    if not rows:
+        return ""
+    head = "".join(f"<th>{words}</th>" for words in ("well", "stage", *_REPORTED.values()))
+    lines = [
+        f"<td>{html.escape(str(row['well']))}</td><td>{row['stage']}</td>"
+        + "".join(f"<td>{_shown(column, row.get(column, ''))}</td>" for column in _REPORTED)
+        for row in rows
+    ]
+    body = "".join(f"<tr>{line}</tr>" for line in lines)
+    link = '<a href="report.csv">report.csv</a>'
+    return f"<h2>Wells by stage ({link})</h2><table><tr>{head}</tr>{body}</table>"
+
+
+def _shown(column: str, value: Cell) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    return f"{1e-6 * value:.4g}" if column.endswith("_pa") else f"{value:.4g}"
 
 
 def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:

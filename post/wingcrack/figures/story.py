@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from matplotlib.ticker import MaxNLocator
 
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
@@ -18,6 +18,7 @@ from wingcrack.figures.load import abscissa
 from wingcrack.figures.pressures import highest_pressures, injected_and_produced, well_pressures
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.scales import run_length_unit
+from wingcrack.figures.slip import ASEISMIC_COLOUR, SEISMIC_COLOUR, seismic, slip_words
 from wingcrack.figures.states import growth_start
 from wingcrack.figures.story_map import HALO, draw_map
 from wingcrack.figures.table import FloatArray, Table
@@ -281,8 +282,8 @@ def _draw_moment(axes: Axes, run: Run) -> None:
 
 
 def _draw_events(axes: Axes, run: Run) -> None:
-    """Slip events from their beginning to their end, at their magnitude."""
-    axes.set(title="slip events", ylabel="moment magnitude [-]")
+    """Slip events from their beginning to their end, at their moment; seismic ones stand out."""
+    axes.set(title="slip events: seismic (orange), aseismic", ylabel="moment [N m]")
     table = run.slip_events
     if table is None or table.rows == 0:
         axes.set_ylim(0.0, 1.0)
@@ -290,25 +291,25 @@ def _draw_events(axes: Axes, run: Run) -> None:
         axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", color=_GREY)
         return
     begin, end = (abscissa(run, table.number(name))[0] for name in ("time_s", "end_s"))
-    size = table.number("magnitude")
+    moment = table.number("moment_nm")
+    size, fast = np.log10(moment), seismic(table)
     over = table.text("ended_by") == "stick"
-    for k in range(table.rows):
-        axes.plot([begin[k], end[k]], [size[k]] * 2, color="#D55E00", lw=1.6, solid_capstyle="butt")
-        axes.plot(begin[k], size[k], "o", color="#D55E00", ms=3.5)
-        axes.plot(
-            end[k], size[k], "|" if over[k] else ">", color="#D55E00", ms=5, mew=1.2, clip_on=False
-        )
+    for k in np.argsort(fast, kind="stable"):
+        look: dict[str, Any] = {"color": SEISMIC_COLOUR if fast[k] else ASEISMIC_COLOUR}
+        axes.plot([begin[k], end[k]], [moment[k]] * 2, lw=1.6, solid_capstyle="butt", **look)
+        axes.plot(begin[k], moment[k], "o", ms=3.5, **look)
+        axes.plot(end[k], moment[k], "|" if over[k] else ">", ms=5, mew=1.2, clip_on=False, **look)
     low, high = float(size.min()), float(size.max())
     room = max(0.25 * (high - low), 0.2)
-    axes.set_ylim(low - room, high + 1.6 * room)
-    axes.yaxis.set_major_locator(MaxNLocator(5))
+    axes.set_yscale("log")
+    axes.set_ylim(10.0 ** (low - room), 10.0 ** (high + 1.6 * room))
     _name_events(axes, run, table, begin, size)
 
 
 def _name_events(axes: Axes, run: Run, table: Table, begin: FloatArray, size: FloatArray) -> None:
     """Fractures of the largest events, above or below their beginning, as far as there is room."""
     taken: list[tuple[float, float]] = []
-    low, high = axes.get_ylim()
+    low, high = np.log10(axes.get_ylim())
     end = float(abscissa(run, run.history.moments())[0][-1])
     for k in np.argsort(-size):
         across, up = float(begin[k]) / end, float(size[k] - low) / (high - low)
@@ -318,7 +319,7 @@ def _name_events(axes: Axes, run: Run, table: Table, begin: FloatArray, size: Fl
             taken.append((across, up + shift))
             axes.annotate(
                 run.fracture_name(str(table.text("fracture")[k])),
-                (float(begin[k]), float(size[k])),
+                (float(begin[k]), 10.0 ** float(size[k])),
                 xytext=(4, offset),
                 textcoords="offset points",
                 va=align,
@@ -375,12 +376,10 @@ def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
     clusters = int(table.number("n_clusters")[-1])
     connections = table.number("connections_per_branch")[-1]
     lines.append(f"{clusters} cluster{'s' if clusters != 1 else ''}, $C_B$ = {connections:.2f}")
-    events = run.slip_events
-    if events is not None and events.rows:
-        largest = float(events.number("magnitude").max())
+    slips = slip_words(run)
+    if slips:
         breadth = run.scene.breadth_m if run.scene else 1.0
-        lines.append(f"{events.rows} slip event{'s' if events.rows != 1 else ''},")
-        lines.append(f"  largest $M_w$ = ${largest:.2f}$ ({breadth:g} m thick)")
+        lines += [*slips, f"  ({breadth:g} m thick)"]
     for mark in marks:
         lines.append(f"{mark.name}: {mark.what}, {at(mark.moment)}")
     return lines[:_MOST_FACTS]

@@ -20,6 +20,7 @@ from wingcrack.figures.network import network_box
 from wingcrack.figures.read import Run
 from wingcrack.figures.regions import draw_regions
 from wingcrack.figures.scene import Scene
+from wingcrack.figures.slip import SEISMIC_COLOUR, seismic
 from wingcrack.figures.table import FloatArray, Table
 from wingcrack.figures.units import Unit, length_unit
 
@@ -140,9 +141,12 @@ _FLATTEST = 0.68  # height of the map over its width
 _WELL: dict[str, Any] = {"mfc": "#FFFFFF", "mec": "#000000", "mew": 0.9, "ms": 6}
 _JOINT: dict[str, Any] = {"mfc": "#FFFFFF", "mec": "#000000", "mew": 0.7, "ms": 3.2}
 _WING: dict[str, Any] = {"mfc": "#000000", "mec": "#000000", "ms": 2.6}
-_EVENT: dict[str, Any] = {"mfc": "none", "mec": "#CC79A7", "mew": 1.2}
+_EVENTS: dict[bool, dict[str, Any]] = {  # by whether they are seismic
+    True: {"mfc": "none", "mec": SEISMIC_COLOUR, "mew": 1.2},
+    False: {"mfc": "none", "mec": "#CC79A7", "mew": 0.8},
+}
 _EVENT_SIZES = (6.0, 20.0)  # [points] of the smallest and the largest event
-_EVENT_RANGE = 2.0  # magnitudes between these, at least
+_EVENT_RANGE = 3.0  # powers of ten of the moment between these, at least
 
 
 def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
@@ -294,24 +298,20 @@ def _place(
 
 
 def _draw_events(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
-    """Circles that grow with the magnitude."""
+    """Circles that grow with the logarithm of the moment, by kind."""
     table = run.slip_events
     if table is None or table.rows == 0:
         return []
-    size = table.number("magnitude")
+    size, fast = np.log10(table.number("moment_nm")), seismic(table)
     largest = float(size.max())
     lowest = min(float(size.min()), largest - _EVENT_RANGE)
     share = (size - lowest) / (largest - lowest)
     width = _EVENT_SIZES[0] + share * (_EVENT_SIZES[1] - _EVENT_SIZES[0])
     for k in np.argsort(-size):
         place = unit.of(np.array([table.number("x_m")[k], table.number("y_m")[k]]))
-        axes.plot(*place, "o", zorder=5, ms=float(width[k]), **_EVENT)
+        axes.plot(*place, "o", zorder=5, ms=float(width[k]), **_EVENTS[bool(fast[k])])
     return [
-        style.handle(
-            ls="none",
-            marker="o",
-            ms=7,
-            label=f"slip event, largest $M_w$ = ${largest:.1f}$",
-            **_EVENT,
-        )
+        style.handle(ls="none", marker="o", ms=7, label=label, **_EVENTS[kind])
+        for kind, label in ((True, "seismic event"), (False, "aseismic slip"))
+        if np.any(fast == kind)
     ]

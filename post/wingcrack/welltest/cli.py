@@ -47,8 +47,8 @@ def analyse(given: SimpleNamespace) -> int:
     except (RunError, AbsentError) as reason:
         print(f"wingcrack analyse: {reason}", file=sys.stderr)
         return 2
-    out.mkdir(parents=True, exist_ok=True)
-    table = out / "well_test.csv"
+    table = out / "figures" / "well_test.csv"
+    table.parent.mkdir(parents=True, exist_ok=True)
     with table.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, found[0][1], lineterminator="\n")
         writer.writeheader()
