@@ -174,6 +174,7 @@ contains
       case ("scene")
          call exchange(record, "name", scene%name)
          call exchange(record, "title", scene%title)
+         call exchange(record, "thickness", scene%thickness)
       case ("domain")
          call exchange_domain(record, scene%domain)
       case ("material")

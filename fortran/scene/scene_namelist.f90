@@ -38,6 +38,7 @@ contains
       call parse_scene(path, sheet, error)
       if (.not. allocated(error)) call complete_sheet(sheet, error)
       if (.not. allocated(error)) call load_schedules(sheet, error)
+      if (.not. allocated(error)) call divide_by_thickness(sheet)
       if (.not. allocated(error)) call check_sheet(sheet, error)
       if (allocated(error)) return
       call sheet_to_scene(sheet, scene)
@@ -107,6 +108,24 @@ contains
          value%text = stem
       end associate
    end subroutine name_by_file
+
+   !> Volumes per time become rates per metre of thickness.
+   pure subroutine divide_by_thickness(sheet)
+      type(sheet_t), intent(inout) :: sheet
+      type(value_t) :: thickness
+      integer :: i, item
+
+      thickness = sheet%records(sheet%find("scene"))%value("thickness")
+      do i = 1, sheet%length
+         associate (values => sheet%records(i)%values)
+            do item = lbound(values, 1), ubound(values, 1)
+               if (.not. values(item)%per_thickness) cycle
+               values(item)%reals = values(item)%reals/thickness%reals(1)
+               values(item)%per_thickness = .false.
+            end do
+         end associate
+      end do
+   end subroutine divide_by_thickness
 
    !> Refuse groups and names of scenes with a fluid in one without, and the reverse.
    pure subroutine refuse_foreign(sheet, error)
@@ -213,6 +232,9 @@ contains
       associate (load => scene%load)
          if (allocated(load%factors)) load%to = load%factors(size(load%factors))
          if (load%control == "") load%control = merge("dead  ", "length", allocated(load%factors))
+      end associate
+      associate (length => scene%output%out_of_plane_length)
+         if (.not. length > 0.0_rk) length = scene%thickness
       end associate
       call choose_steps(scene)
       if (scene%has_fluid() .and. .not. scene%fluid%vapour_pressure > -huge(1.0_rk)) then

@@ -19,6 +19,9 @@ module scene_parameter_table
       parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
          derived=.true., meaning="Short name; results are in `out/<name>` unless --out is used"), &
       parameter_t("scene", "title", kind_text, default="''", meaning="One-line description"), &
+      parameter_t("scene", "thickness", unit="m", default="1.0", range=positive, &
+         meaning="Of the body, out of the plane: by it rates in volumes per time, as rate_l_s, "// &
+                 "become rates per metre of thickness"), &
       parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
          choices="rectangle|disc|polygon", meaning="Shape of the body"), &
       parameter_t("domain", "x_min", unit="m", need=need_choice, absent="no rectangle", &
@@ -302,6 +305,9 @@ module scene_parameter_table
       parameter_t("injection", "schedule", kind_text, absent="no table", &
          meaning="CSV file with a row per stage instead of time, rate and pressure: columns "// &
                  "time_s, rate_m2_s, pressure_pa; in the folder of the scene"), &
+      parameter_t("injection", "columns", kind_text, absent="names of the columns", &
+         meaning="Columns of a table with other headers: HEADER=name [unit], "// &
+                 "... as q=rate [l/s]; others are ignored, and rows that repeat the one before"), &
       parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
          meaning="Start time; with stages that of the first"), &
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
@@ -461,8 +467,8 @@ module scene_parameter_table
          scenes=in_fluid, &
          meaning="Slip or opening since the start above which fractures count as stimulated, "// &
                  "and mean slip of the smallest event in slip_events.csv"), &
-      parameter_t("output", "out_of_plane_length", unit="m", default="1.0", range=positive, &
-         scenes=in_fluid, &
+      parameter_t("output", "out_of_plane_length", unit="m", absent="thickness of &scene", &
+         range=positive, derived=.true., scenes=in_fluid, &
          meaning="Assumed out-of-plane length of the fractures, used only for area and moment "// &
                  "in slip_events.csv"), &
       parameter_t("output", "seismic_slip_rate", unit="m/s", default="1.0e-3", range=positive, &

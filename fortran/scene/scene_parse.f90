@@ -13,6 +13,7 @@ module scene_parse
    use scene_schedule, only: load_file
    use scene_sheet, only: add_record, empty_record, group_index, line_text, parameter_index, &
                           path_from, place, record_t, refuse, sheet_t
+   use scene_units, only: find_with_unit, in_unit, unit_t
    use scene_values, only: read_value, shortened, value_t
    use scene_words, only: lower_case, nearest_word, real_text
    implicit none(type, external)
@@ -198,6 +199,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: reason, word
       integer :: first, item
+      type(unit_t) :: unit
 
       associate (record => sheet%records(sheet%length), items => tokens%items)
          do while (items(next)%kind /= token_slash)
@@ -212,6 +214,8 @@ contains
                return
             end if
             item = parameter_index(record%group, lower_case(word))
+            unit = unit_t()
+            if (item == 0) call find_with_unit(lower_case(word), record%group, item, unit)
             if (item == 0) then
                call raise_error(error, "", place(sheet, items(next)%line)// &
                                 unknown_name(record%group, word))
@@ -230,12 +234,16 @@ contains
                if (begins_value(items(next)%kind, items(next + 1)%kind)) exit
                next = next + 1
             end do
-            call read_resolved(parameters(item), source, items(first:next - 1), sheet%constants, &
-                               record%values(item), reason)
+            call read_resolved(in_unit(parameters(item), unit), source, items(first:next - 1), &
+                               sheet%constants, record%values(item), reason)
             if (allocated(reason)) then
                call refuse(error, sheet, sheet%length, trim(parameters(item)%name), reason)
                return
             end if
+            associate (value => record%values(item))
+               value%per_thickness = unit%per_thickness
+               if (allocated(value%reals)) value%reals = unit%factor*value%reals
+            end associate
          end do
       end associate
       next = next + 1

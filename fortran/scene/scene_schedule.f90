@@ -2,7 +2,8 @@
 !! values of a side; and reading of whole files.
 !!
 !! The first row names the columns: a name of the group and its unit, as `time_s`, `rate_m2_s`,
-!! `pressure_pa`; times may be in min, h or d, pressures and tractions in kPa, MPa or bar instead.
+!! `pressure_pa`, or another unit (scene_units). `columns` gives these names to other headers.
+!! Columns of remarks are not read. An empty cell is no limit of pressure.
 !! Columns are separated by commas, semicolons or tabs, as in the first row; unless they are
 !! separated by commas, numbers may have a decimal comma, as spreadsheets write them in many
 !! countries. Rows that begin with # are comments. The values of a table become values of the group,
@@ -19,6 +20,8 @@ module scene_schedule
    use scene_parameter_table, only: parameters
    use scene_parameters, only: groups, kind_reals, parameter_t
    use scene_sheet, only: parameter_index, path_from, path_of, refuse, sheet_t
+   use scene_types, only: no_limit
+   use scene_units, only: find_with_unit, unit_t
    use scene_values, only: most_values, read_value, shortened, value_t
    use scene_words, only: lower_case
    implicit none(type, external)
@@ -32,16 +35,24 @@ module scene_schedule
    !> Name that the first time of a table replaces.
    character(len=*), parameter :: start = "start"
 
-   !> Unit allowed for a column instead of that of its parameter.
-   type :: unit_t
-      character(len=3) :: name, of  !< the unit and that of the parameter, in lower case
-      real(rk) :: factor  !< ratio of the two [-]
-   end type unit_t
+   !> What the absence of a parameter means whose cells may be empty.
+   character(len=*), parameter :: unlimited = "no limit"
 
-   type(unit_t), parameter :: other_units(*) = &
-                              [unit_t("min", "s", 60.0_rk), unit_t("h", "s", 3600.0_rk), &
-                               unit_t("d", "s", 86400.0_rk), unit_t("kpa", "pa", 1.0e3_rk), &
-                               unit_t("mpa", "pa", 1.0e6_rk), unit_t("bar", "pa", 1.0e5_rk)]
+   !> What a column contains.
+   type :: column_t
+      integer :: item = 0  !< index into parameters; 0: remarks, which are not read
+      type(unit_t) :: unit
+   end type column_t
+
+   !> Column with a header of its own.
+   type :: renamed_t
+      character(len=:), allocatable :: header
+      character(len=:), allocatable :: name  !< with the ending of its unit
+   end type renamed_t
+
+   !> Headers of columns that are not read.
+  character(len=*), parameter :: remarks(*) = [character(len=8) :: "remark", "remarks", "comment", &
+                                                                        "comments", "note", "notes"]
 
    integer(lk), parameter :: largest_file = 4000000_lk  !< size of a scene file or table [byte]
    integer(lk), parameter :: largest_scene = 10000000_lk  !< size of all files of a scene [byte]
@@ -58,14 +69,32 @@ contains
       do i = 1, sheet%length
          if (parameter_index(sheet%records(i)%group, "schedule") == 0) cycle
          file = sheet%records(i)%value("schedule")
-         if (.not. file%is_set) cycle
+         if (.not. file%is_set) then
+            call refuse_alone(sheet, i, error)
+            if (allocated(error)) return
+            cycle
+         end if
          call load_table(sheet, i, path_from(path_of(sheet, i), file%text), file%line, error)
          if (allocated(error)) return
          associate (record => sheet%records(i))
             record%values(parameter_index(record%group, "schedule"))%is_set = .false.
+            if (parameter_index(record%group, "columns") == 0) cycle
+            record%values(parameter_index(record%group, "columns"))%is_set = .false.
          end associate
       end do
    end subroutine load_schedules
+
+   !> Refuse names of columns without a table.
+   pure subroutine refuse_alone(sheet, record, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(error_t), allocatable, intent(out) :: error
+
+      if (parameter_index(sheet%records(record)%group, "columns") == 0) return
+      if (.not. sheet%records(record)%is_given("columns")) return
+     call refuse(error, sheet, record, "columns", "is given without schedule, whose columns it "// &
+                  "names")
+   end subroutine refuse_alone
 
    !> Refuse names in the scene file that are in the table too, and the start.
    pure subroutine refuse_both(sheet, record, names, error)
@@ -92,25 +121,32 @@ contains
       integer(ik), intent(in) :: line  !< line of the name `schedule`
       type(error_t), allocatable, intent(out) :: error
       type(text_t), allocatable :: cells(:), rows(:)
-      integer, allocatable :: item(:)
-      real(rk), allocatable :: factor(:), numbers(:, :)
+      type(column_t), allocatable :: columns(:)
+      type(renamed_t), allocatable :: renamed(:)
+      real(rk), allocatable :: numbers(:, :)
       character(len=:), allocatable :: reason
       character :: mark
-      integer :: k, n, row
+      integer :: n, row
 
+      call read_names(sheet, record, renamed, reason)
+      if (allocated(reason)) then
+         call refuse(error, sheet, record, "columns", reason)
+         return
+      end if
       call read_rows(sheet, record, path, rows, error)
       if (allocated(error)) return
       n = 0
       do row = 1, size(rows)
          if (is_comment(rows(row)%text)) cycle
-         if (.not. allocated(item)) mark = mark_of(rows(row)%text)
+         if (.not. allocated(columns)) mark = mark_of(rows(row)%text)
          cells = split(rows(row)%text, mark)
-         if (.not. allocated(item)) then
-            call find_columns(cells, sheet%records(record)%group, item, factor, reason)
-            allocate (numbers(min(size(rows) - row, most_values), size(item)))
+         if (.not. allocated(columns)) then
+            call find_columns(cells, sheet%records(record)%group, renamed, columns, reason)
+            allocate (numbers(min(size(rows) - row, most_values), size(columns)))
             if (.not. allocated(reason)) then
-               call refuse_both(sheet, record, [character(len=20) :: &
-                                                parameters(item)%name, start], error)
+               call refuse_both(sheet, record, [character(len=20) :: parameters( &
+                                               pack(columns%item, columns%item > 0))%name, start], &
+                                error)
                if (allocated(error)) return
             end if
          else if (n == most_values) then
@@ -118,7 +154,10 @@ contains
                      " rows that it may have"
          else
             n = n + 1
-            call read_row(cells, mark, item, factor, numbers(n, :), reason)
+            call read_row(cells, mark, columns, numbers(n, :), reason)
+            if (allocated(renamed) .and. .not. allocated(reason)) then
+               if (repeats(columns, numbers(:n, :))) n = n - 1
+            end if
          end if
          if (.not. allocated(reason)) cycle
          call raise_error(error, "", path//":"//integer_text(int(row, ik))//": "//reason// &
@@ -130,21 +169,85 @@ contains
                      "but must have a row per stage below the names of its columns")
          return
       end if
-      do k = 1, size(item)
-         associate (list => sheet%records(record)%values(item(k)))
-            list%is_set = .true.
-            list%line = line
-            list%reals = numbers(:n, k)
-         end associate
-      end do
+      call take_columns(columns, numbers(:n, :), line, sheet, record)
    end subroutine load_table
 
+   !> Make the columns values of the group.
+   pure subroutine take_columns(columns, numbers, line, sheet, record)
+      type(column_t), intent(in) :: columns(:)
+      real(rk), intent(in) :: numbers(:, :)  !< (rows, columns)
+      integer(ik), intent(in) :: line
+      type(sheet_t), intent(inout) :: sheet
+      integer, intent(in) :: record
+      integer :: k
+
+      do k = 1, size(columns)
+         if (columns(k)%item == 0) cycle
+         associate (list => sheet%records(record)%values(columns(k)%item))
+            list%is_set = .true.
+            list%line = line
+            list%reals = numbers(:, k)
+            list%per_thickness = columns(k)%unit%per_thickness
+         end associate
+      end do
+   end subroutine take_columns
+
+   !> Whether the last row is that before, but for its time.
+   pure logical function repeats(columns, numbers)
+      type(column_t), intent(in) :: columns(:)
+      real(rk), intent(in) :: numbers(:, :)  !< (rows, columns)
+      integer :: k, n
+
+      n = size(numbers, 1)
+      repeats = n > 1
+      if (n < 2) return
+      do k = 1, size(columns)
+         if (columns(k)%item == 0) cycle
+         if (parameters(columns(k)%item)%name == "time") cycle
+         if (abs(numbers(n, k) - numbers(n - 1, k)) > 0.0_rk) repeats = .false.
+      end do
+   end function repeats
+
+   !> Read the names that `columns` gives to headers: `HEADER=name [unit], ...`.
+   pure subroutine read_names(sheet, record, renamed, reason)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: record
+      type(renamed_t), allocatable, intent(out) :: renamed(:)  !< unallocated: none
+      character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
+      character(len=:), allocatable :: unit
+      type(text_t), allocatable :: parts(:)
+      type(value_t) :: given
+      integer :: equals, first, k, last
+
+      if (parameter_index(sheet%records(record)%group, "columns") == 0) return
+      given = sheet%records(record)%value("columns")
+      if (.not. given%is_set) return
+      parts = split(given%text, ",")
+      allocate (renamed(size(parts)))
+      do k = 1, size(parts)
+         associate (part => parts(k)%text)
+            equals = index(part, "=", back=.true.)
+            first = index(part, "[", back=.true.)
+            last = len_trim(part)
+            if (equals < 2 .or. first < equals + 2 .or. part(last:last) /= "]") then
+               reason = "has '"//shortened(part)//"' but must have HEADER=name [unit], with commas"
+               return
+            end if
+            unit = lower_case(trim(adjustl(part(first + 1:last - 1))))
+            do while (index(unit, "/") > 0)
+               unit(index(unit, "/"):index(unit, "/")) = "_"
+            end do
+            renamed(k)%header = trim(adjustl(part(:equals - 1)))
+            renamed(k)%name = lower_case(trim(adjustl(part(equals + 1:first - 1))))//"_"//unit
+         end associate
+      end do
+   end subroutine read_names
+
    !> The numbers of a row, in the units of the parameters.
-   pure subroutine read_row(cells, mark, item, factor, numbers, reason)
+   pure subroutine read_row(cells, mark, columns, numbers, reason)
       type(text_t), intent(in) :: cells(:)
       character, intent(in) :: mark  !< separator of the columns
-      integer, intent(in) :: item(:)  !< (columns) indices into parameters
-      real(rk), intent(in) :: factor(:)  !< (columns) units of the parameters in those given [-]
+      type(column_t), intent(in) :: columns(:)
       real(rk), intent(out) :: numbers(:)  !< (columns) [unit of the parameter]
       character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       character(len=:), allocatable :: cell
@@ -152,21 +255,28 @@ contains
       integer :: k
 
       numbers = 0.0_rk
-      if (size(cells) /= size(item)) then
+      if (size(cells) /= size(columns)) then
          reason = "the row has "//integer_text(size(cells, kind=ik))//" values but must have "// &
-                  integer_text(size(item, kind=ik))//", one per column"
-         if (mark == "," .and. size(cells) > size(item)) then
+                  integer_text(size(columns, kind=ik))//", one per column"
+         if (mark == "," .and. size(cells) > size(columns)) then
             reason = reason//"; with decimal commas, columns must be separated by semicolons "// &
                      "or tabs"
          end if
          return
       end if
-      do k = 1, size(item)
-         cell = cells(k)%text
-         if (mark /= ",") cell = with_point(cell)
-         call read_cell(cell, parameters(item(k)), value, reason)
-         if (allocated(reason)) return
-         numbers(k) = factor(k)*value%reals(1)
+      do k = 1, size(columns)
+         if (columns(k)%item == 0) cycle
+         associate (parameter => parameters(columns(k)%item))
+            cell = cells(k)%text
+            if (cell == "" .and. parameter%absent == unlimited) then
+               numbers(k) = no_limit
+               cycle
+            end if
+            if (mark /= ",") cell = with_point(cell)
+            call read_cell(cell, parameter, value, reason)
+            if (allocated(reason)) return
+            numbers(k) = columns(k)%unit%factor*value%reals(1)
+         end associate
       end do
    end subroutine read_row
 
@@ -250,60 +360,81 @@ contains
    end function split
 
    !> Find the parameters of the columns, which must include the time.
-   pure subroutine find_columns(names, group, item, factor, reason)
-      type(text_t), intent(in) :: names(:)
+   pure subroutine find_columns(headers, group, renamed, columns, reason)
+      type(text_t), intent(in) :: headers(:)
       integer, intent(in) :: group
-      integer, allocatable, intent(out) :: item(:)
-      real(rk), allocatable, intent(out) :: factor(:)  !< units of the parameters in those given [-]
+      type(renamed_t), allocatable, intent(in) :: renamed(:)
+      type(column_t), allocatable, intent(out) :: columns(:)
       character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
-      character(len=:), allocatable :: known
+      character(len=:), allocatable :: known, name
       integer :: k, m
 
       known = ""
       do m = 1, size(parameters)
          if (is_column(parameters(m), group)) known = known//", "//column_name(parameters(m))
       end do
-      allocate (item(size(names)), source=0)
-      allocate (factor(size(names)), source=1.0_rk)
-      do k = 1, size(names)
-         do m = 1, size(parameters)
-            if (.not. is_column(parameters(m), group)) cycle
-            call compare(lower_case(names(k)%text), parameters(m), m, item(k), factor(k))
-         end do
+      known = known(3:)//"; or in place of _s _min, _h or _d, of _pa _kpa, _mpa, _bar or _psi, "// &
+              "of _m2_s _m3_s, _l_s, _l_min, _m3_h or _bbl_min"
+      allocate (columns(size(headers)))
+      do k = 1, size(headers)
+         name = named(headers(k)%text, renamed)
+         if (name == "") cycle
+         call find_with_unit(name, group, columns(k)%item, columns(k)%unit)
+         if (columns(k)%item == 0) cycle
+         if (.not. is_column(parameters(columns(k)%item), group)) columns(k)%item = 0
       end do
-      known = known(3:)//"; or in place of _s _min, _h or _d, and of _pa _kpa, _mpa or _bar"
-      if (all(item == 0)) then  ! possibly another file, whose contents must not be quoted
+      if (allocated(renamed)) call find_missing(headers, renamed, reason)
+      if (allocated(reason)) return
+      if (all(columns%item == 0)) then  ! possibly another file, whose contents must not be quoted
          reason = "the file is no table, whose first row has the names of its columns: "//known
          return
       end if
-      do k = 1, size(names)
-         if (item(k) == 0) then
-            reason = "the column '"//shortened(names(k)%text)//"' must be one of "//known
-         else if (any(item(:k - 1) == item(k))) then
-            reason = "the column '"//column_name(parameters(item(k)))//"' is given twice"
+      do k = 1, size(headers)
+         if (columns(k)%item == 0) then
+            if (named(headers(k)%text, renamed) /= "") then
+              reason = "the column '"//shortened(headers(k)%text)//"' must be one of "//known
+            end if
+         else if (any(columns(:k - 1)%item == columns(k)%item)) then
+            reason = "the column '"//column_name(parameters(columns(k)%item))//"' is given twice"
          end if
          if (allocated(reason)) return
       end do
-      if (.not. any(parameters(item)%name == "time")) reason = "the column time_s is missing"
+      if (.not. any(parameters(pack(columns%item, columns%item > 0))%name == "time")) then
+        reason = "the column time_s is missing"
+      end if
    end subroutine find_columns
 
-   !> Set item and factor if a column is that of a parameter, in its unit or another allowed one.
-   pure subroutine compare(name, parameter, m, item, factor)
-      character(len=*), intent(in) :: name  !< of the column, in lower case
-      type(parameter_t), intent(in) :: parameter
-      integer, intent(in) :: m  !< the parameter's number
-      integer, intent(inout) :: item  !< m if the column is that of the parameter
-      real(rk), intent(inout) :: factor  !< [-]
+   !> Name of a column by its header, in lower case; empty for one that is not read.
+   pure function named(header, renamed) result(name)
+      character(len=*), intent(in) :: header
+      type(renamed_t), allocatable, intent(in) :: renamed(:)
+      character(len=:), allocatable :: name
       integer :: k
 
-      if (column_name(parameter) == name) item = m
-      do k = 1, size(other_units)
-         if (lower_case(trim(parameter%unit)) /= other_units(k)%of) cycle
-         if (trim(parameter%name)//"_"//trim(other_units(k)%name) /= name) cycle
-         item = m
-         factor = other_units(k)%factor
+      name = lower_case(header)
+      if (.not. allocated(renamed)) then
+         if (any(remarks == name)) name = ""
+         return
+      end if
+      name = ""
+      do k = 1, size(renamed)
+         if (renamed(k)%header == header) name = renamed(k)%name
       end do
-   end subroutine compare
+   end function named
+
+   !> Refuse a header of `columns` that the table does not have.
+   pure subroutine find_missing(headers, renamed, reason)
+      type(text_t), intent(in) :: headers(:)
+      type(renamed_t), intent(in) :: renamed(:)
+      character(len=:), allocatable, intent(inout) :: reason
+      integer :: k, m
+
+      do k = 1, size(renamed)
+         if (any([(headers(m)%text == renamed(k)%header, m=1, size(headers))])) cycle
+         reason = "there is no column '"//shortened(renamed(k)%header)//"', which columns names"
+         return
+      end do
+   end subroutine find_missing
 
    !> A parameter is a list of the group, and so a possible column of a table.
    pure logical function is_column(parameter, group)

@@ -11,9 +11,10 @@ module scene_types
    public :: initial_t
    public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, region_t, restraint_t
    public :: scene_t, time_t
-   public :: name_length
+   public :: name_length, no_limit
 
    integer, parameter :: name_length = 64
+   real(rk), parameter :: no_limit = 1.0e30_rk  !< pressure of a stage without a limit [Pa]
 
    !> The body: a rectangle, or a disc or polygon with x_min to y_max as its bounding rectangle.
    type :: domain_t
@@ -243,7 +244,7 @@ module scene_types
       integer(ik) :: growth_states = 200
       !> smallest slip or opening of stimulated faces, and mean slip of an event [m]
       real(rk) :: stimulated_jump = 1.0e-6_rk
-      real(rk) :: out_of_plane_length = 1.0_rk  !< out-of-plane length of slip events [m]
+      real(rk) :: out_of_plane_length = -1.0_rk  !< out-of-plane length of slip events [m]
       real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< smallest slip rate of seismic events [m/s]
    end type output_t
 
@@ -251,6 +252,7 @@ module scene_types
    type :: scene_t
       character(len=name_length) :: name = ""
       character(len=256) :: title = ""
+      real(rk) :: thickness = 1.0_rk  !< of the body, out of the plane [m]
       type(domain_t) :: domain
       type(material_t) :: material
       !> regions in the order of the file: the later of two that overlap applies; unallocated: none

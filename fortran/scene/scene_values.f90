@@ -20,6 +20,7 @@ module scene_values
       logical :: is_set = .false.  !< by the file or by a default
       integer(ik) :: line = 0  !< line of the file; 0: not in the file
       real(rk), allocatable :: reals(:)
+      logical :: per_thickness = .false.  !< reals must still be divided by the thickness
       integer(ik) :: whole = 0
       logical :: flag = .false.
       character(len=:), allocatable :: text

@@ -8,7 +8,7 @@ module twolevel_wells
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
-   use scene_types, only: injection_t
+   use scene_types, only: injection_t, no_limit
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    implicit none(type, external)
    private
@@ -190,7 +190,10 @@ contains
             wells%rate(w) = well%rate(stage)
             control = control_rate
             ! A stage of rate 0 has no limit: the well drives no flow.
-           if (allocated(well%pressure) .and. abs(wells%rate(w)) > 0.0_rk) control = control_limited
+            if (.not. allocated(well%pressure)) cycle
+            if (abs(wells%rate(w)) > 0.0_rk .and. well%pressure(stage) < no_limit) then
+               control = control_limited
+            end if
          end associate
       end do
    end subroutine ask_wells

@@ -167,9 +167,10 @@ contains
    end subroutine check_faults
 
    subroutine check_table_faults()
-      call refuse_table("time_s,rate_m3_s", "0,1", ":1: the column 'rate_m3_s' must be one of "// &
+      call refuse_table("time_s,rate_gal", "0,1", ":1: the column 'rate_gal' must be one of "// &
                         "rate_m2_s, pressure_pa, time_s; or in place of _s _min, _h or _d, "// &
-                        "and of _pa _kpa, _mpa or _bar"//doc)
+                        "of _pa _kpa, _mpa, _bar or _psi, of _m2_s _m3_s, _l_s, _l_min, _m3_h "// &
+                        "or _bbl_min"//doc)
       call refuse_table("rate_m2_s,pressure_pa", "0,1", ":1: the column time_s is missing"//doc)
       call refuse_table("time_s,time_s", "0,1", ":1: the column 'time_s' is given twice"//doc)
       call refuse_table("time_s,rate_m2_s", "0", ":2: the row has 1 values but must have 2, "// &
