@@ -1,0 +1,108 @@
+!> The checkpoints of a run: its state after each accepted state, in memory, and when it is written.
+!!
+!! What is written is the state in memory, also after a signal within a step: a step that is left
+!! changes the simulation, but not that state.
+module app_checkpoints
+   use app_version, only: version
+   use base_archive, only: archive_t
+   use base_errors, only: error_t
+   use base_kinds, only: ik, lk, rk
+   use report_checkpoint, only: about_t, write_checkpoint
+   use report_restart, only: restartable_t
+   use report_run, only: run_output_t
+   use report_simulation, only: simulation_t
+   use scene_types, only: scene_t
+   use scene_write, only: scene_text
+   implicit none(type, external)
+   private
+
+   public :: checkpoints_t
+
+   !> Ratio of the wall time between two checkpoints to the duration of the last one, at least; but
+   !! not of those that the scene counts, after a signal and at the end.
+   real(rk), parameter :: pause_per_cost = 100.0_rk
+
+   type :: checkpoints_t
+      logical :: is_on = .false.
+      type(archive_t) :: state  !< the last accepted state
+      type(about_t) :: about
+      logical :: is_due = .false.  !< there is a state, and it has not been written
+      integer(ik) :: states = 0  !< number of states since the last checkpoint
+      integer(ik) :: most_states = 0  !< and after how many there is another; 0: by wall time
+      real(rk) :: interval = 0.0_rk  !< wall time between checkpoints [s]
+      real(rk) :: last = 0.0_rk, cost = 0.0_rk  !< end and duration of the last checkpoint [s]
+   contains
+      procedure :: begin
+      procedure :: note
+      procedure :: write => write_files
+   end type checkpoints_t
+
+contains
+
+   subroutine begin(self, scene, simulation)
+      class(checkpoints_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      class(simulation_t), intent(in) :: simulation
+
+      self%is_on = .false.
+      select type (simulation)
+      class is (restartable_t)
+         self%is_on = scene%output%checkpoint > 0.0_rk .or. scene%output%checkpoint_states > 0
+      end select
+      self%interval = scene%output%checkpoint
+      self%most_states = scene%output%checkpoint_states
+      self%about%version = version
+      self%about%scene = scene_text(scene)
+      self%last = wall_time()
+   end subroutine begin
+
+   !> A new state has been stored in `state`; write it if that is due.
+   subroutine note(self, simulation, files)
+      class(checkpoints_t), intent(inout) :: self
+      class(restartable_t), intent(in) :: simulation
+      type(run_output_t), intent(inout) :: files
+      real(rk) :: since
+      logical :: is_time
+
+      self%about%time = simulation%time()
+      self%about%state = simulation%last_state()
+      self%is_due = .true.
+      self%states = self%states + 1
+      since = wall_time() - self%last
+      is_time = self%interval > 0.0_rk .and. &
+                (since >= self%interval .or. simulation%begins_stage()) &
+                .and. since >= pause_per_cost*self%cost
+      if (self%most_states > 0) is_time = is_time .or. self%states >= self%most_states
+      if (is_time) call self%write(files)
+   end subroutine note
+
+   !> Write the last state, unless it has been written. A failure is a line of the log.
+   subroutine write_files(self, files)
+      class(checkpoints_t), intent(inout) :: self
+      type(run_output_t), intent(inout) :: files
+      type(archive_t) :: head
+      type(error_t), allocatable :: error
+      real(rk) :: begun
+
+      if (.not. self%is_due) return
+      begun = wall_time()
+      call head%begin_storing()
+      call self%about%visit(head)
+      call files%visit_text(head)
+      call write_checkpoint(files%place%directory, head, self%state, error)
+      if (allocated(error)) call files%log("no checkpoint: "//error%message)
+      self%is_due = .false.
+      self%states = 0
+      self%last = wall_time()
+      self%cost = self%last - begun
+   end subroutine write_files
+
+   !> Wall time since any fixed time [s].
+   real(rk) function wall_time()
+      integer(lk) :: now, rate
+
+      call system_clock(now, rate)
+      wall_time = real(now, rk)/real(rate, rk)
+   end function wall_time
+
+end module app_checkpoints
