@@ -1,12 +1,16 @@
-!> The checkpoints of a run: its state after each accepted state, in memory, and when it is written.
+!> The checkpoints of a run: an accepted state in memory, which is renewed after steps, and when it is
+!! written.
 !!
 !! What is written is the state in memory, also after a signal within a step: a step that is left
-!! changes the simulation, but not that state.
+!! changes the simulation, but not that state. Where steps are so short that copies would take more
+!! than a percent of the time, it is that of an earlier step, and a restart repeats a hundred times the
+!! duration of a copy.
 module app_checkpoints
    use app_version, only: version
    use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
+   use base_number, only: brief_text, integer_text
    use report_checkpoint, only: about_t, write_checkpoint
    use report_restart, only: restartable_t
    use report_run, only: run_output_t
@@ -18,8 +22,8 @@ module app_checkpoints
 
    public :: checkpoints_t
 
-   !> Ratio of the wall time between two checkpoints to the duration of the last one, at least; but
-   !! not of those that the scene counts, after a signal and at the end.
+   !> Least ratio of the wall time between two checkpoints, or two copies in memory, to the duration
+   !! of the last one; but not of those that the scene counts, after a signal and at the end.
    real(rk), parameter :: pause_per_cost = 100.0_rk
 
    type :: checkpoints_t
@@ -31,10 +35,15 @@ module app_checkpoints
       integer(ik) :: most_states = 0  !< and after how many there is another; 0: by wall time
       real(rk) :: interval = 0.0_rk  !< wall time between checkpoints [s]
       real(rk) :: last = 0.0_rk, cost = 0.0_rk  !< end and duration of the last checkpoint [s]
+      real(rk) :: last_copy = 0.0_rk, copy_cost = 0.0_rk  !< the same of the state in memory [s]
+      real(rk) :: spent = 0.0_rk  !< CPU time of all states kept and checkpoints written [s]
+      integer(ik) :: n_written = 0
    contains
       procedure :: begin
+      procedure :: count_state
       procedure :: note
       procedure :: write => write_files
+      procedure :: summary
    end type checkpoints_t
 
 contains
@@ -56,24 +65,34 @@ contains
       self%last = wall_time()
    end subroutine begin
 
-   !> A new state has been stored in `state`; write it if that is due.
-   subroutine note(self, simulation, files)
+   !> Another state has been accepted: whether it is to be stored in `state`, and to be written.
+   subroutine count_state(self, simulation, keeps, writes)
       class(checkpoints_t), intent(inout) :: self
       class(restartable_t), intent(in) :: simulation
-      type(run_output_t), intent(inout) :: files
+      logical, intent(out) :: keeps, writes
       real(rk) :: since
-      logical :: is_time
+
+      self%states = self%states + 1
+      since = wall_time() - self%last
+      writes = self%interval > 0.0_rk .and. &
+               (since >= self%interval .or. simulation%begins_stage()) &
+               .and. since >= pause_per_cost*self%cost
+      if (self%most_states > 0) writes = writes .or. self%states >= self%most_states
+      keeps = writes .or. simulation%is_over() .or. &
+              wall_time() - self%last_copy >= pause_per_cost*self%copy_cost
+      if (keeps) self%last_copy = wall_time()
+   end subroutine count_state
+
+   !> The state has been stored.
+   subroutine note(self, simulation)
+      class(checkpoints_t), intent(inout) :: self
+      class(restartable_t), intent(in) :: simulation
 
       self%about%time = simulation%time()
       self%about%state = simulation%last_state()
       self%is_due = .true.
-      self%states = self%states + 1
-      since = wall_time() - self%last
-      is_time = self%interval > 0.0_rk .and. &
-                (since >= self%interval .or. simulation%begins_stage()) &
-                .and. since >= pause_per_cost*self%cost
-      if (self%most_states > 0) is_time = is_time .or. self%states >= self%most_states
-      if (is_time) call self%write(files)
+      self%copy_cost = wall_time() - self%last_copy
+      self%last_copy = self%last_copy + self%copy_cost
    end subroutine note
 
    !> Write the last state, unless it has been written. A failure is a line of the log.
@@ -90,12 +109,28 @@ contains
       call self%about%visit(head)
       call files%visit_text(head)
       call write_checkpoint(files%place%directory, head, self%state, error)
-      if (allocated(error)) call files%log("no checkpoint: "//error%message)
+      if (allocated(error)) then
+         call files%log("no checkpoint: "//error%message)
+      else
+         self%n_written = self%n_written + 1
+      end if
       self%is_due = .false.
       self%states = 0
       self%last = wall_time()
       self%cost = self%last - begun
    end subroutine write_files
+
+   !> Number, size and cost of the checkpoints in words.
+   function summary(self, cpu) result(words)
+      class(checkpoints_t), intent(in) :: self
+      real(rk), intent(in) :: cpu  !< CPU time of the run [s]
+      character(len=:), allocatable :: words
+
+      words = integer_text(self%n_written)//" checkpoints, the last one of "// &
+              brief_text(1.0e-6_rk*real(self%state%length, rk), 3)//" MB without tables; with "// &
+              "the states kept in memory "//brief_text(self%spent, 3)//" s CPU time, "// &
+              brief_text(100.0_rk*self%spent/max(cpu, tiny(cpu)), 3)//" % of the run"
+   end function summary
 
    !> Wall time since any fixed time [s].
    real(rk) function wall_time()

@@ -118,6 +118,9 @@ contains
          call keep_first(trouble, error)
          call timers%start(phase_output)
          call journal%checkpoints%write(journal%files)
+         if (journal%checkpoints%is_on) then
+            call journal%files%log(journal%checkpoints%summary(timers%cpu_seconds()))
+         end if
          call timers%stop(phase_output)
       end if
 
@@ -240,15 +243,23 @@ contains
       type(journal_t), intent(inout) :: journal
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      real(rk) :: begun  ! [s]
+      logical :: keeps, writes
 
       if (.not. journal%checkpoints%is_on) return
       select type (simulation)
       class is (restartable_t)
          associate (checkpoints => journal%checkpoints)
+            begun = timers%cpu_seconds()
+            call checkpoints%count_state(simulation, keeps, writes)
+            if (.not. keeps) return
             call checkpoints%state%begin_storing()
             call journal%visit(checkpoints%state)
             call simulation%visit(checkpoints%state, timers, error)
-            if (.not. allocated(error)) call checkpoints%note(simulation, journal%files)
+            if (allocated(error)) return
+            call checkpoints%note(simulation)
+            if (writes) call checkpoints%write(journal%files)
+            checkpoints%spent = checkpoints%spent + timers%cpu_seconds() - begun
          end associate
       end select
    end subroutine keep_state

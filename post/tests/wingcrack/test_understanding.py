@@ -45,6 +45,7 @@ def understood(way: str, words: list[str], place: Path) -> tuple[int, str, str]:
     [
         ["run", str(SCENE)],
         ["run", "--threads=3", "--ranks", "2", str(SCENE), "--out", "some where", "--no-plot"],
+        ["run", "--restart", ".", "--end", "7200"],
         ["check", str(SCENE)],
         ["plot", ".", "/", "--times", "1h,90", "--only", "maps,tips", "--format", "png,pdf"],
         ["view", ".", "--port", "8040"],
