@@ -17,9 +17,7 @@ class Archive {
 public:
     Archive(Mode mode, char* place, const char* end) : mode_(mode), place_(place), end_(end) {}
 
-    template <typename... Members> void operator()(Members&... members) {
-        (visit(members), ...);
-    }
+    template <typename... Members> void operator()(Members&... members) { (visit(members), ...); }
 
     std::size_t size() const { return size_; }
     bool is_at_end() const { return place_ == end_; }

@@ -6,7 +6,8 @@
 namespace {
 
 TestNetwork cross(double longer) {
-    return TestNetwork({{{0.2, 0.5}, {0.8, 0.52}, {0.8 + longer, 0.52}}, {{0.5, 0.2}, {0.47, 0.7}}});
+    return TestNetwork(
+        {{{0.2, 0.5}, {0.8, 0.52}, {0.8 + longer, 0.52}}, {{0.5, 0.2}, {0.47, 0.7}}});
 }
 
 bool are_same(const ApiMesh& a, const ApiMesh& b) {

@@ -1,5 +1,5 @@
-!> What may differ from the scene of a checkpoint at a restart. Both scenes are compared as the text of
-!! scene.nml, in which every name of every group stands.
+!> What may differ from the scene of a checkpoint at a restart. Both scenes are compared as texts of
+!! scene.nml, which have every name of every group.
 module app_changes
    use base_errors, only: error_t, raise_error
    use base_kinds, only: rk
@@ -13,7 +13,7 @@ module app_changes
    public :: check_changes
 
    !> Groups and names that may change; * stands for all names of a group.
-   character(len=*), parameter :: free(*) = [character(len=30) :: "time *", "output *", &
+   character(len=*), parameter :: free(*) = [character(len=30) :: "scene *", "time *", "output *", &
       & "injection start", "injection end", "injection time", "injection schedule", "side time", &
       & "side schedule", "growth stop_gain"]
    !> The same, where the name stays given, or not given: wells stay controlled as they are, and
@@ -60,7 +60,7 @@ contains
       character(len=*), intent(in) :: what
       type(error_t), allocatable, intent(out) :: error
 
-      call raise_error(error, "", "a restart cannot change the "//what//": it may change &time, "// &
+     call raise_error(error, "", "a restart cannot change the "//what//": it may change &time, "// &
                        "&output, stages of wells, values of sides in time, and stop_gain")
    end subroutine refuse
 

@@ -1,10 +1,10 @@
-!> The checkpoints of a run: an accepted state in memory, which is renewed after steps, and when it is
-!! written.
+!> The checkpoints of a run: an accepted state in memory, which is renewed after steps, and when it
+!! is written.
 !!
 !! What is written is the state in memory, also after a signal within a step: a step that is left
 !! changes the simulation, but not that state. Where steps are so short that copies would take more
-!! than a percent of the time, it is that of an earlier step, and a restart repeats a hundred times the
-!! duration of a copy.
+!! than a percent of the time, it is that of an earlier step, and a restart repeats what took a
+!! hundred times as long as a copy.
 module app_checkpoints
    use app_version, only: version
    use base_archive, only: archive_t
@@ -70,17 +70,18 @@ contains
       class(checkpoints_t), intent(inout) :: self
       class(restartable_t), intent(in) :: simulation
       logical, intent(out) :: keeps, writes
-      real(rk) :: since
+      real(rk) :: now, since
 
       self%states = self%states + 1
-      since = wall_time() - self%last
+      now = wall_time()
+      since = now - self%last
       writes = self%interval > 0.0_rk .and. &
                (since >= self%interval .or. simulation%begins_stage()) &
                .and. since >= pause_per_cost*self%cost
       if (self%most_states > 0) writes = writes .or. self%states >= self%most_states
       keeps = writes .or. simulation%is_over() .or. &
-              wall_time() - self%last_copy >= pause_per_cost*self%copy_cost
-      if (keeps) self%last_copy = wall_time()
+              now - self%last_copy >= pause_per_cost*self%copy_cost
+      if (keeps) self%last_copy = now
    end subroutine count_state
 
    !> The state has been stored.

@@ -30,8 +30,9 @@ module base_archive
       generic :: item => item_real, item_integer, item_long, item_logical, item_text
       procedure, private :: list_real1, list_real2, list_real3, list_real4, list_integer1
       procedure, private :: list_integer2, list_integer3, list_logical1, list_logical2, list_byte1, list_text
-      generic :: list => list_real1, list_real2, list_real3, list_real4, list_integer1, &
-         list_integer2, list_integer3, list_logical1, list_logical2, list_byte1, list_text
+      generic :: list => list_real1, list_real2, list_real3, list_real4, &
+         list_integer1, list_integer2, list_integer3, list_logical1, list_logical2, &
+         list_byte1, list_text
    end type archive_t
 
 contains
@@ -114,6 +115,7 @@ contains
    subroutine item_text(self, name, x)
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
+      ! allow(C072)
       character(len=*), intent(inout), target :: x
       integer(lk) :: extents(1)
       logical :: exists

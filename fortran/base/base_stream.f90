@@ -1,7 +1,7 @@
 !> Stream of bytes with named entries, for base_archive, which defines them.
 module base_stream
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int64_t, c_loc, c_ptr, c_signed_char, &
-                                          c_size_t
+                                                                             c_size_t
    use, intrinsic :: iso_fortran_env, only: int8
    use base_kinds, only: ik, lk
    implicit none(type, external)
@@ -152,6 +152,7 @@ contains
    !> Load a head. After a fault nothing changes.
    subroutine load_head(self, name, kind, ranks, extents)
       class(stream_t), intent(inout) :: self
+      ! allow(C072)
       character(len=*), intent(inout), target :: name
       character(len=2), intent(inout), target :: kind
       integer(ik), intent(out), target :: ranks

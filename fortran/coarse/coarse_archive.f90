@@ -1,5 +1,5 @@
-!> State and model of the coarse level in an archive (base_archive). Stencils and matrices follow from
-!! the mesh, the scene and the fracture cells, and are made again.
+!> State and model of the coarse level in an archive (base_archive). Stencils and matrices follow
+!! from the mesh, the scene and the fracture cells, and are made again.
 module coarse_archive
    use base_archive, only: archive_t
    use base_errors, only: error_t

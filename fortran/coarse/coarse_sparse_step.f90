@@ -376,8 +376,8 @@ contains
       if (allocated(self%direction)) deallocate (self%direction, self%force, self%product)
    end subroutine release
 
-   !> Store or load the equations that were factorized and the known directions; the factors are made
-   !! again from these equations.
+   !> Store or load the equations that were factorized and the known directions; the factors are
+   !! made again from these equations.
    subroutine visit(self, archive, error)
       class(sparse_step_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive

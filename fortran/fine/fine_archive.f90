@@ -95,7 +95,7 @@ contains
          if (allocated(conditions%law)) deallocate (conditions%law)
          if (n >= 0_lk) allocate (conditions%law(n))
       end if
-      if (n > 0_lk) call archive%plain("law", c_loc(conditions%law), n*storage_size(conditions%law)/8_lk)
+ if (n > 0_lk) call archive%plain("law", c_loc(conditions%law), n*storage_size(conditions%law)/8_lk)
       call archive%leave()
    end subroutine visit_conditions
 

@@ -1,5 +1,5 @@
-!> Networks and meshes in an archive (base_archive). A mesh is stored as the library has it, with its
-!! numbering, and is not made again.
+!> Networks and meshes in an archive (base_archive). A mesh is stored as the library has it, with
+!! its numbering, and is not made again.
 module mesh_archive
    use, intrinsic :: iso_c_binding, only: c_associated
    use, intrinsic :: iso_fortran_env, only: int8

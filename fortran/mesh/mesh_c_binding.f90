@@ -2,7 +2,7 @@
 !! uses them.
 module mesh_c_binding
    use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, &
-                                          c_ptr, c_signed_char, c_size_t
+                                                                      c_ptr, c_signed_char, c_size_t
    implicit none(type, external)
    private
 

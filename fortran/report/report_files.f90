@@ -11,8 +11,8 @@ module report_files
    implicit none(type, external)
    private
 
-   public :: copy_file, make_directory, place_t, read_bytes, remove_file, rename_file, reserve_file, whole_file_t
-   public :: write_text_file
+   public :: copy_file, make_directory, place_t, read_bytes, remove_file, rename_file
+   public :: reserve_file, whole_file_t, write_text_file
 
    !> A file that gets its name when it is complete. `commit` reports the first failure.
    type :: whole_file_t

@@ -1,5 +1,5 @@
-!> Simulations whose complete state can be stored in an archive (base_archive), and that go on from it
-!! as if they had not been interrupted, bit for bit.
+!> Simulations whose complete state can be stored in an archive (base_archive), and that go on from
+!! it as if they had not been interrupted, bit for bit.
 !!
 !! The state is stored between two accepted states, when the event log is empty. What follows from
 !! the scene (rules, laws, step settings) is made again from it, so that it may differ at a restart.

@@ -102,7 +102,7 @@ contains
          do i = 1, 3
             inquire (file=origin//"/"//file_name(i, n), exist=exists)
             if (.not. exists) cycle
-            call copy_file(origin//"/"//file_name(i, n), self%directory//"/"//file_name(i, n), error)
+           call copy_file(origin//"/"//file_name(i, n), self%directory//"/"//file_name(i, n), error)
             if (allocated(error)) return
          end do
       end do

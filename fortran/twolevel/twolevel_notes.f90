@@ -288,7 +288,8 @@ contains
          if (allocated(self%approach)) deallocate (self%approach)
          if (n >= 0_lk) allocate (self%approach(n))
       end if
-      if (n > 0_lk) call archive%plain("approach", c_loc(self%approach), n*storage_size(self%approach)/8_lk)
+      if (n > 0_lk) call archive%plain("approach", c_loc(self%approach), &
+         & n*storage_size(self%approach)/8_lk)
       call archive%list("is_uncertain", self%is_uncertain)
       call archive%item("was_bifurcation", self%was_bifurcation)
       call archive%list("relation", self%relation)

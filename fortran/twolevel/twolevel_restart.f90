@@ -1,7 +1,7 @@
 !> The complete state of a simulation with a fluid in an archive (docs/architecture.md).
 !!
 !! Stored: all values that a step changes; the meshes of both levels as the library has them; what
-!! decisions depend on (step control, Broyden updates, window slots, estimates of errors, event log).
+!! decisions depend on (step control, Broyden updates, window slots, estimates of errors).
 !! Made again, with the same bits: stencils, matrices and factors of the coarse level, and models of
 !! windows, from the same meshes in the same order.
 submodule(twolevel_state) twolevel_restart

@@ -83,7 +83,7 @@ contains
             text = argument(i)
             read (text, *, iostat=status) end_time
             if (status /= 0 .or. .not. end_time > 0.0_rk) call leave("--end needs a time in "// &
-               "seconds, not '"//argument(i)//"'", exit_usage)
+                                                     "seconds, not '"//argument(i)//"'", exit_usage)
          case default
             call leave("unknown argument "//argument(i)//"; "//usage, exit_usage)
          end select
