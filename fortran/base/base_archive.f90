@@ -29,7 +29,8 @@ module base_archive
       procedure, private :: item_real, item_integer, item_long, item_logical, item_text
       generic :: item => item_real, item_integer, item_long, item_logical, item_text
       procedure, private :: list_real1, list_real2, list_real3, list_real4, list_integer1
-      procedure, private :: list_integer2, list_integer3, list_logical1, list_logical2, list_byte1, list_text
+      procedure, private :: list_integer2, list_integer3, list_logical1, list_logical2, list_byte1
+      procedure, private :: list_text
       generic :: list => list_real1, list_real2, list_real3, list_real4, &
          list_integer1, list_integer2, list_integer3, list_logical1, list_logical2, &
          list_byte1, list_text
