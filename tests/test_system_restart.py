@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, varied
+from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied
 
 import wingcrack
 from wingcrack.runs.checkpoint import read_checkpoint
@@ -24,10 +24,13 @@ pytestmark = pytest.mark.usefixtures("program")
 
 EVERY_STATE = "\n&scene name = 'a_run' /\n&output checkpoint_states = 1 /\n"
 FINE = varied(("size_fracture = 0.02", "size_fracture = 0.01"), ("step = 3600.0", "step = 600.0"))
+MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
+MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
 SCENES = {
     "steps": FINE,
     "growth": GROWING,
     "paris": GROWING_BY_PARIS,
+    "mechanics": MECHANICS,
     "sparse": FINE.replace("size_boundary = 0.25", "size_boundary = 0.25, condensation = 'sparse'"),
 }
 # Times and memory of run.json, which differ from run to run.
@@ -79,8 +82,9 @@ def unbroken(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 
 @pytest.mark.parametrize("name", list(SCENES))
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.6, 0.9])
-@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize(
+    ("share", "sent"), [(0.0, signal.SIGTERM), (0.5, signal.SIGTERM), (0.7, signal.SIGKILL)]
+)
 def test_a_run_goes_on_as_if_it_had_not_been_ended(
     name: str, share: float, sent: signal.Signals, unbroken: Callable[[str], Path], tmp_path: Path
 ) -> None:

@@ -51,7 +51,8 @@ contains
          end associate
       end do
       if (i <= max(size(old%name), size(new%name))) call refuse("number of groups", error)
-      if (allocated(error) .or. .not. scene%time%end < time) return
+      if (allocated(error) .or. .not. scene%has_fluid()) return
+      if (.not. scene%time%end < time) return
       call raise_error(error, "", "the checkpoint is of "//brief_text(time, 6)//" s, after the "// &
                        "end at "//brief_text(scene%time%end, 6)//" s")
    end subroutine check_changes

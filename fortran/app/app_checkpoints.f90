@@ -76,7 +76,7 @@ contains
       now = wall_time()
       since = now - self%last
       writes = self%interval > 0.0_rk .and. &
-               (since >= self%interval .or. simulation%begins_stage()) &
+               (since >= self%interval .or. simulation%begins_stage) &
                .and. since >= pause_per_cost*self%cost
       if (self%most_states > 0) writes = writes .or. self%states >= self%most_states
       keeps = writes .or. simulation%is_over() .or. &

@@ -6,32 +6,41 @@ module growth_archive
    use growth_front, only: front_state_t
    use growth_interaction, only: interaction_t, tip_groups_t
    use growth_segment, only: segment_t
+   use growth_tip, only: tip_t
    use mesh_archive, only: visit_network
    implicit none(type, external)
    private
 
-   public :: visit_front, visit_groups, visit_interaction, visit_segments
+   public :: visit_front, visit_groups, visit_interaction, visit_segments, visit_tips
 
 contains
 
    subroutine visit_front(archive, name, front)
       type(archive_t), intent(inout) :: archive
       character(len=*), intent(in) :: name
-      type(front_state_t), intent(inout), target :: front
-      integer(lk) :: n
+      type(front_state_t), intent(inout) :: front
 
       call archive%enter(name)
       call visit_network(archive, "network", front%network)
-      n = -1_lk
-      if (allocated(front%tip)) n = size(front%tip, kind=lk)
-      call archive%count("tip", n)
-      if (archive%is_loading) then
-         if (allocated(front%tip)) deallocate (front%tip)
-         if (n >= 0_lk) allocate (front%tip(n))
-      end if
-      if (n > 0_lk) call archive%plain("tip", c_loc(front%tip), n*storage_size(front%tip)/8_lk)
+      call visit_tips(archive, "tip", front%tip)
       call archive%leave()
    end subroutine visit_front
+
+   subroutine visit_tips(archive, name, tip)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(tip_t), allocatable, intent(inout), target :: tip(:)
+      integer(lk) :: n
+
+      n = -1_lk
+      if (allocated(tip)) n = size(tip, kind=lk)
+      call archive%count(name, n)
+      if (archive%is_loading) then
+         if (allocated(tip)) deallocate (tip)
+         if (n >= 0_lk) allocate (tip(n))
+      end if
+      if (n > 0_lk) call archive%plain(name, c_loc(tip), n*storage_size(tip)/8_lk)
+   end subroutine visit_tips
 
    subroutine visit_segments(archive, name, segment)
       type(archive_t), intent(inout) :: archive

@@ -14,7 +14,8 @@ module mesh_archive
    implicit none(type, external)
    private
 
-   public :: visit_fracture_mesh, visit_lists, visit_mesher, visit_mesher_and_mesh, visit_network
+   public :: visit_fracture_mesh, visit_lists, visit_mesh, visit_mesher, visit_mesher_and_mesh
+   public :: visit_network
 
 contains
 
@@ -66,6 +67,31 @@ contains
       call archive%list("tip_radius", mesh%tip_radius)
       call archive%leave()
    end subroutine visit_fracture_mesh
+
+   !> A mesh without one of the library.
+   subroutine visit_mesh(archive, name, mesh)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(mesh_t), intent(inout) :: mesh
+
+      call archive%enter(name)
+      call archive%item("n_nodes", mesh%n_nodes)
+      call archive%item("n_cells", mesh%n_cells)
+      call archive%item("n_faces", mesh%n_faces)
+      call archive%list("xy", mesh%xy)
+      call archive%list("cell_nodes", mesh%cell_nodes)
+      call archive%list("cell_faces", mesh%cell_faces)
+      call archive%list("face_nodes", mesh%face_nodes)
+      call archive%list("face_cells", mesh%face_cells)
+      call archive%list("face_side", mesh%face_side)
+      call archive%list("face_fracture_cell", mesh%face_fracture_cell)
+      call visit_fracture_mesh(archive, "fracture", mesh%fracture)
+      call archive%item("n_layers", mesh%n_layers)
+      call archive%list("layer_face", mesh%layer_face)
+      call archive%list("face_layer", mesh%face_layer)
+      call archive%list("cell_layer", mesh%cell_layer)
+      call archive%leave()
+   end subroutine visit_mesh
 
    !> The mesh of the library; none if there is none.
    subroutine visit_mesher(archive, name, mesher)

@@ -20,10 +20,10 @@ module report_restart
 
    !> A simulation that can be stored.
    type, abstract, extends(simulation_t) :: restartable_t
+      logical :: begins_stage = .false.  !< a stage of a well begins at the present state
    contains
       procedure(prepare_scene), deferred :: prepare
       procedure(visit_state), deferred :: visit
-      procedure(ask_state), deferred :: begins_stage
    end type restartable_t
 
    abstract interface
@@ -44,13 +44,6 @@ module report_restart
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine visit_state
-
-      !> A stage of a well begins at the present state.
-      pure logical function ask_state(self)
-         import :: restartable_t
-         implicit none(type, external)
-         class(restartable_t), intent(in) :: self
-      end function ask_state
    end interface
 
 contains

@@ -470,12 +470,10 @@ module scene_parameter_table
          meaning="Slip rate above which slip is seismic: where the largest one of a patch "// &
                  "passes it, an event of slip_events.csv ends and another one begins"), &
       parameter_t("output", "checkpoint", unit="s", range=at_least_zero, default="600.0", &
-         scenes=in_fluid, &
          meaning="Wall time between checkpoints, from which run --restart goes on; others are "// &
                  "written at the beginning of stages of wells, after a signal and at the end. "// &
                  "0: none"), &
       parameter_t("output", "checkpoint_states", kind_integer, range=at_least_zero, default="0", &
-         scenes=in_fluid, &
          meaning="Number of accepted states between checkpoints; 0: the wall time decides")]
    !&>
 

@@ -141,6 +141,7 @@ contains
       call archive%list("why_cut", self%step%why_cut)
       call archive%list("places", self%step%places)
       call archive%leave()
+      call archive%item("begins_stage", self%begins_stage)
       call visit_stepper(archive, "stepper", self%stepper)
       call self%notes%visit(archive)
       call self%stimulation%visit(archive)
@@ -150,11 +151,5 @@ contains
       call archive%item("compared_unknowns", self%compared_unknowns)
       call archive%leave()
    end subroutine visit_control
-
-   module pure logical function begins_stage(self)
-      class(two_levels_t), intent(in) :: self
-
-      begins_stage = self%step%ends_at_switch
-   end function begins_stage
 
 end submodule twolevel_restart

@@ -113,7 +113,6 @@ module twolevel_state
       procedure :: remesh_coarse
       procedure :: prepare
       procedure :: visit
-      procedure :: begins_stage
    end type two_levels_t
 
    ! In the submodules twolevel_remeshing, twolevel_steps, twolevel_simulation and twolevel_restart
@@ -131,11 +130,6 @@ module twolevel_state
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine visit
-
-      module pure logical function begins_stage(self)
-         implicit none(type, external)
-         class(two_levels_t), intent(in) :: self
-      end function begins_stage
 
       !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if
       !! no growth follows.
