@@ -206,6 +206,26 @@ def test_a_later_end_and_another_stage_continue_a_run(ended: Path, tmp_path: Pat
     assert longer.history["time_s"].iloc[-1] == 19800.0
 
 
+def test_another_stage_and_end_are_as_if_they_had_been_there_from_the_start(
+    tmp_path: Path,
+) -> None:
+    whole = FINE.replace("end = 14400.0", "end = 16200.0") + EVERY_STATE
+    (tmp_path / "whole.nml").write_text(whole)
+    (tmp_path / "base.nml").write_text(FINE.replace("end = 18000.0", "end = 7200.0") + EVERY_STATE)
+    for words in (
+        ("run", tmp_path / "whole.nml", "--out", tmp_path / "whole"),
+        ("run", tmp_path / "base.nml", "--out", tmp_path / "base"),
+        *[
+            ("run", tmp_path / "whole.nml", "--restart", tmp_path / "base", "--out", tmp_path / out)
+            for out in ("fork_1", "fork_2")
+        ],
+    ):
+        done = solver(*words, "--quiet")
+        assert done.returncode == 0, done.stderr
+    assert_same(tmp_path / "fork_1", tmp_path / "whole")
+    assert_same(tmp_path / "fork_2", tmp_path / "whole")
+
+
 def test_runs_without_checkpoints_have_nothing_to_go_on_from(tmp_path: Path) -> None:
     (tmp_path / "scene.nml").write_text(SCENE + "\n&output checkpoint = 0.0 /\n")
     done = solver("run", tmp_path / "scene.nml", "--out", tmp_path / "out", "--quiet")

@@ -12,6 +12,7 @@ submodule(twolevel_state) twolevel_restart
    use mesh_archive, only: visit_mesher_and_mesh
    use report_restart, only: visit_simulation
    use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
+   use twolevel_schedule, only: next_switch
    use twolevel_setup, only: keep_above_zero, rules_of_scene
    implicit none(type, external)
 
@@ -59,13 +60,19 @@ contains
       if (archive%is_loading) call go_beyond_end(self)
    end subroutine visit
 
-   !> A run that has ended at the end of its scene goes on if the scene ends later now.
+   !> A run that has ended at the end of its scene goes on if the scene ends later now; unless a
+   !! stage ends there too, its last step does not count as one before a switch.
    subroutine go_beyond_end(self)
       class(two_levels_t), intent(inout) :: self
 
       if (.not. allocated(self%ending)) return
-      if (self%ending /= at_end) return
-      if (self%now%coarse%time < self%scene%time%end*(1.0_rk - same_time)) deallocate (self%ending)
+      associate (time => self%now%coarse%time)
+         if (self%ending /= at_end .or. &
+             .not. time < self%scene%time%end*(1.0_rk - same_time)) return
+         deallocate (self%ending)
+         self%step%ends_at_switch = next_switch(self%scene, self%before%time) &
+                                    <= time*(1.0_rk + same_time)
+      end associate
    end subroutine go_beyond_end
 
    !> Coarse mesh and fracture cells; the model is discretized and factorized again.
