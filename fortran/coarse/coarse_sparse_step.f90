@@ -17,7 +17,7 @@
 !! at every tenth factorization: in between, and where old factors are used, it is that of an
 !! earlier matrix.
 module coarse_sparse_step
-   use algebra_lapack, only: dlacn2
+   use algebra_lapack, only: estimate_norm
    use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric
    use base_archive, only: archive_t
    use base_errors, only: error_t
@@ -309,7 +309,7 @@ contains
       do part = 1, 2
          kase = 0
          do
-            call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
+            call estimate_norm(slopes%n, v, x, signs, norm(part), kase, save)
             if (kase == 0) exit
             if (part == 1) call multiply(self, condensed, slopes, kase == 1, x, error)
             if (part == 2) call solve(self, is_flow, kase == 1, x, error)
