@@ -5,6 +5,7 @@
 #include "judge.hpp"
 #include "locate.hpp"
 #include "mesh.hpp"
+#include "store.hpp"
 
 #include <memory>
 #include <mutex>
@@ -371,6 +372,23 @@ int cm_map_copy(const cm_mesh* new_mesh, int32_t* cell_old, int32_t* overlap_fir
         std::copy(map.overlap_area.begin(), map.overlap_area.end(), overlap_area);
         for (const FractureCell& cell : new_mesh->mesh.split.fracture_cells)
             *fcell_old++ = cell.old_cell;
+    });
+}
+
+int cm_store(const cm_mesh* mesh, int64_t capacity, char* bytes, int64_t* n_bytes) {
+    return guarded([&] {
+        require(mesh != nullptr && n_bytes != nullptr, "no mesh was given");
+        *n_bytes = static_cast<int64_t>(stored_size(mesh->mesh));
+        if (capacity >= *n_bytes)
+            store(mesh->mesh, bytes);
+    });
+}
+
+int cm_load(int64_t n_bytes, const char* bytes, cm_mesh** mesh) {
+    return guarded([&] {
+        require(mesh != nullptr, "no place was given for the mesh");
+        *mesh = nullptr;
+        *mesh = new cm_mesh{load(bytes, static_cast<std::size_t>(n_bytes))};
     });
 }
 

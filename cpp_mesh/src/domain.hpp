@@ -52,6 +52,12 @@ public:
     // Does the open segment between two points of the body, or of its boundary, leave the body?
     bool is_left_by(Vec2 a, Vec2 b) const;
 
+    // Every member in turn, to store or load it.
+    template <typename Archive> void visit(Archive& archive) {
+        archive(box_, is_rectangle_, corners_, edge_sides_, area_, core_centre_, core_radius_,
+                rounding_);
+    }
+
     // The corner nearest to a segment, of those that lie on no edge through its ends, -1: none.
     int corner_beside(Vec2 a, Vec2 b) const;
 

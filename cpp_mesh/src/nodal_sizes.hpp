@@ -5,6 +5,7 @@
 #include "locate.hpp"
 #include "plane_mesh.hpp"
 
+#include <utility>
 #include <vector>
 
 namespace cpp_mesh {
@@ -16,10 +17,17 @@ class NodalSizes {
 public:
     // A size per cell [m].
     NodalSizes(const PlaneMesh& mesh, const std::vector<double>& cell_size, double largest);
+    // Those of a checkpoint.
+    NodalSizes(std::vector<Vec2> xy, std::vector<Triangle> cells, std::vector<double> size)
+        : xy_(std::move(xy)), cells_(std::move(cells)), size_(std::move(size)), tree_(xy_, cells_) {
+    }
     NodalSizes(const NodalSizes&) = delete;
     NodalSizes& operator=(const NodalSizes&) = delete;
 
     double operator()(Vec2 p) const;
+    const std::vector<Vec2>& xy() const { return xy_; }
+    const std::vector<Triangle>& cells() const { return cells_; }
+    const std::vector<double>& sizes() const { return size_; }
 
 private:
     void limit_growth();

@@ -61,6 +61,11 @@ public:
     bool is_scale_free() const { return is_scale_free_; }
     void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
 
+    // Every member in turn, to store or load it.
+    template <typename Archive> void visit(Archive& archive) {
+        archive(sources_, discs_, foci_, wanted_, slope_, largest_, is_scale_free_);
+    }
+
     // What this field has and another one lacks; without limit elsewhere.
     SizeField less(const SizeField& other) const;
 

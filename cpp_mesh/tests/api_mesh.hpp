@@ -104,6 +104,19 @@ public:
                            overlap_area.data(), fcell_old.data()) == 0;
     }
 
+    std::vector<char> bytes() const {
+        int64_t n = 0;
+        cm_store(handle, 0, nullptr, &n);
+        std::vector<char> stored(static_cast<std::size_t>(n));
+        cm_store(handle, n, stored.data(), &n);
+        return stored;
+    }
+
+    bool load(const std::vector<char>& stored) {
+        cm_destroy(&handle);
+        return read(cm_load(static_cast<int64_t>(stored.size()), stored.data(), &handle));
+    }
+
     Point node(int i) const { return {xy[2 * i], xy[2 * i + 1]}; }
     Point point(int i) const { return {point_xy[2 * i], point_xy[2 * i + 1]}; }
 

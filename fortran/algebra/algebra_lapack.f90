@@ -5,11 +5,13 @@
 !! exactly zero or, for Cholesky, not positive (LAPACK Users' Guide, third edition, Anderson and
 !! others 1999).
 module algebra_lapack
+   use, intrinsic :: iso_c_binding, only: c_intptr_t, c_loc
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
 
    public :: dgemm, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyev, dsyrk, dtrsm
+   public :: estimate_norm
 
    interface
       !> C := alpha op(A) op(B) + beta C.
@@ -131,5 +133,40 @@ module algebra_lapack
          real(rk), intent(inout) :: b(ldb, n)
       end subroutine dtrsm
    end interface
+
+   integer(c_intptr_t), parameter :: cache_line = 64_c_intptr_t  ! [byte]
+   integer(ik), parameter :: spare = 7  ! reals of a cache line but one
+
+contains
+
+   !> dlacn2 with arrays that begin at cache lines. OpenBLAS adds up long arrays in an order that
+   !! depends on where they begin, and a restarted run has another memory.
+   subroutine estimate_norm(n, v, x, isgn, est, kase, isave)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: v(n), x(n)
+      integer(ik), intent(inout) :: isgn(n)
+      real(rk), intent(inout) :: est
+      integer(ik), intent(inout) :: kase, isave(3)
+      real(rk), target :: v_store(n + spare), x_store(n + spare)
+      integer(ik) :: at_v, at_x
+
+      at_v = first_in_line(v_store)
+      at_x = first_in_line(x_store)
+      v_store(at_v:at_v + n - 1) = v
+      x_store(at_x:at_x + n - 1) = x
+      call dlacn2(n, v_store(at_v), x_store(at_x), isgn, est, kase, isave)
+      v = v_store(at_v:at_v + n - 1)
+      x = x_store(at_x:at_x + n - 1)
+   end subroutine estimate_norm
+
+   !> Index of the first element that begins a cache line.
+   function first_in_line(store) result(at)
+      real(rk), intent(in), target, contiguous :: store(:)
+      integer(ik) :: at
+      integer(c_intptr_t) :: address
+
+      address = transfer(c_loc(store), address)
+      at = 1 + int(modulo(-address, cache_line)/8_c_intptr_t, ik)
+   end function first_in_line
 
 end module algebra_lapack

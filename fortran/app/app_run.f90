@@ -2,20 +2,25 @@
 !! fluid.
 module app_run
    use, intrinsic :: iso_fortran_env, only: output_unit
+   use app_changes, only: check_changes
+   use app_checkpoints, only: checkpoints_t
    use app_interrupts, only: interrupted
    use app_simulations, only: allocate_simulation
    use app_version, only: version
    use app_warnings, only: show_warnings
-   use base_errors, only: error_t, keep_first
+   use base_archive, only: archive_t
+   use base_errors, only: error_t, keep_first, raise_error
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use base_texts, only: text_t
    use base_timers, only: listener_t, phase_output, timers_t
    use growth_network, only: total_length
    use mesh_types, only: mesh_t, network_t
+   use report_checkpoint, only: about_t, read_checkpoint
    use report_progress, only: progress_t, progress_values_t
    use report_record, only: closing_lines, run_record_t, status_failed, status_finished, &
                             status_stopped
+   use report_restart, only: restartable_t
    use report_rows, only: history_row_t, probe_row_t
    use report_run, only: run_output_t
    use report_simulation, only: simulation_t, snapshot_t
@@ -33,12 +38,13 @@ module app_run
       logical :: owes_vtu = .false.  !< VTU files of the last accepted state are not written
       integer(ik) :: n_growth = 0  !< number of states of growth with VTU files
       type(progress_values_t) :: shown  !< values of the last accepted state
+      type(checkpoints_t) :: checkpoints
    contains
-      procedure :: begin => begin_journal
       procedure :: write_state
       procedure :: show_work
       procedure :: write_chronicle
       procedure :: write_fields
+      procedure :: visit
    end type journal_t
 
    !> Listener of long computations, which shows progress and ends them after a signal.
@@ -59,9 +65,10 @@ contains
       if (.not. ends) call self%journal%show_work()
    end subroutine hear
 
-   !> Run a scene to its end. `refused`: the directory cannot be used, and nothing was written.
+   !> Run a scene to its end. `refused`: the directory cannot be used, and nothing was written. With
+   !! `origin` the run goes on from the checkpoint in that directory.
    subroutine run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, &
-                        error)
+                        error, origin)
       type(scene_t), intent(in) :: scene
       character(len=*), intent(in) :: source  !< path of the scene's file; empty: no file
       character(len=*), intent(in) :: directory
@@ -69,6 +76,7 @@ contains
       class(simulation_t), allocatable, intent(out) :: simulation  !< state at the end
       logical, intent(out) :: refused, was_interrupted
       type(error_t), allocatable, intent(out) :: error
+      character(len=*), intent(in), optional :: origin
       type(journal_t), target :: journal
       type(follower_t), target :: follower
       type(run_record_t) :: record
@@ -82,21 +90,38 @@ contains
       call journal%files%open(directory, source, refused, error)
       if (allocated(error)) return
 
-      call simulation%begin(scene, timers, error)
-      is_meshed = .not. allocated(error)
-      if (is_meshed .or. .not. journal%files%keeps_earlier_run) then
-         call timers%start(phase_output)
-         call journal%files%begin(scene, trouble)
-         call timers%stop(phase_output)
-         call keep_first(trouble, error)
+      if (present(origin)) then
+         call restart(simulation, journal, scene, origin, timers, refused, error)
+         is_meshed = .not. allocated(error)
+      else
+         call simulation%begin(scene, timers, error)
+         is_meshed = .not. allocated(error)
+         if (is_meshed .or. .not. journal%files%keeps_earlier_run) then
+            call timers%start(phase_output)
+            call journal%files%begin(scene, trouble)
+            call timers%stop(phase_output)
+            call keep_first(trouble, error)
+         end if
+      end if
+      if (refused) then
+         call journal%files%place%release()
+         return
       end if
       if (.not. allocated(error)) then
-         call journal%begin(quiet, simulation)
+         call journal%progress%begin(quiet)
+         if (.not. present(origin)) call write_network(journal, simulation)
+         call journal%checkpoints%begin(scene, simulation)
          follower%journal => journal
          timers%listener => follower
          call march(simulation, journal, timers, error)
          call write_last_state(simulation, journal, timers, trouble)
          call keep_first(trouble, error)
+         call timers%start(phase_output)
+         call journal%checkpoints%write(journal%files)
+         if (journal%checkpoints%is_on) then
+            call journal%files%log(journal%checkpoints%summary(timers%cpu_seconds()))
+         end if
+         call timers%stop(phase_output)
       end if
 
       was_interrupted = .not. (allocated(error) .or. allocated(simulation%ending))
@@ -187,7 +212,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       do
-         if (interrupted()) return
+         if (interrupted() .or. simulation%is_over()) return
          call simulation%next_state(timers, error)
          if (.not. allocated(error)) then
             call timers%start(phase_output)
@@ -206,20 +231,94 @@ contains
          end if
          call timers%start(phase_output)
          call journal%write_chronicle(simulation)
+         call keep_state(simulation, journal, timers, error)
          call timers%stop(phase_output)
-         if (simulation%is_over()) return
+         if (allocated(error)) return
       end do
    end subroutine march
 
-   !> Begin the progress line, and write the network of the meshed scene.
-   subroutine begin_journal(self, quiet, simulation)
-      class(journal_t), intent(inout) :: self
-      logical, intent(in) :: quiet
-      class(simulation_t), intent(in) :: simulation
+   !> Keep the accepted state in memory, and write a checkpoint if it is due.
+   subroutine keep_state(simulation, journal, timers, error)
+      class(simulation_t), intent(inout) :: simulation
+      type(journal_t), intent(inout) :: journal
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: begun  ! [s]
+      logical :: keeps, writes
 
-      call self%progress%begin(quiet)
-      call write_network(self, simulation)
-   end subroutine begin_journal
+      if (.not. journal%checkpoints%is_on) return
+      select type (simulation)
+      class is (restartable_t)
+         associate (checkpoints => journal%checkpoints)
+            begun = timers%cpu_seconds()
+            call checkpoints%count_state(simulation, keeps, writes)
+            if (.not. keeps) return
+            call checkpoints%state%begin_storing()
+            call journal%visit(checkpoints%state)
+            call simulation%visit(checkpoints%state, timers, error)
+            if (allocated(error)) return
+            call checkpoints%note(simulation)
+            if (writes) call checkpoints%write(journal%files)
+            checkpoints%spent = checkpoints%spent + timers%cpu_seconds() - begun
+         end associate
+      end select
+   end subroutine keep_state
+
+   !> Load the checkpoint of a run and take over its files. `refused`: nothing was written.
+   subroutine restart(simulation, journal, scene, origin, timers, refused, error)
+      class(simulation_t), intent(inout) :: simulation
+      type(journal_t), intent(inout) :: journal
+      type(scene_t), intent(in) :: scene
+      character(len=*), intent(in) :: origin
+      type(timers_t), intent(inout) :: timers
+      logical, intent(out) :: refused
+      type(error_t), allocatable, intent(out) :: error
+      type(archive_t) :: archive
+      type(about_t) :: about
+      character(len=:), allocatable :: remark
+
+      refused = .true.
+      call read_checkpoint(origin, version, about, archive, remark, error)
+      if (allocated(error)) return
+      call check_changes(about%scene, scene, about%time, error)
+      if (allocated(error)) return
+      call journal%files%prepare(scene)
+      call journal%files%visit_text(archive)
+      call journal%visit(archive)
+      select type (simulation)
+      class is (restartable_t)
+         call simulation%prepare(scene)
+         call simulation%visit(archive, timers, error)
+      end select
+      if (allocated(error)) return
+      if (.not. allocated(archive%fault) .and. archive%place /= archive%length) then
+         archive%fault = "more than this program knows"
+      end if
+      if (allocated(archive%fault)) then
+         call raise_error(error, "", "the checkpoint in "//origin//" has "//archive%fault// &
+                          ": it was written by another program")
+         return
+      end if
+      refused = .false.
+      call timers%start(phase_output)
+      call journal%files%continue(scene, origin, error)
+      call timers%stop(phase_output)
+      if (len(remark) > 0) call journal%files%log("warning: "//remark)
+      call journal%files%log("restart from the state at "//about%state)
+   end subroutine restart
+
+   !> Store or load what decides about the next files.
+   subroutine visit(self, archive)
+      class(journal_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call self%files%visit(archive)
+      call archive%enter("journal")
+      call archive%item("owes_rows", self%owes_rows)
+      call archive%item("owes_vtu", self%owes_vtu)
+      call archive%item("n_growth", self%n_growth)
+      call archive%leave()
+   end subroutine visit
 
    !> Add the present network to network.json.
    subroutine write_network(self, simulation)

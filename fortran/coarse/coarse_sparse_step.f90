@@ -17,8 +17,9 @@
 !! at every tenth factorization: in between, and where old factors are used, it is that of an
 !! earlier matrix.
 module coarse_sparse_step
-   use algebra_lapack, only: dlacn2
+   use algebra_lapack, only: estimate_norm
    use algebra_mumps, only: mumps_pord, mumps_t, mumps_unsymmetric
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
@@ -63,6 +64,7 @@ module coarse_sparse_step
    contains
       procedure :: find_step
       procedure :: release
+      procedure :: visit
    end type sparse_step_t
 
 contains
@@ -307,7 +309,7 @@ contains
       do part = 1, 2
          kase = 0
          do
-            call dlacn2(slopes%n, v, x, signs, norm(part), kase, save)
+            call estimate_norm(slopes%n, v, x, signs, norm(part), kase, save)
             if (kase == 0) exit
             if (part == 1) call multiply(self, condensed, slopes, kase == 1, x, error)
             if (part == 2) call solve(self, is_flow, kase == 1, x, error)
@@ -373,5 +375,38 @@ contains
       if (allocated(self%row)) deallocate (self%row, self%col, self%values)
       if (allocated(self%direction)) deallocate (self%direction, self%force, self%product)
    end subroutine release
+
+   !> Store or load the equations that were factorized and the known directions; the factors are
+   !! made again from these equations.
+   subroutine visit(self, archive, error)
+      class(sparse_step_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(error_t), allocatable, intent(out) :: error
+
+      call archive%item("is_ready", self%is_ready)
+      call archive%item("of", self%of)
+      call archive%item("n_rock", self%n_rock)
+      call archive%item("n_kept", self%n_kept)
+      call archive%item("condition", self%condition)
+      call archive%item("estimated_for", self%estimated_for)
+      call archive%item("estimated_at", self%estimated_at)
+      call archive%item("factorizations", self%factorizations)
+      call archive%item("solutions", self%solutions)
+      call archive%list("row", self%row)
+      call archive%list("col", self%col)
+      call archive%list("values", self%values)
+      call archive%list("col_scale", self%col_scale)
+      call archive%list("row_scale", self%row_scale)
+      call archive%list("row_factor", self%row_factor)
+      call archive%list("weight", self%weight)
+      call archive%list("direction", self%direction)
+      call archive%list("force", self%force)
+      call archive%list("product", self%product)
+      if (.not. (archive%is_loading .and. self%is_ready)) return
+      self%solver%ordering = mumps_pord
+      call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
+                               mumps_unsymmetric, error)
+      if (.not. allocated(error)) call self%solver%factorize(self%values, error)
+   end subroutine visit
 
 end module coarse_sparse_step

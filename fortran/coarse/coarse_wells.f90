@@ -75,6 +75,7 @@ module coarse_wells
       procedure :: update_rings
       procedure :: choose_controls
       procedure :: set_terms
+      procedure :: take_place
       procedure :: find_flows
       procedure :: correct_controls
    end type rock_wells_t
@@ -221,12 +222,21 @@ contains
          any_changed = .true.
          self%conductance(w) = conductance
       end do
-      if (.not. any_changed) return
+      if (any_changed) call self%take_place(matrix)
+   end subroutine set_terms
+
+   !> Write the conductances into the matrix.
+   pure subroutine take_place(self, matrix)
+      class(rock_wells_t), intent(in) :: self
+      type(matrix_t), intent(inout) :: matrix
+      integer(ik) :: w
+
+      if (.not. allocated(self%rock)) return
       do w = 1, self%n
          matrix%flow(matrix%columns%last(self%cell(w))) = &
             self%rock(w) - sum(self%conductance, mask=self%cell == self%cell(w))
       end do
-   end subroutine set_terms
+   end subroutine take_place
 
    !> Flows, heads and rates at the pressures of the cells.
    pure subroutine find_flows(self, wells, dt, head_before, pressure, flow, head, rate)

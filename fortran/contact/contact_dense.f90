@@ -2,7 +2,7 @@
 !! onto its fractures: by Gaussian elimination, or by Cholesky elimination if most equations are
 !! those of an elastic body, which takes half as long.
 module contact_dense
-   use algebra_lapack, only: dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
+   use algebra_lapack, only: dgetrf, dgetrs, dpotrf, dpotrs, estimate_norm
    use base_kinds, only: ik, rk
    use contact_newton, only: step_quality_t
    implicit none(type, external)
@@ -132,7 +132,7 @@ contains
       norm = 0.0_rk
       kase = 0
       do
-         call dlacn2(n, v, x, signs, norm, kase, save)
+         call estimate_norm(n, v, x, signs, norm, kase, save)
          if (kase == 0) exit
          if (kase == 1 .and. present(left_out)) where (left_out) x = 0.0_rk
          rhs(:, 1) = x

@@ -54,7 +54,7 @@ module growth_front
    type, abstract, extends(front_state_t) :: front_t
       type(network_t) :: start  !< initial network, from the scene
       type(growth_rules_t) :: rules
-      type(network_t), private :: network_before  !< before the last increment
+      type(network_t) :: network_before  !< before the last increment
    contains
       procedure(evaluate_tips), deferred :: evaluate
       procedure :: find_tips

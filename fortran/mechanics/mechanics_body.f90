@@ -1,5 +1,6 @@
 !> The whole body as one mesh of finite elements: its supports, its loads, and its response.
 module mechanics_body
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
@@ -57,13 +58,29 @@ module mechanics_body
       integer(ik) :: patched_meshes = 0  !< meshes changed around tips only
    contains
       procedure :: build
+      procedure :: set_up
+      procedure :: find_probes
       procedure :: remember
       procedure :: grow
       procedure :: refine
       procedure :: estimate_body
       procedure :: respond
       procedure :: correct_intensities
+      procedure :: visit
    end type body_t
+
+   interface
+      !> Store or load a body; its model is made again from its mesh.
+      module subroutine visit(self, archive, scene, start, network, timers, error)
+         implicit none(type, external)
+         class(body_t), intent(inout) :: self
+         type(archive_t), intent(inout) :: archive
+         type(scene_t), intent(in) :: scene
+         type(network_t), intent(in) :: start, network
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine visit
+   end interface
 
 contains
 
@@ -178,7 +195,7 @@ contains
    !> Set up elements, contact, conditions and factors on the present mesh; contact is transferred
    !! from a previous mesh if that is present.
    subroutine set_up(self, scene, start, network, timers, error, fine_before, contact_before)
-      type(body_t), intent(inout) :: self
+      class(body_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(network_t), intent(in) :: start, network
       type(timers_t), intent(inout) :: timers

@@ -6,6 +6,7 @@
 !! advance as far as K_eq = K_IC requires at that load (growth_competition). The load may fall on
 !! the way: a load that rises again leads to the same networks.
 module mechanics_equilibrium
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
@@ -54,6 +55,7 @@ module mechanics_equilibrium
    contains
       procedure :: take
       procedure :: end_paths
+      procedure :: visit
    end type increment_t
 
    !> Search for the advances of a group of tips.
@@ -444,5 +446,29 @@ contains
                               *maxval(body%tip%drive%intensity, mask=leads)
       group = pack([(i, i=1, size(body%tip, kind=ik))], leads)
    end function leading_tips
+
+   !> Store or load what the next increment uses.
+   subroutine visit(self, archive)
+      class(increment_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter("increment")
+      call archive%item("has_grown", self%has_grown)
+      call archive%item("holds", self%holds)
+      call archive%item("is_loose", self%is_loose)
+      call archive%item("prefers_one", self%prefers_one)
+      call archive%item("preference", self%preference)
+      call archive%item("misfit", self%misfit)
+      call archive%item("advance_sum", self%advance_sum)
+      call self%tries%visit(archive)
+      call archive%list("group", self%group)
+      call archive%list("known_group", self%known_group)
+      call archive%list("matrix", self%matrix)
+      call archive%item("known_since", self%known_since)
+      call archive%item("started", self%started)
+      call archive%item("was_loose", self%was_loose)
+      call archive%list("pace", self%pace)
+      call archive%leave()
+   end subroutine visit
 
 end module mechanics_equilibrium

@@ -5,6 +5,7 @@
 !! linear in the load factor, so that linear extrapolation from two states gives the exact onset.
 !! Across such changes it gives an initial guess.
 module mechanics_programme
+   use base_archive, only: archive_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
    use base_tolerances, only: same_value
@@ -28,6 +29,7 @@ module mechanics_programme
       procedure :: is_over
       procedure :: share_done
       procedure :: not_reached
+      procedure :: visit
    end type programme_t
 
    !> Intensities of the free tips at a load.
@@ -191,5 +193,14 @@ contains
       end function excess
 
    end function predicted_onset
+
+   !> Store or load the position; the programme itself is that of the scene.
+   subroutine visit(self, archive)
+      class(programme_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%item("part", self%part)
+      call archive%item("step", self%step)
+   end subroutine visit
 
 end module mechanics_programme

@@ -5,6 +5,7 @@
 !! under any load if no load factor gives an equilibrium. The path consists of networks in
 !! equilibrium at smaller loads, and the load stays until a network is in equilibrium at it again.
 module mechanics_simulation
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
@@ -66,7 +67,26 @@ module mechanics_simulation
       procedure :: time
       procedure :: last_state
       procedure :: share_of_way
+      procedure :: prepare
+      procedure :: visit
    end type mechanics_simulation_t
+
+   ! In the submodule mechanics_restart
+   interface
+      module subroutine prepare(self, scene)
+         implicit none(type, external)
+         class(mechanics_simulation_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+      end subroutine prepare
+
+      module subroutine visit(self, archive, timers, error)
+         implicit none(type, external)
+         class(mechanics_simulation_t), intent(inout) :: self
+         type(archive_t), intent(inout) :: archive
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine visit
+   end interface
 
 contains
 

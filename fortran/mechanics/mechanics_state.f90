@@ -13,8 +13,8 @@ module mechanics_state
    use mechanics_body, only: body_t
    use mechanics_programme, only: reading_t
    use mesh_types, only: fracture_mesh_t, point_boundary
+   use report_restart, only: restartable_t
    use report_scene, only: relative_toughness
-   use report_simulation, only: simulation_t
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
    implicit none(type, external)
@@ -34,7 +34,7 @@ module mechanics_state
    real(rk), parameter :: error_step = 0.4_rk
 
    !> A body under a load factor.
-   type, abstract, extends(simulation_t) :: loaded_body_t
+   type, abstract, extends(restartable_t) :: loaded_body_t
       logical :: is_cut = .false.  !< fractures have cut off an unsupported part of the body
       type(body_t) :: body
       integer :: meshed_vertices = 0  !< vertices of the network for which the mesh was made
@@ -46,6 +46,7 @@ module mechanics_state
       real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
    contains
       procedure :: mesh_body
+      procedure :: take_scene
       procedure :: respond
       procedure :: adapt
       procedure :: evaluate
@@ -64,6 +65,17 @@ contains
       type(scene_t), intent(in) :: scene
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+
+      call self%take_scene(scene)
+      self%meshed_vertices = size(self%network%xy, 2)
+      call self%body%build(scene, self%start, self%network, timers, error)
+      if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)
+   end subroutine mesh_body
+
+   !> Set the scene, its network, its first load and its rules of growth.
+   subroutine take_scene(self, scene)
+      class(loaded_body_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(outline_t) :: outline
       integer(ik) :: f
 
@@ -92,10 +104,7 @@ contains
             end if
          end associate
       end if
-      self%meshed_vertices = size(self%network%xy, 2)
-      call self%body%build(scene, self%start, self%network, timers, error)
-      if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)
-   end subroutine mesh_body
+   end subroutine take_scene
 
    !> Find the state of the body and of its tips at a load factor.
    subroutine respond(self, factor, timers, error)

@@ -2,17 +2,20 @@
 !! begins from the state before the increment. Also growth without an equilibrium load factor,
 !! driven by loads that do not change with the load factor.
 module mechanics_tries
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
+   use growth_archive, only: visit_segments, visit_tips
    use growth_competition, only: likes
    use growth_network, only: end_gain, extend, move_end
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
    use mechanics_balance, only: tolerance
    use mechanics_state, only: loaded_body_t, together
+   use mesh_archive, only: visit_network
    use mesh_types, only: network_t
    implicit none(type, external)
    private
@@ -43,6 +46,7 @@ module mechanics_tries
       procedure :: with_tip_groups
       procedure :: split_groups
       procedure :: finish
+      procedure :: visit
    end type tries_t
 
 contains
@@ -283,5 +287,18 @@ contains
       end do
       call tries%keep_paths(body, group, share*remaining)
    end subroutine run_loosely
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(tries_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call visit_segments(archive, "segment", self%segment)
+      call visit_segments(archive, "segment_before", self%segment_before)
+      call visit_network(archive, "network_before", self%network_before)
+      call visit_tips(archive, "tip_before", self%tip_before)
+      call archive%item("longest", self%longest)
+      call archive%list("tip_group", self%tip_group)
+   end subroutine visit
 
 end module mechanics_tries

@@ -1,14 +1,15 @@
 !> Interfaces of the C++ mesh library (cpp_mesh/c_api.h): indices count from 0. Only this component
 !! uses them.
 module mesh_c_binding
-   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_double, c_int, c_int32_t, c_int64_t, c_null_ptr, &
+                                                                      c_ptr, c_signed_char, c_size_t
    implicit none(type, external)
    private
 
    public :: cm_arrays_t, cm_counts_t, cm_fault_t, cm_joint_t, cm_network_t, cm_spec_t
    public :: cm_check, cm_last_fault
    public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow, cm_last_error, cm_locate
-   public :: cm_move_tips
+   public :: cm_load, cm_move_tips, cm_store
    public :: cm_map_copy, cm_map_sizes, cm_quality, cm_remesh, cm_sizes
    public :: c_string_length
 
@@ -236,6 +237,27 @@ module mesh_c_binding
          integer(c_int32_t), intent(out) :: cells(n_points)
          integer(c_int) :: status
       end function cm_locate
+
+      function cm_store(mesh, capacity, bytes, n_bytes) result(status) bind(C, name="cm_store")
+         import :: c_int, c_int64_t, c_ptr, c_signed_char
+         implicit none(type, external)
+         type(c_ptr), value :: mesh
+         integer(c_int64_t), value :: capacity
+         ! allow(C071)
+         integer(c_signed_char), intent(inout) :: bytes(*)
+         integer(c_int64_t), intent(out) :: n_bytes
+         integer(c_int) :: status
+      end function cm_store
+
+      function cm_load(n_bytes, bytes, mesh) result(status) bind(C, name="cm_load")
+         import :: c_int, c_int64_t, c_ptr, c_signed_char
+         implicit none(type, external)
+         integer(c_int64_t), value :: n_bytes
+         ! allow(C071)
+         integer(c_signed_char), intent(in) :: bytes(*)
+         type(c_ptr), intent(inout) :: mesh
+         integer(c_int) :: status
+      end function cm_load
 
       subroutine cm_destroy(mesh) bind(C, name="cm_destroy")
          import :: c_ptr

@@ -11,8 +11,8 @@ module report_files
    implicit none(type, external)
    private
 
-   public :: make_directory, place_t, remove_file, rename_file, reserve_file, whole_file_t
-   public :: write_text_file
+   public :: copy_file, make_directory, place_t, read_bytes, remove_file, rename_file
+   public :: reserve_file, whole_file_t, write_text_file
 
    !> A file that gets its name when it is complete. `commit` reports the first failure.
    type :: whole_file_t
@@ -98,9 +98,10 @@ module report_files
       end function c_remove
    end interface
 
-   character(len=*), parameter :: top_files(11) = [character(len=15) :: "scene.nml", "run.json", &
+   character(len=*), parameter :: top_files(14) = [character(len=18) :: "scene.nml", "run.json", &
       & "history.csv", "tips.csv", "fractures.csv", "probes.csv", "network.json", "events.csv", &
-      & "slip_events.csv", "wells.csv", "run.log"]
+      & "slip_events.csv", "wells.csv", "run.log", &
+      & "checkpoint.bin", "checkpoint_new.bin", "checkpoint_old.bin"]
 
    integer(c_int), parameter :: is_held = -1  !< by another run; as in report_files.c
    integer(c_int), parameter :: no_hold = -2
@@ -116,6 +117,7 @@ module report_files
       procedure :: clear
       procedure :: check
       procedure :: release
+      procedure :: is_place_of
    end type place_t
 
    interface
@@ -207,6 +209,40 @@ contains
       call file%put(text)
       call file%commit(error)
    end subroutine write_text_file
+
+   !> All bytes of a file; not allocated if it cannot be read.
+   subroutine read_bytes(path, bytes)
+      character(len=*), intent(in) :: path
+      integer(int8), allocatable, intent(out) :: bytes(:)
+      integer :: status, unit
+      integer(int64) :: n
+
+      open (newunit=unit, file=path, access="stream", form="unformatted", action="read", &
+            status="old", iostat=status)
+      if (status /= 0) return
+      inquire (unit=unit, size=n)
+      allocate (bytes(max(n, 0_int64)))
+      read (unit, iostat=status) bytes
+      if (status /= 0) deallocate (bytes)
+      close (unit)
+   end subroutine read_bytes
+
+   !> Copy a file; one with the new name is replaced.
+   subroutine copy_file(from, to, error)
+      character(len=*), intent(in) :: from, to
+      type(error_t), allocatable, intent(out) :: error
+      type(whole_file_t) :: file
+      integer(int8), allocatable :: bytes(:)
+
+      call read_bytes(from, bytes)
+      if (.not. allocated(bytes)) then
+         call raise_error(error, "", "cannot read "//from)
+         return
+      end if
+      call file%open(to)
+      call file%put(bytes)
+      call file%commit(error)
+   end subroutine copy_file
 
    !> Reserve disk space for a file that will be written later, by a file NAME.part.
    subroutine reserve_file(path, n_bytes, error)
@@ -413,6 +449,15 @@ contains
          return
       end do
    end subroutine check
+
+   !> Both paths lead to this folder.
+   function is_place_of(self, directory)
+      class(place_t), intent(in) :: self
+      character(len=*), intent(in) :: directory
+      logical :: is_place_of
+
+      is_place_of = c_same_file(self%directory//c_null_char, directory//c_null_char) /= 0
+   end function is_place_of
 
    !> Unlock the folder.
    subroutine release(self)

@@ -1,11 +1,13 @@
 !> network.json: the fracture network at the end and at every time when it changed, and its joints.
 !! report_keys defines its keys.
 module report_network
+   use base_archive, only: archive_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, lk, rk
    use base_plane, only: norm2
    use base_texts, only: text_t
    use base_tolerances, only: same_place
+   use mesh_archive, only: visit_fracture_mesh, visit_network
    use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner
    use report_files, only: write_text_file
    use report_text, only: json_t, newline, text_buffer_t
@@ -43,6 +45,8 @@ module report_network
       procedure :: open => open_record
       procedure :: step
       procedure :: flush => flush_record
+      procedure :: visit
+      procedure :: visit_text
    end type network_record_t
 
 contains
@@ -215,5 +219,40 @@ contains
       if (same) same = size(a%first) == size(b%first) .and. size(a%xy) == size(b%xy)
       if (same) same = all(a%first == b%first) .and. maxval(abs(a%xy - b%xy)) <= 0.0_rk
    end function same_network
+
+   !> Store or load the network in all its states.
+   subroutine visit(self, archive)
+      class(network_record_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      integer(lk) :: i, n
+
+      call visit_network(archive, "network", self%network)
+      call visit_fracture_mesh(archive, "mesh", self%mesh)
+      call archive%list("tip_ends", self%tip_ends)
+      n = size(self%joints, kind=lk)
+      call archive%count("joints", n)
+      if (archive%is_loading) then
+         deallocate (self%joints)
+         allocate (self%joints(max(n, 0_lk)))
+         self%is_written = .false.
+      end if
+      do i = 1_lk, n
+         associate (joint => self%joints(i))
+            call archive%item("kind", joint%kind)
+            call archive%item("xy", joint%xy)
+            call archive%item("time", joint%time)
+            call archive%list("fractures", joint%fractures)
+         end associate
+      end do
+      call self%steps%visit(archive)
+   end subroutine visit
+
+   !> Store or load the text of the states.
+   subroutine visit_text(self, archive)
+      class(network_record_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call self%steps%visit_text(archive)
+   end subroutine visit_text
 
 end module report_network

@@ -4,12 +4,13 @@
 !! every three seconds, or less often so that writing takes less than half a percent of the wall
 !! time.
 module report_run
+   use base_archive, only: archive_t
    use base_errors, only: error_t, keep_first
    use base_kinds, only: ik, lk, rk
    use base_texts, only: add_text, text_t
    use base_timers, only: timers_t
    use mesh_types, only: mesh_t, network_t
-   use report_files, only: place_t, reserve_file, write_text_file
+   use report_files, only: place_t, remove_file, reserve_file, write_text_file
    use report_network, only: network_record_t
    use report_record, only: run_record_t, status_failed
    use report_simulation, only: snapshot_t
@@ -30,7 +31,7 @@ module report_run
 
    !> The files of a run, from `open` to `close`.
    type :: run_output_t
-      type(place_t), private :: place
+      type(place_t) :: place
       logical :: keeps_earlier_run = .false.  !< files of an earlier run exist, before `begin`
       type(tables_t) :: tables
       type(snapshots_t), private :: snapshots
@@ -46,6 +47,10 @@ module report_run
    contains
       procedure :: open => open_run
       procedure :: begin => begin_run
+      procedure :: prepare => prepare_tables
+      procedure :: continue => continue_run
+      procedure :: visit
+      procedure :: visit_text
       procedure :: network_step
       procedure :: fields_due
       procedure :: write_fields
@@ -84,13 +89,80 @@ contains
          call self%place%clear()
          call reserve_file(folder//"/run.json", record_size, error)
          if (allocated(error)) return
+         call self%prepare(scene)
+         call self%snapshots%clear(0)
+         if (scene%output%vtu) call self%snapshots%make_folder(error)
+      end associate
+   end subroutine begin_run
+
+   !> Open all files, without writing any.
+   subroutine prepare_tables(self, scene)
+      class(run_output_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      associate (folder => self%place%directory)
          self%writes_vtu = scene%output%vtu
          self%interval = scene%output%interval
          call self%tables%open(folder, scene)
          call self%network%open(folder//"/network.json", fracture_names(scene), scene%has_fluid())
-         call self%snapshots%open(folder, scene, error)
+         call self%snapshots%open(folder, scene)
       end associate
-   end subroutine begin_run
+   end subroutine prepare_tables
+
+   !> Go on with files that were loaded: write scene.nml, take over the VTU files that belong to the
+   !! loaded state, and remove later ones.
+   subroutine continue_run(self, scene, origin, error)
+      class(run_output_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      character(len=*), intent(in) :: origin  !< folder of the run that was loaded
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_same, was_there
+
+      associate (folder => self%place%directory)
+         is_same = self%place%is_place_of(origin)
+         if (.not. is_same) call self%place%clear()
+         call write_text_file(folder//"/scene.nml", scene_text(scene), error)
+         if (allocated(error)) return
+         self%keeps_earlier_run = .false.
+         call remove_file(folder//"/run.json", was_there)
+         call reserve_file(folder//"/run.json", record_size, error)
+         if (allocated(error)) return
+         if (is_same) then
+            call self%snapshots%clear(self%snapshots%n_written)
+         else
+            call self%snapshots%clear(0)
+         end if
+         if (scene%output%vtu) call self%snapshots%make_folder(error)
+         if (.not. (allocated(error) .or. is_same)) call self%snapshots%copy_from(origin, error)
+      end associate
+   end subroutine continue_run
+
+   !> Store or load the rows and lines so far: their number, and in `visit_text` the texts.
+   subroutine visit(self, archive)
+      class(run_output_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter("files")
+      call self%tables%visit(archive)
+      call self%snapshots%visit(archive)
+      call self%network%visit(archive)
+      call self%log_text%visit(archive)
+      if (archive%is_loading) self%log_written = 0_lk
+      call archive%item("next_fields", self%next_fields)
+      call archive%leave()
+   end subroutine visit
+
+   subroutine visit_text(self, archive)
+      class(run_output_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%enter("texts")
+      call self%tables%visit_text(archive)
+      call self%snapshots%visit_text(archive)
+      call self%network%visit_text(archive)
+      call self%log_text%visit_text(archive)
+      call archive%leave()
+   end subroutine visit_text
 
    !> Names of the fractures of a scene.
    pure function fracture_names(scene) result(names)

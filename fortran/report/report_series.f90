@@ -1,5 +1,6 @@
 !> Tables as CSV (RFC 4180): rows are kept in memory, and the file is written completely.
 module report_series
+   use base_archive, only: archive_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
    use base_number, only: format_integer, format_real, integer_text, number_width
@@ -31,6 +32,8 @@ module report_series
       procedure :: end_row
       procedure :: is_open
       procedure :: flush => flush_series
+      procedure :: visit
+      procedure :: visit_text
    end type series_t
 
 contains
@@ -132,6 +135,24 @@ contains
       self%column = 0
       call self%buffer%replace_last(newline)  ! the comma behind the last value
    end subroutine end_row
+
+   !> Store or load the rows; the table is open.
+   subroutine visit(self, archive)
+      class(series_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      if (.not. self%is_open()) return
+      call archive%item("n_rows", self%n_rows)
+      call self%buffer%visit(archive)
+      if (archive%is_loading) self%written = -1_lk
+   end subroutine visit
+
+   subroutine visit_text(self, archive)
+      class(series_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      if (self%is_open()) call self%buffer%visit_text(archive)
+   end subroutine visit_text
 
    !> Write the whole table if it has changed since it was last written. A row with a value that is
    !! missing, too much or under a wrong name is an error.

@@ -19,6 +19,7 @@
 !! Shear tractions are stored by arc length, so that they can be compared with those of a later
 !! mesh.
 module report_slip
+   use base_archive, only: archive_t
    use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_stick
    use mesh_geometry, only: fracture_cell_centre
@@ -97,7 +98,17 @@ module report_slip
       procedure :: remember
       procedure :: follow
       procedure :: end_all
+      procedure :: visit
    end type slip_catalogue_t
+
+   interface
+      !> Store or load all components.
+      module subroutine visit(self, archive)
+         implicit none(type, external)
+         class(slip_catalogue_t), intent(inout), target :: self
+         type(archive_t), intent(inout) :: archive
+      end subroutine visit
+   end interface
 
 contains
 

@@ -5,13 +5,14 @@
 !! So states of equal time have consecutive numbers, and those of a falling load have the last state
 !! first.
 module report_snapshots
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: exact_text
    use base_texts, only: text_t
    use mesh_types, only: fracture_mesh_t, mesh_t
    use report_keys, only: fracture_fields, intersection_fields, matrix_fields
-   use report_files, only: make_directory, remove_file, write_text_file
+   use report_files, only: copy_file, make_directory, remove_file, write_text_file
    use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use report_simulation, only: snapshot_t
    use report_text, only: newline, text_buffer_t
@@ -50,7 +51,12 @@ module report_snapshots
    contains
       procedure :: open => open_snapshots
       procedure :: write => write_snapshot
+      procedure :: make_folder
+      procedure :: clear
+      procedure :: copy_from
       procedure :: list_files
+      procedure :: visit
+      procedure :: visit_text
       procedure :: flush => flush_snapshots
    end type snapshots_t
 
@@ -59,25 +65,48 @@ module report_snapshots
 
 contains
 
-   !> Begin; the files of an earlier run in the same directory are removed.
-   subroutine open_snapshots(self, directory, scene, error)
+   !> Begin.
+   subroutine open_snapshots(self, directory, scene)
       class(snapshots_t), intent(out) :: self
       character(len=*), intent(in) :: directory
       type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
       integer :: i
 
       self%directory = directory
       self%counts = allocated(scene%load%factors)
       self%material = scene%material
-      call remove_earlier(directory)
       do i = 1, 3
          call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd", &
                                        is_falling=scene%load%to < scene%load%from .and. &
                                        .not. self%counts)
       end do
-      if (scene%output%vtu) call make_directory(directory//"/"//folder, error)
    end subroutine open_snapshots
+
+   !> Make the folder of the VTU files.
+   subroutine make_folder(self, error)
+      class(snapshots_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      call make_directory(self%directory//"/"//folder, error)
+   end subroutine make_folder
+
+   !> Copy the files written so far from another run's directory.
+   subroutine copy_from(self, origin, error)
+      class(snapshots_t), intent(in) :: self
+      character(len=*), intent(in) :: origin
+      type(error_t), allocatable, intent(out) :: error
+      logical :: exists
+      integer :: i, n
+
+      do n = 0, self%n_written - 1
+         do i = 1, 3
+            inquire (file=origin//"/"//file_name(i, n), exist=exists)
+            if (.not. exists) cycle
+           call copy_file(origin//"/"//file_name(i, n), self%directory//"/"//file_name(i, n), error)
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine copy_from
 
    !> Write the fields of a state: a file for each dimension that it has.
    subroutine write_snapshot(self, fields, history_row, error)
@@ -249,29 +278,33 @@ contains
       call grid%add(name, both, [character(len=10) :: "normal", "tangential"])
    end subroutine add_pair
 
-   !> Remove the snapshots of an earlier run, the last one first, so that an interrupted removal can
-   !! be continued.
-   subroutine remove_earlier(directory)
-      character(len=*), intent(in) :: directory
+   !> Remove snapshots of an earlier run, the last one first, so that an interrupted removal can be
+   !! continued.
+   subroutine clear(self, first)
+      class(snapshots_t), intent(in) :: self
+      integer, intent(in) :: first  !< number of the first file that is removed
       logical :: was_there
       integer :: n, i
 
-      do i = 1, 3
-         call remove_file(directory//"/"//trim(dimension_names(i))//".pvd", was_there)
-      end do
-      n = 0
-      do
-         inquire (file=directory//"/"//file_name(1, n), exist=was_there)
-         if (.not. was_there) exit
-         n = n + 1
-      end do
-      do n = n, 0, -1
-         do i = 3, 1, -1
-            call remove_file(directory//"/"//file_name(i, n), was_there)
-            call remove_file(directory//"/"//file_name(i, n)//".part", was_there)
+      associate (directory => self%directory)
+         do i = 1, 3
+            if (first == 0) call remove_file(directory//"/"//trim(dimension_names(i))//".pvd", &
+                                             was_there)
          end do
-      end do
-   end subroutine remove_earlier
+         n = first
+         do
+            inquire (file=directory//"/"//file_name(1, n), exist=was_there)
+            if (.not. was_there) exit
+            n = n + 1
+         end do
+         do n = n, first, -1
+            do i = 3, 1, -1
+               call remove_file(directory//"/"//file_name(i, n), was_there)
+               call remove_file(directory//"/"//file_name(i, n)//".part", was_there)
+            end do
+         end do
+      end associate
+   end subroutine clear
 
    !> Path of a VTU file from the run's directory.
    pure function file_name(i, number) result(file)
@@ -398,5 +431,33 @@ contains
          last = first - 1
       end do
    end function last_first
+
+   !> Store or load the collections; the files themselves stay where they are.
+   subroutine visit(self, archive)
+      class(snapshots_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      integer :: i
+
+      call archive%item("n_written", self%n_written)
+      do i = 1, size(self%collections)
+         associate (collection => self%collections(i))
+            call archive%item("n_files", collection%n_files)
+            call archive%item("last", collection%last)
+            call collection%entries%visit(archive)
+            if (archive%is_loading) collection%written = 0
+         end associate
+      end do
+   end subroutine visit
+
+   !> Store or load their texts.
+   subroutine visit_text(self, archive)
+      class(snapshots_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      integer :: i
+
+      do i = 1, size(self%collections)
+         call self%collections(i)%entries%visit_text(archive)
+      end do
+   end subroutine visit_text
 
 end module report_snapshots

@@ -1,5 +1,6 @@
 !> The CSV tables of a run, with the source of the value of each column of report_columns.
 module report_tables
+   use base_archive, only: archive_t
    use base_errors, only: error_t, keep_first
    use base_kinds, only: degrees, ik, rk
    use base_texts, only: text_t
@@ -41,6 +42,8 @@ module report_tables
       procedure :: slip_event_row
       procedure :: well_row
       procedure :: flush => flush_tables
+      procedure :: visit
+      procedure :: visit_text
    end type tables_t
 
 contains
@@ -459,5 +462,33 @@ contains
          call table%put_nothing(name)
       end if
    end subroutine put_if_there
+
+   !> Store or load the tables.
+   subroutine visit(self, archive)
+      class(tables_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call self%history%visit(archive)
+      call self%tips%visit(archive)
+      call self%fractures%visit(archive)
+      call self%probes%visit(archive)
+      call self%events%visit(archive)
+      call self%slip_events%visit(archive)
+      call self%wells%visit(archive)
+   end subroutine visit
+
+   !> Store or load their texts.
+   subroutine visit_text(self, archive)
+      class(tables_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call self%history%visit_text(archive)
+      call self%tips%visit_text(archive)
+      call self%fractures%visit_text(archive)
+      call self%probes%visit_text(archive)
+      call self%events%visit_text(archive)
+      call self%slip_events%visit_text(archive)
+      call self%wells%visit_text(archive)
+   end subroutine visit_text
 
 end module report_tables

@@ -1,6 +1,7 @@
 !> A text buffer with spare capacity, and JSON (RFC 8259) built in it member by member. A number
 !! that JSON cannot represent (NaN, infinity) becomes null.
 module report_text
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
    use base_number, only: format_real, integer_text, number_width
@@ -17,12 +18,15 @@ module report_text
    type :: text_buffer_t
       integer(lk) :: length = 0_lk  !< characters in use
       character(len=:), allocatable, private :: storage
+      integer(lk), private :: stored = 0_lk  !< length in the last archive
    contains
       procedure :: append
       procedure :: append_real
       procedure :: replace_last
       procedure :: text => buffer_text
       procedure :: write_file
+      procedure :: visit => visit_length
+      procedure :: visit_text
    end type text_buffer_t
 
    integer, parameter :: deepest = 16  !< largest nesting of objects and arrays
@@ -101,6 +105,27 @@ contains
          text = ""
       end if
    end function buffer_text
+
+   !> Store or load the length. The text so far does not change any more: it is in an archive of its
+   !! own, which is made when it is written.
+   subroutine visit_length(self, archive)
+      class(text_buffer_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%item("length", self%length)
+      self%stored = self%length
+   end subroutine visit_length
+
+   !> Store the text as long as it was in the last archive, or load it.
+   subroutine visit_text(self, archive)
+      class(text_buffer_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      character(len=:), allocatable :: text
+
+      if (.not. archive%is_loading .and. self%stored > 0_lk) text = self%storage(:self%stored)
+      call archive%list("text", text)
+      if (archive%is_loading .and. allocated(text)) call move_alloc(text, self%storage)
+   end subroutine visit_text
 
    !> Write the text as a file.
    subroutine write_file(self, path, error)

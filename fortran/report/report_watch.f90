@@ -4,6 +4,7 @@
 !! Growth in equilibrium depends on whether K_eq reaches K_IC. If K_eq of a tip may reach K_IC,
 !! within the error of its intensities, that error must be below a fraction of K_IC (report_limits).
 module report_watch
+   use base_archive, only: archive_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_number, only: brief_text, integer_text
@@ -35,6 +36,7 @@ module report_watch
       procedure :: see_tips
       procedure :: stop_run
       procedure :: sentences
+      procedure :: visit
    end type watch_t
 
    !> Largest derivative of K_eq with respect to an intensity: with respect to K_II at K_I = 0 [-].
@@ -212,5 +214,24 @@ contains
       call watch%see(limit_k_to_grow, uncertainty(tip, toughness), when//", fracture "// &
                      trim(fracture)//", end "//integer_text(tip%end), tip%xy)
    end subroutine stop_on_doubt
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(watch_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      integer :: i
+
+      do i = 1, size(self%records)
+         associate (record => self%records(i))
+            call archive%item("states", record%states)
+            call archive%item("first", record%first)
+            call archive%item("worst", record%worst)
+            call archive%list("first_at", record%first_at)
+            call archive%list("worst_at", record%worst_at)
+         end associate
+      end do
+      call archive%item("stopped_by", self%stopped_by)
+      call archive%texts("news", self%news)
+   end subroutine visit
 
 end module report_watch

@@ -223,6 +223,8 @@ contains
          call exchange(record, "stimulated_jump", scene%output%stimulated_jump)
          call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length)
          call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate)
+         call exchange(record, "checkpoint", scene%output%checkpoint)
+         call exchange(record, "checkpoint_states", scene%output%checkpoint_states)
       case default  ! a repeated group, see exchange_group
          return
       end select

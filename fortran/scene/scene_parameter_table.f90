@@ -474,7 +474,13 @@ module scene_parameter_table
       parameter_t("output", "seismic_slip_rate", unit="m/s", default="1.0e-3", range=positive, &
          scenes=in_fluid, &
          meaning="Slip rate above which slip is seismic: where the largest one of a patch "// &
-                 "passes it, an event of slip_events.csv ends and another one begins")]
+                 "passes it, an event of slip_events.csv ends and another one begins"), &
+      parameter_t("output", "checkpoint", unit="s", range=at_least_zero, default="600.0", &
+         meaning="Wall time between checkpoints, from which run --restart goes on; others are "// &
+                 "written at the beginning of stages of wells, after a signal and at the end. "// &
+                 "0: none"), &
+      parameter_t("output", "checkpoint_states", kind_integer, range=at_least_zero, default="0", &
+         meaning="Number of accepted states between checkpoints; 0: the wall time decides")]
    !&>
 
    type(parameter_t), parameter :: parameters(*) = [ &

@@ -246,6 +246,9 @@ module scene_types
       real(rk) :: stimulated_jump = 1.0e-6_rk
       real(rk) :: out_of_plane_length = -1.0_rk  !< out-of-plane length of slip events [m]
       real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< smallest slip rate of seismic events [m/s]
+      real(rk) :: checkpoint = 600.0_rk  !< wall time between checkpoints; 0: none [s]
+      !> accepted states between checkpoints; 0: the wall time decides
+      integer(ik) :: checkpoint_states = 0
    end type output_t
 
    !> The whole problem.

@@ -37,7 +37,9 @@
 !! Accumulated time-step error of a scalar: the errors of the steps (twolevel_trend) add up with
 !! their signs.
 module twolevel_errors
-   use base_kinds, only: rk
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use base_archive, only: archive_t
+   use base_kinds, only: lk, rk
    use base_tolerances, only: same_time
    implicit none(type, external)
    private
@@ -99,6 +101,7 @@ module twolevel_errors
       procedure :: accept
       procedure :: add_leads
       procedure :: await_growth
+      procedure :: visit
    end type stated_errors_t
 
 contains
@@ -238,5 +241,27 @@ contains
       error = 0.0_rk
       if (tip%wing > 0.0_rk) error = tip%bend*tip%cell*min(1.0_rk, share_of_bent*tip%cell/tip%wing)
    end function error_of_bend
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(stated_errors_t), intent(inout), target :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%item("length", self%length)
+      call archive%item("pressure", self%pressure)
+      call archive%list("tip", self%tip)
+      call archive%item("by_leads", self%by_leads)
+      call archive%item("has_grown", self%has_grown)
+      call archive%item("may_have_grown", self%may_have_grown)
+      call archive%item("volume", self%volume)
+      call archive%item("volume_then", self%volume_then)
+      call archive%item("tries", self%tries)
+      call archive%item("tried", self%tried)
+      call archive%item("slope", self%slope)
+      call archive%plain("time_error", c_loc(self%time_error), storage_size(self%time_error)/8_lk)
+      call archive%item("has_layers", self%has_layers)
+      call archive%item("before_switch", self%before_switch)
+      call archive%item("time", self%time)
+   end subroutine visit
 
 end module twolevel_errors

@@ -6,7 +6,9 @@
 !! again as soon as K_eq equals K_IC within its error. In both cases the length of the jump is part
 !! of the error of the position.
 module twolevel_jumps
-   use base_kinds, only: ik, rk
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use base_archive, only: archive_t
+   use base_kinds, only: ik, lk, rk
    use base_number, only: brief_text
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_growth_jump, summary_t
@@ -29,6 +31,7 @@ module twolevel_jumps
       procedure :: begin
       procedure :: note
       procedure :: follow
+      procedure :: visit
    end type jumps_t
 
 contains
@@ -106,5 +109,26 @@ contains
              (rests .and. .not. tips%arrested .and. &
               tips%drive%intensity + uncertainty >= toughness)) error = self%length
    end subroutine follow
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(jumps_t), intent(inout), target :: self
+      type(archive_t), intent(inout) :: archive
+      integer(lk) :: n
+
+      call archive%list("length", self%length)
+      call archive%list("remaining", self%remaining)
+      n = -1_lk
+      if (allocated(self%rest)) n = size(self%rest, kind=lk)
+      call archive%count("rest", n)
+      if (archive%is_loading) then
+         if (allocated(self%rest)) deallocate (self%rest)
+         if (n >= 0_lk) allocate (self%rest(n))
+      end if
+      if (n > 0_lk) call archive%plain("rest", c_loc(self%rest), n*storage_size(self%rest)/8_lk)
+      call archive%list("speed", self%speed)
+      call archive%list("late", self%late)
+      call archive%list("jumps", self%jumps)
+   end subroutine visit
 
 end module twolevel_jumps

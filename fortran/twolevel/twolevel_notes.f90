@@ -1,7 +1,9 @@
 !> Event log of tips that grow in equilibrium: onset of growth, tips above their toughness at the
 !! start, errors of length and pressure, and competition of tips.
 module twolevel_notes
-   use base_kinds, only: ik, rk
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use base_archive, only: archive_t
+   use base_kinds, only: ik, lk, rk
    use base_number, only: brief_text, integer_text
    use base_plane, only: norm2
    use growth_interaction, only: could_separate, interaction_t
@@ -42,6 +44,7 @@ module twolevel_notes
       procedure :: note_onsets
       procedure :: note_competition
       procedure :: note_separation
+      procedure :: visit
    end type notes_t
 
    ! Tips have not grown as members of one group, or have separated with another K_eq; they are
@@ -271,5 +274,27 @@ contains
       bend = abs(along(1)*wing(2) - along(2)*wing(1))/(norm2(along)*length)
       if (dot_product(along, wing) < 0.0_rk) bend = 1.0_rk
    end subroutine find_wing
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(notes_t), intent(inout), target :: self
+      type(archive_t), intent(inout) :: archive
+      integer(lk) :: n
+
+      n = -1_lk
+      if (allocated(self%approach)) n = size(self%approach, kind=lk)
+      call archive%count("approach", n)
+      if (archive%is_loading) then
+         if (allocated(self%approach)) deallocate (self%approach)
+         if (n >= 0_lk) allocate (self%approach(n))
+      end if
+      if (n > 0_lk) call archive%plain("approach", c_loc(self%approach), &
+         & n*storage_size(self%approach)/8_lk)
+      call archive%list("is_uncertain", self%is_uncertain)
+      call archive%item("was_bifurcation", self%was_bifurcation)
+      call archive%list("relation", self%relation)
+      call archive%list("has_separated", self%has_separated)
+      call self%jumps%visit(archive)
+   end subroutine visit
 
 end module twolevel_notes

@@ -177,7 +177,7 @@ contains
                                          self%increments(), self%chronicle)
       end if
       if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
-         if (.not. allocated(self%ending)) self%ending = "the scene's end time"
+         if (.not. allocated(self%ending)) self%ending = at_end
          self%owes_state = .false.
       end if
    end subroutine grow

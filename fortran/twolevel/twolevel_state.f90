@@ -1,6 +1,7 @@
 !> Both levels of a scene with a fluid at one time: their state, and separately coarse mesh, model
 !! and windows. A step begins from this state, and rejected tries restore it.
 module twolevel_state
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
@@ -10,7 +11,8 @@ module twolevel_state
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use report_rows, only: history_row_t, probe_row_t
-   use report_simulation, only: simulation_t, snapshot_t
+   use report_restart, only: restartable_t
+   use report_simulation, only: snapshot_t
    use twolevel_field_errors, only: add_rock_errors, find_fracture_errors, note_joint_errors
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
@@ -26,6 +28,7 @@ module twolevel_state
    use twolevel_wells, only: rate
    use twolevel_unsolved, only: why_unsolved
    use twolevel_well_rows, only: well_results_t
+   use twolevel_window_tip, only: window_tip_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
@@ -38,6 +41,7 @@ module twolevel_state
    ! Names of the feature of intersections in the log.
    character(len=*), parameter :: meeting = "intersections: flow from fracture to fracture "// &
                                   "or out of the body"
+   character(len=*), parameter :: at_end = "the scene's end time"  !< reason of the end
    character(len=*), parameter :: not_meeting = "intersections: fractures do not meet"
 
    !> The last step.
@@ -56,7 +60,7 @@ module twolevel_state
    !> Simulation of a scene with a fluid on both levels; `network` is the fine network, which is
    !! ahead of the coarse one. A step changes tips, network and `now`; a rejected try is undone by
    !! `put_back` and nowhere else.
-   type, extends(simulation_t) :: two_levels_t
+   type, extends(restartable_t) :: two_levels_t
       type(levels_state_t) :: now
       type(checkpoint_t) :: last  !< state at the start of the step
       type(state_t) :: before  !< coarse part of `last`, on the present mesh
@@ -107,10 +111,26 @@ module twolevel_state
       procedure :: count_unknowns
       procedure :: grow_coarse
       procedure :: remesh_coarse
+      procedure :: prepare
+      procedure :: visit
    end type two_levels_t
 
-   ! In the submodules twolevel_remeshing, twolevel_steps and twolevel_simulation
+   ! In the submodules twolevel_remeshing, twolevel_steps, twolevel_simulation and twolevel_restart
    interface
+      module subroutine prepare(self, scene)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+      end subroutine prepare
+
+      module subroutine visit(self, archive, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(archive_t), intent(inout) :: archive
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine visit
+
       !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if
       !! no growth follows.
       module subroutine grow_coarse(self, grew, timers, error)

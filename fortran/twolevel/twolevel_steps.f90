@@ -292,6 +292,7 @@ contains
       call note_wells(self, self%step%dt, self%step%ends_at_switch)
 self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene, self%before%time) &
                                  <= self%now%coarse%time*(1.0_rk + same_time)
+      self%begins_stage = self%step%ends_at_switch
       call self%book_step(self%step%dt)
       self%tip%advance = 0.0_rk
       if (self%scene%growth%in_equilibrium()) then

@@ -10,6 +10,7 @@
 !! Injectivity is the rate of the wells divided by the rise of their mean pressure above the initial
 !! pressure of the surrounding rock, as in the injectivity index of a well; per metre of thickness.
 module twolevel_stimulation
+   use base_archive, only: archive_t
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
    use growth_front, only: front_state_t
@@ -17,6 +18,7 @@ module twolevel_stimulation
    use mesh_types, only: fracture_mesh_t, network_t
    use report_rows, only: history_row_t
    use scene_regime, only: dimensionless_leakoff, dimensionless_toughness
+   use mesh_archive, only: visit_fracture_mesh
    use scene_types, only: scene_t
    use twolevel_places, only: end_at_tips
    use twolevel_reach, only: cluster_count, connections_per_branch, reached_cells, intervals_t
@@ -43,6 +45,7 @@ module twolevel_stimulation
       procedure :: begin
       procedure :: follow
       procedure :: describe
+      procedure :: visit
    end type stimulation_t
 
 contains
@@ -211,5 +214,21 @@ contains
       end associate
       pressure = pressure/max(count(is_fed), 1)
    end function pressure_around_wells
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(stimulation_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%list("faces_fracture", self%faces%fracture)
+      call archive%list("faces_s", self%faces%s)
+      call visit_fracture_mesh(archive, "fracture", self%fracture)
+      call archive%list("jump", self%jump)
+      call archive%item("rock_pressure", self%rock_pressure)
+      call archive%item("fracture_volume", self%fracture_volume)
+      call archive%item("content", self%content)
+      call archive%item("compressed", self%compressed)
+      call archive%item("rock_outflow", self%rock_outflow)
+   end subroutine visit
 
 end module twolevel_stimulation

@@ -1,5 +1,6 @@
 !> Results of the wells, one row of wells.csv per well.
 module twolevel_well_rows
+   use base_archive, only: archive_t
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
    use report_rows, only: well_row_t
@@ -18,6 +19,7 @@ module twolevel_well_rows
    contains
       procedure :: begin
       procedure :: book
+      procedure :: visit
    end type well_results_t
 
 contains
@@ -162,5 +164,14 @@ contains
                     *sum(share**2*(s(2, :) - s(1, :))/state%aperture**3*problem%thickness(state))
       end associate
    end function pressure_at
+
+   !> Store or load all components.
+   subroutine visit(self, archive)
+      class(well_results_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%list("injected", self%injected)
+      call archive%list("first_pressure", self%first_pressure)
+   end subroutine visit
 
 end module twolevel_well_rows

@@ -5,6 +5,7 @@
 !! prescribes there (so the whole body takes nothing on its edge). The rock takes the coarse
 !! pressure as initial stress, and the fracture faces take the conditions of twolevel_faces.
 module twolevel_window
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
@@ -91,6 +92,7 @@ module twolevel_window
    contains
       procedure :: build
       procedure :: follow
+      procedure :: set_up
       procedure :: take_plan
       procedure :: edge_length
       procedure :: can_be_larger
@@ -104,7 +106,23 @@ module twolevel_window
       procedure :: holds
       procedure :: lacks_focus
       procedure :: displacement_at
+      procedure :: visit
    end type window_t
+
+   interface
+      !> Store or load a window; its model is made again from its mesh.
+      module subroutine visit(self, archive, scene, mesher, coarse, values, tips, error)
+         implicit none(type, external)
+         class(window_t), intent(inout) :: self
+         type(archive_t), intent(inout) :: archive
+         type(scene_t), intent(in) :: scene
+         type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
+         type(mesh_t), intent(in) :: coarse
+         type(coarse_values_t), intent(in) :: values
+         type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine visit
+   end interface
 
 contains
 
@@ -161,7 +179,7 @@ contains
       self%has_moved = .false.
       self%follows_other = .false.
       call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
-      call set_up(self, scene, tips, error)
+      call self%set_up(scene, tips, error)
    end subroutine build
 
    !> Move the nodes of the original mesh with tips that have advanced along their last segments.
@@ -186,7 +204,7 @@ contains
       call move_tips(as_made, far_straight, self%mesher, self%mesh, refusal)
       if (allocated(refusal)) return
       call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
-      call set_up(self, scene, tips, error)
+      call self%set_up(scene, tips, error)
       is_done = .not. allocated(error)
    end subroutine follow
 

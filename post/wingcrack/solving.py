@@ -32,6 +32,8 @@ _MPIEXEC = [
 def run(given: SimpleNamespace) -> int:
     """Run a scene, then draw its figures; give the exit status."""
     scene, out = given.scene, given.out
+    if given.restart is not None:
+        return _go_on(given)
     if out is None:
         status, name = _call([SOLVER, "name", scene], stdout=subprocess.PIPE)
         if status:
@@ -50,6 +52,23 @@ def run(given: SimpleNamespace) -> int:
         status = _on_ranks(given.ranks, given.threads, words)
     else:
         status, _ = _call([SOLVER, *words], given.threads)
+    return _drawn(status, out, given)
+
+
+def _go_on(given: SimpleNamespace) -> int:
+    """Go on from a checkpoint; give the exit status."""
+    out = given.out or given.restart
+    scene = [] if given.scene is None else [given.scene]
+    end = [] if given.end is None else ["--end", repr(given.end)]
+    quiet = ["--quiet"] if given.quiet else []
+    words = ["run", *scene, "--restart", given.restart, *end, "--out", out, *quiet]
+    status, _ = _call([SOLVER, *words], given.threads)
+    return _drawn(status, out, given)
+
+
+def _drawn(status: int, out: str, given: SimpleNamespace) -> int:
+    """Draw the figures of a run that has ended with this status; give the exit status."""
+    quiet = ["--quiet"] if given.quiet else []
     if status == 0 and not given.no_plot:
         # Figures are an extra: without them the run is still done.
         drawn, _ = _call([LAUNCHER, "plot", out, *quiet])

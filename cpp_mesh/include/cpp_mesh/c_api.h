@@ -201,6 +201,11 @@ int cm_quality(const cm_mesh* mesh, double* smallest_angle, int32_t* worst_cell)
 int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy /* [n_points][2] */,
               int32_t* cells);
 
+/* The bytes of a mesh for a checkpoint, and the same mesh from them, in the same program. Those of
+   a mesh are written if there is room; `n_bytes` says how many there are. */
+int cm_store(const cm_mesh* mesh, int64_t capacity, char* bytes /* [capacity] */, int64_t* n_bytes);
+int cm_load(int64_t n_bytes, const char* bytes /* [n_bytes] */, cm_mesh** mesh);
+
 void cm_destroy(cm_mesh** mesh); /* sets NULL */
 
 #ifdef __cplusplus

@@ -9,6 +9,7 @@ program wingcrack_solver
    use app_size, only: check_size, describe_scene
    use app_version, only: version
    use base_errors, only: error_t
+   use base_kinds, only: rk
    use report_describe, only: description
    use report_simulation, only: simulation_t
    use scene_namelist, only: read_scene
@@ -18,7 +19,8 @@ program wingcrack_solver
 
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
-                                  "[--quiet] | check SCENE.nml | name SCENE.nml | "// &
+                                  "[--quiet] | run [SCENE.nml] --restart DIR [--end T] "// &
+                                  "[--out DIR] [--quiet] | check SCENE.nml | name SCENE.nml | "// &
                                   "ranks SCENE.nml | "// &
                                   "--describe json | --version"
    !> Kept to the program's end: gfortran 12 loses memory when it deallocates by the dynamic type.
@@ -49,13 +51,21 @@ contains
    subroutine run()
       type(scene_t) :: scene
       type(error_t), allocatable :: error
-      character(len=:), allocatable :: directory
+      character(len=:), allocatable :: directory, origin, source, text
+      real(rk) :: end_time
       logical :: quiet, refused, was_interrupted
-      integer :: i
+      integer :: i, status
 
       quiet = .false.
       directory = ""
+      origin = ""
+      source = argument(2)
+      end_time = 0.0_rk
       i = 3
+      if (index(source, "--") == 1) then
+         source = ""
+         i = 2
+      end if
       do while (i <= command_argument_count())
          select case (argument(i))
          case ("--quiet")
@@ -64,17 +74,40 @@ contains
             i = i + 1
             directory = argument(i)
             if (len(directory) == 0) call leave("--out needs a directory", exit_usage)
+         case ("--restart")
+            i = i + 1
+            origin = argument(i)
+            if (len(origin) == 0) call leave("--restart needs a directory", exit_usage)
+         case ("--end")
+            i = i + 1
+            text = argument(i)
+            read (text, *, iostat=status) end_time
+            if (status /= 0 .or. .not. end_time > 0.0_rk) call leave("--end needs a time in "// &
+                                                     "seconds, not '"//argument(i)//"'", exit_usage)
          case default
             call leave("unknown argument "//argument(i)//"; "//usage, exit_usage)
          end select
          i = i + 1
       end do
+      if (end_time > 0.0_rk .and. origin == "") then
+         call leave("--end belongs to --restart; otherwise the scene has the end", exit_usage)
+      end if
       call catch_interrupts()
       call prepare_memory()
       call begin_ranks()
-      call read_judged(scene)
-      if (len(directory) == 0) directory = "out/"//trim(scene%name)
-   call run_scene(scene, argument(2), directory, quiet, simulation, refused, was_interrupted, error)
+      if (origin == "") then
+         call read_judged(source, scene)
+         if (len(directory) == 0) directory = "out/"//trim(scene%name)
+         call run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, &
+                        error)
+      else
+         if (source == "") source = origin//"/scene.nml"
+         call read_judged(source, scene)
+         if (end_time > 0.0_rk) scene%time%end = end_time
+         if (len(directory) == 0) directory = origin
+         call run_scene(scene, "", directory, quiet, simulation, refused, was_interrupted, error, &
+                        origin)
+      end if
       if (allocated(error)) then
          if (refused) call leave(error%message, exit_usage)
          call leave(error%message, exit_failed)
@@ -88,17 +121,18 @@ contains
 
       if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, &
                                                    exit_usage)
-      call read_judged(scene)
+      call read_judged(argument(2), scene)
       call describe_scene(scene, output_unit)
    end subroutine check
 
    !> Read and check a scene; a fault ends the program.
-   subroutine read_judged(scene)
+   subroutine read_judged(path, scene)
+      character(len=*), intent(in) :: path
       type(scene_t), intent(out) :: scene
       type(sheet_t) :: sheet
       type(error_t), allocatable :: error
 
-      call read_scene(argument(2), scene, error, sheet)
+      call read_scene(path, scene, error, sheet)
       if (.not. (allocated(error) .or. simulates_fluids())) then
          if (scene%has_fluid()) call leave("the scene has a fluid, and this program was built "// &
                                            "without the coarse level, which that takes", &

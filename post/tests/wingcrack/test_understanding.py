@@ -45,6 +45,7 @@ def understood(way: str, words: list[str], place: Path) -> tuple[int, str, str]:
     [
         ["run", str(SCENE)],
         ["run", "--threads=3", "--ranks", "2", str(SCENE), "--out", "some where", "--no-plot"],
+        ["run", "--restart", ".", "--end", "7200"],
         ["check", str(SCENE)],
         ["plot", ".", "/", "--times", "1h,90", "--only", "maps,tips", "--format", "png,pdf"],
         ["view", ".", "--port", "8040"],
@@ -60,6 +61,7 @@ def understood(way: str, words: list[str], place: Path) -> tuple[int, str, str]:
     ],
 )
 def test_both_ways_give_the_same_call(words: list[str], tmp_path: Path) -> None:
+    (tmp_path / "checkpoint.bin").touch()  # for a restart
     ways = [understood(way, words, tmp_path) for way in ("with", "without")]
     assert ways[0] == ways[1]
     assert (ways[0][0], ways[0][2]) == (0, "")

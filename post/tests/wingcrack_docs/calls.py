@@ -66,6 +66,8 @@ def short_form(words: list[str]) -> list[str] | None:
         return words
     if command in ("new", "import", "network"):
         return [*words, "--overwrite"]
+    if command == "run" and "--restart" in rest:
+        return None
     if command == "run":
         return [*words, "--no-plot", "--quiet"] if rest[0] in CHEAP else ["check", rest[0]]
     if command == "study":

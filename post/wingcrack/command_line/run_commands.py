@@ -38,6 +38,14 @@ _SCENE = Parameter("scene", "SCENE.nml", read=place)
         whole(1, 9999),
         1,
     ),
+    Parameter(
+        "--restart",
+        "DIR",
+        "go on from the newest checkpoint of the run in DIR, in the same folder or that of --out;"
+        " without SCENE.nml the scene is DIR/scene.nml (docs/howto_restart.md)",
+        place,
+    ),
+    Parameter("--end", "T", "with --restart: another end of the run [s]", positive),
     flag("--quiet", "no progress on the terminal"),
     flag("--no-plot", "no figures"),
     statuses="""\
@@ -50,7 +58,12 @@ def run(given: SimpleNamespace) -> None:
     """Run a scene and draw its figures."""
     if given.out == "":
         raise UsageError("--out needs a value")
-    _judge_scene(given)
+    if given.restart is None:
+        if given.end is not None:
+            raise UsageError("--end belongs to --restart: otherwise the scene has the end")
+        _judge_scene(given)
+    else:
+        _judge_restart(given)
     if given.out is not None:
         judge_place(given.out)
 
@@ -66,6 +79,15 @@ def run(given: SimpleNamespace) -> None:
 def check(given: SimpleNamespace) -> None:
     """Read and validate a scene without running it."""
     _judge_scene(given)
+
+
+def _judge_restart(given: SimpleNamespace) -> None:
+    if given.ranks > 1:
+        raise UsageError("--restart goes with one process, without --ranks")
+    if not any(Path(given.restart).glob("checkpoint*.bin")):
+        raise RefusedError(f"{given.restart} has no checkpoint of a run to go on from")
+    if given.scene is not None:
+        _judge_scene(given)
 
 
 def _judge_scene(given: SimpleNamespace) -> None:

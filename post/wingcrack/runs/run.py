@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -74,6 +74,53 @@ class Run(Results):
             If the run has written none.
         """
         return Scene.read(self._scene_file)
+
+    # Going on
+
+    def continue_with(
+        self,
+        out: str | Path,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        end: float | None = None,
+        threads: int = 1,
+        quiet: bool = True,
+    ) -> Run:
+        """Go on from the newest checkpoint of this run, in another folder.
+
+        Without changes the result equals that of a run that was not interrupted, bit for bit.
+
+        Parameters
+        ----------
+        out : str or Path
+            Folder for the results; the run's own folder is possible.
+        changes : mapping, optional
+            Values by address, as in `Scene`: of ``time``, ``output``, stages of wells, values of
+            sides in time.
+        end : float, optional
+            Another end [s].
+        threads : int
+            For windows side by side and loops.
+        quiet : bool
+            No progress on the terminal.
+
+        Raises
+        ------
+        SceneError
+            If there is no checkpoint, or something is changed that a restart cannot change.
+        RunFailedError
+            If the run does not reach its end.
+
+        Examples
+        --------
+        >>> run.continue_with("out/longer", end=2.0 * run.scene["time.end"])  # doctest: +SKIP
+        """
+        scene = Scene.read(self._scene_file)
+        for address, value in (changes or {}).items():
+            scene[address] = value
+        if end is not None:
+            scene["time.end"] = end
+        return scene.run(out, threads=threads, quiet=quiet, restart=self.directory)
 
     # Figures
 
@@ -270,7 +317,14 @@ class Scene(SceneFile):
     >>> run = scene.run("out/weaker")  # doctest: +SKIP
     """
 
-    def run(self, out: str | Path, *, threads: int = 1, quiet: bool = True) -> Run:
+    def run(
+        self,
+        out: str | Path,
+        *,
+        threads: int = 1,
+        quiet: bool = True,
+        restart: str | Path | None = None,
+    ) -> Run:
         """Run the scene to its end.
 
         Parameters
@@ -281,6 +335,8 @@ class Scene(SceneFile):
             For windows side by side and loops.
         quiet : bool
             No progress on the terminal.
+        restart : str or Path, optional
+            Folder of a run, from whose newest checkpoint this one goes on.
 
         Raises
         ------
@@ -294,6 +350,8 @@ class Scene(SceneFile):
         with tempfile.TemporaryDirectory() as folder:
             file = self._file(folder)
             words = [str(solver()), "run", str(file), "--out", str(out)]
+            if restart is not None:
+                words += ["--restart", str(restart)]
             status, said = _supervised([*words, "--quiet"] if quiet else words, threads)
             if status == _BAD_INPUT:
                 raise SceneError(self._said(said, file))

@@ -1,0 +1,329 @@
+!> Archive of values: the same procedure stores a value or loads it, so that a type is stored and
+!! loaded by one list of its components (`visit`), in which none can be forgotten on one side only.
+!!
+!! An archive is a sequence of entries. Each begins with its head: length of the name (int32), name,
+!! kind of the values (two characters), rank (int32), extents (int64 each), then come the values, as
+!! they are in memory, the first index fastest. The rank is -1 for an array that is not allocated.
+!!
+!!   kind   values
+!!   r8     real, 8 bytes          i4, i8  integer, 4 and 8 bytes
+!!   l4     logical, 4 bytes       c1      characters
+!!   b1     bytes of values of a type that has neither pointers nor allocatable components
+!!   n8     number of the elements that follow, each as entries; -1: not allocated
+!!   g0     begin of a group of entries with this name; an empty name ends the group
+module base_archive
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use, intrinsic :: iso_fortran_env, only: int8
+   use base_kinds, only: ik, lk, rk
+   use base_stream, only: stream_t
+   use base_texts, only: text_t
+   implicit none(type, external)
+   private
+
+   public :: archive_t
+
+   !> Values in the order in which they are stored and loaded.
+   type, extends(stream_t) :: archive_t
+   contains
+      procedure :: texts
+      procedure, private :: item_real, item_integer, item_long, item_logical, item_text
+      generic :: item => item_real, item_integer, item_long, item_logical, item_text
+      procedure, private :: list_real1, list_real2, list_real3, list_real4, list_integer1
+      procedure, private :: list_integer2, list_integer3, list_logical1, list_logical2, list_byte1
+      procedure, private :: list_text
+      generic :: list => list_real1, list_real2, list_real3, list_real4, &
+         list_integer1, list_integer2, list_integer3, list_logical1, list_logical2, &
+         list_byte1, list_text
+   end type archive_t
+
+contains
+
+   !> A list of texts.
+   subroutine texts(self, name, list)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      type(text_t), allocatable, intent(inout) :: list(:)
+      integer(lk) :: i, n
+
+      n = -1_lk
+      if (allocated(list)) n = size(list, kind=lk)
+      call self%count(name, n)
+      if (self%is_loading) then
+         if (allocated(list)) deallocate (list)
+         if (n >= 0_lk) allocate (list(n))
+      end if
+      do i = 1_lk, n
+         call self%list(name, list(i)%text)
+      end do
+   end subroutine texts
+
+   subroutine item_real(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), intent(inout), target, contiguous :: x(..)
+      integer(lk) :: extents(rank(x))
+      logical :: exists
+
+      exists = .true.
+      extents = shape(x, lk)
+      call self%head(name, "r8", extents, exists)
+      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%move(c_loc(x), 8_lk*size(x, kind=lk))
+   end subroutine item_real
+
+   subroutine item_integer(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), intent(inout), target, contiguous :: x(..)
+      integer(lk) :: extents(rank(x))
+      logical :: exists
+
+      exists = .true.
+      extents = shape(x, lk)
+      call self%head(name, "i4", extents, exists)
+      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%move(c_loc(x), 4_lk*size(x, kind=lk))
+   end subroutine item_integer
+
+   subroutine item_long(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(lk), intent(inout), target, contiguous :: x(..)
+      integer(lk) :: extents(rank(x))
+      logical :: exists
+
+      exists = .true.
+      extents = shape(x, lk)
+      call self%head(name, "i8", extents, exists)
+      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%move(c_loc(x), 8_lk*size(x, kind=lk))
+   end subroutine item_long
+
+   subroutine item_logical(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, intent(inout), target, contiguous :: x(..)
+      integer(lk) :: extents(rank(x))
+      logical :: exists
+
+      exists = .true.
+      extents = shape(x, lk)
+      call self%head(name, "l4", extents, exists)
+      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%move(c_loc(x), 4_lk*size(x, kind=lk))
+   end subroutine item_logical
+
+   subroutine item_text(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      ! allow(C072)
+      character(len=*), intent(inout), target :: x
+      integer(lk) :: extents(1)
+      logical :: exists
+
+      exists = .true.
+      extents = len(x, lk)
+      call self%head(name, "c1", extents, exists)
+      if (extents(1) /= len(x, lk)) call self%set_fault(name)
+      call self%move(c_loc(x), len(x, lk))
+   end subroutine item_text
+
+   subroutine list_real1(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), allocatable, intent(inout), target :: x(:)
+      integer(lk) :: n(1)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "r8", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1)))
+      end if
+      if (exists) call self%move(c_loc(x), 8_lk*product(n))
+   end subroutine list_real1
+
+   subroutine list_real2(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), allocatable, intent(inout), target :: x(:, :)
+      integer(lk) :: n(2)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "r8", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1), n(2)))
+      end if
+      if (exists) call self%move(c_loc(x), 8_lk*product(n))
+   end subroutine list_real2
+
+   subroutine list_real3(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), allocatable, intent(inout), target :: x(:, :, :)
+      integer(lk) :: n(3)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "r8", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1), n(2), n(3)))
+      end if
+      if (exists) call self%move(c_loc(x), 8_lk*product(n))
+   end subroutine list_real3
+
+   subroutine list_real4(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(rk), allocatable, intent(inout), target :: x(:, :, :, :)
+      integer(lk) :: n(4)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "r8", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1), n(2), n(3), n(4)))
+      end if
+      if (exists) call self%move(c_loc(x), 8_lk*product(n))
+   end subroutine list_real4
+
+   subroutine list_integer1(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), allocatable, intent(inout), target :: x(:)
+      integer(lk) :: n(1)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "i4", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1)))
+      end if
+      if (exists) call self%move(c_loc(x), 4_lk*product(n))
+   end subroutine list_integer1
+
+   subroutine list_integer2(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), allocatable, intent(inout), target :: x(:, :)
+      integer(lk) :: n(2)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "i4", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1), n(2)))
+      end if
+      if (exists) call self%move(c_loc(x), 4_lk*product(n))
+   end subroutine list_integer2
+
+   subroutine list_integer3(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), allocatable, intent(inout), target :: x(:, :, :)
+      integer(lk) :: n(3)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "i4", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1), n(2), n(3)))
+      end if
+      if (exists) call self%move(c_loc(x), 4_lk*product(n))
+   end subroutine list_integer3
+
+   subroutine list_logical1(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, allocatable, intent(inout), target :: x(:)
+      integer(lk) :: n(1)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "l4", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1)))
+      end if
+      if (exists) call self%move(c_loc(x), 4_lk*product(n))
+   end subroutine list_logical1
+
+   subroutine list_logical2(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, allocatable, intent(inout), target :: x(:, :)
+      integer(lk) :: n(2)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "l4", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1), n(2)))
+      end if
+      if (exists) call self%move(c_loc(x), 4_lk*product(n))
+   end subroutine list_logical2
+
+   subroutine list_byte1(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(int8), allocatable, intent(inout), target :: x(:)
+      integer(lk) :: n(1)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = shape(x, lk)
+      call self%head(name, "b1", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (x(n(1)))
+      end if
+      if (exists) call self%move(c_loc(x), 1_lk*product(n))
+   end subroutine list_byte1
+
+   subroutine list_text(self, name, x)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable, intent(inout), target :: x
+      integer(lk) :: n(1)
+      logical :: exists
+
+      exists = allocated(x)
+      n = 0_lk
+      if (exists) n = len(x, lk)
+      call self%head(name, "c1", n, exists)
+      if (self%is_loading) then
+         if (allocated(x)) deallocate (x)
+         if (exists) allocate (character(len=n(1)) :: x)
+      end if
+      if (exists) call self%move(c_loc(x), n(1))
+   end subroutine list_text
+
+end module base_archive

@@ -1,0 +1,253 @@
+!> Stream of bytes with named entries, for base_archive, which defines them.
+module base_stream
+   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int64_t, c_loc, c_ptr, c_signed_char, &
+                                                                             c_size_t
+   use, intrinsic :: iso_fortran_env, only: int8
+   use base_kinds, only: ik, lk
+   implicit none(type, external)
+   private
+
+   public :: checksum, stream_t
+
+   !> Entries in the order in which they are stored and loaded.
+   type :: stream_t
+      logical :: is_loading = .false.
+      integer(int8), allocatable :: bytes(:)
+      integer(lk) :: length = 0_lk  !< bytes in use
+      integer(lk) :: place = 0_lk  !< bytes loaded so far
+      !> the first fault of loading; nothing is loaded after it
+      character(len=:), allocatable :: fault
+   contains
+      procedure :: begin_storing
+      procedure :: begin_loading
+      procedure :: enter
+      procedure :: leave
+      procedure :: count => visit_count
+      procedure :: plain
+      procedure :: append
+      procedure :: head
+      procedure :: move
+      procedure :: set_fault
+   end type stream_t
+
+   interface
+      !> CRC-32 of bytes that follow those with the checksum `before`, 0 at the beginning.
+      function checksum(before, bytes, n_bytes) result(crc) bind(C, name="base_checksum")
+         import :: c_int64_t, c_signed_char, c_size_t
+         implicit none(type, external)
+         integer(c_int64_t), value, intent(in) :: before
+         ! allow(C071)
+         integer(c_signed_char), intent(in) :: bytes(*)
+         integer(c_size_t), value, intent(in) :: n_bytes
+         integer(c_int64_t) :: crc
+      end function checksum
+   end interface
+
+contains
+
+   !> Empty the archive, to store values; its memory is kept.
+   subroutine begin_storing(self)
+      class(stream_t), intent(inout) :: self
+
+      self%is_loading = .false.
+      self%length = 0_lk
+      self%place = 0_lk
+   end subroutine begin_storing
+
+   !> Load values from the beginning.
+   subroutine begin_loading(self)
+      class(stream_t), intent(inout) :: self
+
+      self%is_loading = .true.
+      self%place = 0_lk
+      if (allocated(self%fault)) deallocate (self%fault)
+   end subroutine begin_loading
+
+   !> Begin a group of entries.
+   subroutine enter(self, name)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(lk) :: none(0)
+      logical :: exists
+
+      exists = .true.
+      call self%head(name, "g0", none, exists)
+   end subroutine enter
+
+   !> End a group.
+   subroutine leave(self)
+      class(stream_t), intent(inout) :: self
+
+      call self%enter("")
+   end subroutine leave
+
+   !> Number of the elements that follow; -1: they are not allocated.
+   subroutine visit_count(self, name, n)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(lk), intent(inout), target :: n
+      integer(lk) :: none(0)
+      logical :: exists
+
+      exists = .true.
+      call self%head(name, "n8", none, exists)
+      call self%move(c_loc(n), 8_lk)
+      if (allocated(self%fault)) n = -1_lk
+   end subroutine visit_count
+
+   !> Values of a type without pointers and allocatable components.
+   subroutine plain(self, name, address, n_bytes)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      type(c_ptr), intent(in) :: address
+      integer(lk), intent(in) :: n_bytes  !< of all values
+      integer(lk) :: extents(1)
+      logical :: exists
+
+      exists = .true.
+      extents = n_bytes
+      call self%head(name, "b1", extents, exists)
+      if (extents(1) /= n_bytes) call self%set_fault(name)
+      call self%move(address, n_bytes)
+   end subroutine plain
+
+   !> Append the bytes of another archive that is being stored.
+   subroutine append(self, other)
+      class(stream_t), intent(inout) :: self
+      class(stream_t), intent(in) :: other
+
+      call reserve(self, other%length)
+      self%bytes(self%length + 1:self%length + other%length) = other%bytes(:other%length)
+      self%length = self%length + other%length
+   end subroutine append
+
+   !> The head of an entry: stored, or loaded and compared.
+   subroutine head(self, name, kind, extents, exists)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=2), intent(in) :: kind
+      integer(lk), intent(inout) :: extents(:)
+      logical, intent(inout) :: exists  !< .false.: an array that is not allocated
+      integer(ik) :: ranks
+      character(len=64) :: found_name
+      character(len=2) :: found_kind
+
+      if (self%is_loading) then
+         found_name = name
+         found_kind = kind
+         call load_head(self, found_name, found_kind, ranks, extents)
+         if (found_name /= name .or. found_kind /= kind .or. &
+             .not. any(ranks == [-1_ik, size(extents, kind=ik)])) call self%set_fault(name)
+         exists = ranks >= 0_ik .and. .not. allocated(self%fault)
+         if (.not. exists) extents = 0_lk
+         return
+      end if
+      call put_integer(self, len(name, ik))
+      call put_text(self, name)
+      call put_text(self, kind)
+      call put_integer(self, merge(size(extents, kind=ik), -1_ik, exists))
+      if (exists) call put_extents(self, extents)
+   end subroutine head
+
+   !> Load a head. After a fault nothing changes.
+   subroutine load_head(self, name, kind, ranks, extents)
+      class(stream_t), intent(inout) :: self
+      ! allow(C072)
+      character(len=*), intent(inout), target :: name
+      character(len=2), intent(inout), target :: kind
+      integer(ik), intent(out), target :: ranks
+      integer(lk), intent(inout) :: extents(:)
+      integer(ik), target :: length
+      integer(lk), target :: n(size(extents))
+
+      length = 0
+      ranks = -1
+      call self%move(c_loc(length), 4_lk)
+      if (length < 0 .or. length > len(name)) then
+         call self%set_fault(name)
+         return
+      end if
+      if (.not. allocated(self%fault)) name = ""
+      if (length > 0) call self%move(c_loc(name), int(length, lk))
+      call self%move(c_loc(kind), 2_lk)
+      call self%move(c_loc(ranks), 4_lk)
+      if (ranks /= size(extents)) return
+      n = 0_lk
+      if (size(n) > 0) call self%move(c_loc(n), 8_lk*size(n, kind=lk))
+      if (any(n < 0_lk) .or. any(n > self%length)) call self%set_fault(name)
+      extents = n
+   end subroutine load_head
+
+   subroutine put_integer(self, value)
+      class(stream_t), intent(inout) :: self
+      integer(ik), intent(in) :: value
+      integer(ik), target :: kept
+
+      kept = value
+      call self%move(c_loc(kept), 4_lk)
+   end subroutine put_integer
+
+   subroutine put_extents(self, values)
+      class(stream_t), intent(inout) :: self
+      integer(lk), intent(in) :: values(:)
+      integer(lk), target :: kept(size(values))
+
+      kept = values
+      if (size(kept) > 0) call self%move(c_loc(kept), 8_lk*size(kept, kind=lk))
+   end subroutine put_extents
+
+   subroutine put_text(self, value)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: value
+      character(len=len(value)), target :: kept
+
+      kept = value
+      if (len(kept) > 0) call self%move(c_loc(kept), len(kept, lk))
+   end subroutine put_text
+
+   !> Copy bytes between values and the archive.
+   subroutine move(self, address, n_bytes)
+      class(stream_t), intent(inout) :: self
+      type(c_ptr), intent(in) :: address
+      integer(lk), intent(in) :: n_bytes
+      integer(int8), pointer :: values(:)
+
+      if (n_bytes == 0_lk .or. allocated(self%fault)) return
+      call c_f_pointer(address, values, [n_bytes])
+      if (self%is_loading) then
+         if (n_bytes > self%length - self%place) then
+            call self%set_fault("the end")
+            return
+         end if
+         values = self%bytes(self%place + 1:self%place + n_bytes)
+         self%place = self%place + n_bytes
+      else
+         call reserve(self, n_bytes)
+         self%bytes(self%length + 1:self%length + n_bytes) = values
+         self%length = self%length + n_bytes
+      end if
+   end subroutine move
+
+   !> Make room for more bytes.
+   subroutine reserve(self, n_bytes)
+      class(stream_t), intent(inout) :: self
+      integer(lk), intent(in) :: n_bytes
+      integer(int8), allocatable :: larger(:)
+
+      if (.not. allocated(self%bytes)) allocate (self%bytes(65536))
+      if (self%length + n_bytes <= size(self%bytes, kind=lk)) return
+      allocate (larger(self%length + n_bytes + size(self%bytes, kind=lk)/2_lk))
+      larger(:self%length) = self%bytes(:self%length)
+      call move_alloc(larger, self%bytes)
+   end subroutine reserve
+
+   !> Note the first fault of loading.
+   subroutine set_fault(self, name)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name  !< of the entry
+
+      if (.not. self%is_loading .or. allocated(self%fault)) return
+      self%fault = "no "//trim(name)//" at its place"
+   end subroutine set_fault
+
+end module base_stream

@@ -1,0 +1,63 @@
+!> Slip events in an archive (base_archive).
+submodule(report_slip) report_slip_archive
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use base_kinds, only: lk
+   implicit none(type, external)
+
+contains
+
+   module subroutine visit(self, archive)
+      class(slip_catalogue_t), intent(inout), target :: self
+      type(archive_t), intent(inout) :: archive
+      integer(lk) :: i, n
+
+      call archive%item("breadth", self%breadth)
+      call archive%item("least_slip", self%least_slip)
+      call archive%item("seismic_rate", self%seismic_rate)
+      call archive%item("n", self%n)
+      n = -1_lk
+      if (allocated(self%news)) n = size(self%news, kind=lk)
+      call archive%count("news", n)
+      if (archive%is_loading) then
+         if (allocated(self%news)) deallocate (self%news)
+         if (n >= 0_lk) allocate (self%news(n))
+      end if
+      if (n > 0_lk) call archive%plain("news", c_loc(self%news), n*storage_size(self%news)/8_lk)
+      n = -1_lk
+      if (allocated(self%live)) n = size(self%live, kind=lk)
+      call archive%count("live", n)
+      if (archive%is_loading) then
+         if (allocated(self%live)) deallocate (self%live)
+         if (n >= 0_lk) allocate (self%live(n))
+      end if
+      do i = 1_lk, n
+         associate (live => self%live(i))
+            call archive%item("has_begun", live%has_begun)
+            call archive%plain("event", c_loc(live%event), storage_size(live%event)/8_lk)
+            call archive%plain("before", c_loc(live%before), storage_size(live%before)/8_lk)
+            call archive%plain("now", c_loc(live%now), storage_size(live%now)/8_lk)
+            call visit_shear(archive, live%start)
+            call archive%item("steps", live%steps)
+         end associate
+      end do
+      n = -1_lk
+      if (allocated(self%patch)) n = size(self%patch, kind=lk)
+      call archive%count("patch", n)
+      if (archive%is_loading) then
+         if (allocated(self%patch)) deallocate (self%patch)
+         if (n >= 0_lk) allocate (self%patch(n))
+      end if
+      if (n > 0_lk) call archive%plain("patch", c_loc(self%patch), n*storage_size(self%patch)/8_lk)
+      call visit_shear(archive, self%last)
+   end subroutine visit
+
+   subroutine visit_shear(archive, shear)
+      type(archive_t), intent(inout) :: archive
+      type(shear_t), intent(inout) :: shear
+
+      call archive%list("fracture", shear%fracture)
+      call archive%list("s", shear%s)
+      call archive%list("traction", shear%traction)
+   end subroutine visit_shear
+
+end submodule report_slip_archive

@@ -1,0 +1,193 @@
+!> The state of both levels in an archive (base_archive).
+module twolevel_archive
+   use, intrinsic :: iso_c_binding, only: c_loc
+   use base_archive, only: archive_t
+   use base_kinds, only: lk
+   use coarse_archive, only: visit_state
+   use contact_archive, only: visit_laws
+   use fine_archive, only: visit_contact, visit_fine_mesh
+   use growth_archive, only: visit_groups, visit_interaction, visit_segments
+   use mesh_archive, only: visit_network
+   use twolevel_faces, only: coarse_values_t
+   use twolevel_followed, only: followed_t
+   use twolevel_levels_state, only: levels_state_t
+   use twolevel_stepping, only: stepper_t
+   use twolevel_trend, only: trend_t
+   use twolevel_value_errors, only: value_errors_t
+   use twolevel_windows_state, only: windows_state_t
+   implicit none(type, external)
+   private
+
+   public :: visit_levels, visit_stepper, visit_value_errors, visit_values
+
+contains
+
+   subroutine visit_levels(archive, name, now)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(levels_state_t), intent(inout), target :: now
+
+      call archive%enter(name)
+      call visit_state(archive, "coarse", now%coarse)
+      call visit_network(archive, "coarse_network", now%coarse_network)
+      call archive%list("grown", now%grown)
+      call archive%item("has_new_mesh", now%has_new_mesh)
+      call archive%item("undrained", now%undrained)
+      call visit_segments(archive, "segment", now%segment)
+      call archive%list("active", now%active)
+      call visit_interaction(archive, "interaction", now%interaction)
+      call visit_groups(archive, "groups", now%groups)
+      call visit_windows_state(archive, "windows", now%windows)
+      call visit_windows_state(archive, "reference", now%reference)
+      call visit_trend(archive, "trend", now%trend)
+      call now%stated_errors%visit(archive)
+      call archive%plain("fluid", c_loc(now%fluid), storage_size(now%fluid)/8_lk)
+      call archive%list("given", now%given)
+      call archive%list("at_limit", now%at_limit)
+      call archive%leave()
+   end subroutine visit_levels
+
+   subroutine visit_windows_state(archive, name, known)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(windows_state_t), intent(inout), target :: known
+      integer(lk) :: i, m, n
+
+      call archive%enter(name)
+      n = -1_lk
+      if (allocated(known%tip)) n = size(known%tip, kind=lk)
+      call archive%count("tip", n)
+      if (archive%is_loading) then
+         if (allocated(known%tip)) deallocate (known%tip)
+         if (n >= 0_lk) allocate (known%tip(n))
+      end if
+      if (n > 0_lk) call archive%plain("tip", c_loc(known%tip), n*storage_size(known%tip)/8_lk)
+      n = -1_lk
+      if (allocated(known%history)) n = size(known%history, kind=lk)
+      call archive%count("history", n)
+      if (archive%is_loading) then
+         if (allocated(known%history)) deallocate (known%history)
+         if (n >= 0_lk) allocate (known%history(n))
+      end if
+      do i = 1_lk, n
+         associate (history => known%history(i))
+            m = merge(1_lk, -1_lk, allocated(history%contact))
+            call archive%count("contact", m)
+            if (archive%is_loading .and. m > 0_lk) allocate (history%contact)
+            if (m > 0_lk) call visit_contact(archive, "contact", history%contact)
+            m = merge(1_lk, -1_lk, allocated(history%mesh))
+            call archive%count("mesh", m)
+            if (archive%is_loading .and. m > 0_lk) allocate (history%mesh)
+            if (m > 0_lk) call visit_fine_mesh(archive, "mesh", history%mesh)
+         end associate
+      end do
+      call archive%leave()
+   end subroutine visit_windows_state
+
+   subroutine visit_trend(archive, name, trend)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(trend_t), intent(inout) :: trend
+
+      call archive%enter(name)
+      call archive%item("dt", trend%dt)
+      call archive%list("rock", trend%rock)
+      call archive%list("fracture", trend%fracture)
+      call archive%list("jump", trend%jump)
+      call archive%list("knows_rock", trend%knows_rock)
+      call archive%list("knows_fracture", trend%knows_fracture)
+      call archive%item("pressure", trend%pressure)
+      call archive%item("jumps", trend%jumps)
+      call archive%item("least_pressure", trend%least_pressure)
+      call archive%item("least_jump", trend%least_jump)
+      call archive%leave()
+   end subroutine visit_trend
+
+   !> The control of the step length, without its settings, which are those of the scene.
+   subroutine visit_stepper(archive, name, stepper)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(stepper_t), intent(inout) :: stepper
+
+      call archive%enter(name)
+      call archive%item("next", stepper%next)
+      call archive%item("left_in_vain", stepper%left_in_vain)
+      call archive%item("halvings", stepper%halvings)
+      call archive%item("solvable", stepper%solvable)
+      call archive%item("solved", stepper%solved)
+      call archive%item("moment", stepper%moment)
+      call archive%item("in_vain", stepper%in_vain)
+      call archive%item("onset_cuts", stepper%onset_cuts)
+      call archive%item("arrival_cuts", stepper%arrival_cuts)
+      call archive%item("at_switches", stepper%at_switches)
+      call archive%item("without_headway", stepper%without_headway)
+      call archive%item("was_cut", stepper%was_cut)
+      call archive%item("is_short", stepper%is_short)
+      call archive%list("pressure", stepper%pressure)
+      call archive%leave()
+   end subroutine visit_stepper
+
+   subroutine visit_value_errors(archive, name, errors)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(value_errors_t), intent(inout), target :: errors
+
+      call archive%enter(name)
+      call archive%plain("row", c_loc(errors%row), storage_size(errors%row)/8_lk)
+      call archive%item("of_pressure", errors%of_pressure)
+      call archive%item("diffusing", errors%diffusing)
+      call archive%item("of_flow", errors%of_flow)
+      call archive%item("rise", errors%rise)
+      call archive%item("of_length", errors%of_length)
+      call archive%item("of_slip", errors%of_slip)
+      call archive%item("of_opening", errors%of_opening)
+      call archive%list("of_wells", errors%of_wells)
+      call archive%list("flows", errors%flows)
+      call archive%list("risen", errors%risen)
+      call archive%item("of_rock", errors%of_rock)
+      call archive%plain("step", c_loc(errors%step), storage_size(errors%step)/8_lk)
+      call visit_followed(archive, "quantities", errors%quantities)
+      call visit_followed(archive, "wells", errors%wells)
+      call visit_followed(archive, "probes", errors%probes)
+      call archive%leave()
+   end subroutine visit_value_errors
+
+   subroutine visit_followed(archive, name, followed)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(followed_t), intent(inout) :: followed
+
+      call archive%enter(name)
+      call archive%item("time", followed%time)
+      call archive%item("step", followed%step)
+      call archive%item("n_steps", followed%n_steps)
+      call archive%item("squares", followed%squares)
+      call archive%list("first", followed%first)
+      call archive%list("value", followed%value)
+      call archive%list("rate", followed%rate)
+      call archive%list("largest", followed%largest)
+      call archive%list("of_step", followed%of_step)
+      call archive%list("sum", followed%sum)
+      call archive%list("linear", followed%linear)
+      call archive%list("error", followed%error)
+      call archive%leave()
+   end subroutine visit_followed
+
+   subroutine visit_values(archive, name, values)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(coarse_values_t), intent(inout) :: values
+
+      call archive%enter(name)
+      call archive%list("of", values%of)
+      call archive%list("nodal", values%nodal)
+      call archive%list("displacement", values%displacement)
+      call archive%list("gradient", values%gradient)
+      call visit_laws(archive, "law", values%law)
+      call archive%list("is_grown", values%is_grown)
+      call archive%list("viscous", values%viscous)
+      call archive%item("undrained", values%undrained)
+      call archive%leave()
+   end subroutine visit_values
+
+end module twolevel_archive

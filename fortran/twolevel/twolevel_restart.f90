@@ -1,0 +1,162 @@
+!> The complete state of a simulation with a fluid in an archive (docs/architecture.md).
+!!
+!! Stored: all values that a step changes; the meshes of both levels as the library has them; what
+!! decisions depend on (step control, Broyden updates, window slots, estimates of errors).
+!! Made again, with the same bits: stencils, matrices and factors of the coarse level, and models of
+!! windows, from the same meshes in the same order.
+submodule(twolevel_state) twolevel_restart
+   use base_kinds, only: lk
+   use base_tolerances, only: same_time
+   use coarse_archive, only: visit_cells, visit_factors, visit_report, visit_state, &
+                             visit_step_values
+   use mesh_archive, only: visit_mesher_and_mesh
+   use report_restart, only: visit_simulation
+   use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
+   use twolevel_schedule, only: next_switch
+   use twolevel_setup, only: keep_above_zero, rules_of_scene
+   implicit none(type, external)
+
+contains
+
+   module subroutine prepare(self, scene)
+      class(two_levels_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      self%end_time = scene%time%end
+      call self%stepper%begin(scene%time)
+      call self%set_scene(scene)
+      call self%chronicle%clear()
+      call keep_above_zero(self%scene)
+      self%rules = rules_of_scene(self%scene)
+      self%load_pressure = pressure_scale(self%scene)
+      allocate (self%problem)
+   end subroutine prepare
+
+   module subroutine visit(self, archive, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      ! As the next step does at its beginning.
+      if (.not. archive%is_loading) then
+         call discard(self%kept_problem)
+         call self%windows%begin_step()
+         call self%reference%begin_step()
+      end if
+      call visit_simulation(archive, self)
+      call visit_levels(archive, "now", self%now)
+      call visit_state(archive, "before", self%before)
+      if (archive%is_loading .and. .not. allocated(archive%fault)) then
+         call follow_sides(self%scene, self%now%coarse%time, self%before%time)
+      end if
+      call visit_problem(archive, self, timers, error)
+      if (allocated(error) .or. allocated(archive%fault)) return
+      call visit_windows(archive, "windows", self%windows, self%now%windows%tip, self, error)
+      if (allocated(error) .or. allocated(archive%fault)) return
+      call visit_windows(archive, "reference", self%reference, self%now%reference%tip, self, error)
+      if (allocated(error) .or. allocated(archive%fault)) return
+      call visit_control(archive, self)
+      if (archive%is_loading) call go_beyond_end(self)
+   end subroutine visit
+
+   !> A run that has ended at the end of its scene goes on if the scene ends later now; unless a
+   !! stage ends there too, its last step does not count as one before a switch.
+   subroutine go_beyond_end(self)
+      class(two_levels_t), intent(inout) :: self
+
+      if (.not. allocated(self%ending)) return
+      associate (time => self%now%coarse%time)
+         if (self%ending /= at_end .or. &
+             .not. time < self%scene%time%end*(1.0_rk - same_time)) return
+         deallocate (self%ending)
+         self%step%ends_at_switch = next_switch(self%scene, self%before%time) &
+                                    <= time*(1.0_rk + same_time)
+      end associate
+   end subroutine go_beyond_end
+
+   !> Coarse mesh and fracture cells; the model is discretized and factorized again.
+   subroutine visit_problem(archive, self, timers, error)
+      type(archive_t), intent(inout) :: archive
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      call archive%enter("problem")
+      associate (problem => self%problem, model => self%problem%model)
+         call visit_mesher_and_mesh(archive, "mesh", problem%mesher, problem%mesh)
+         call archive%item("first_step", model%first_step)
+         call visit_cells(archive, "cells", model%cells)
+         call archive%list("share", problem%share)
+         if (allocated(archive%fault)) return
+         if (archive%is_loading) then
+            call model%set_mesh(problem%mesh, self%scene, timers, error)
+            if (allocated(error)) return
+            call problem%feed_wells(self%scene, error)
+            if (allocated(error)) return
+         end if
+         call visit_step_values(archive, "step", model)
+         call visit_factors(archive, "factors", model, problem%mesh, error)
+         if (allocated(error)) return
+         call visit_values(archive, "values", problem%values)
+      end associate
+      call archive%leave()
+   end subroutine visit_problem
+
+   !> Windows between two steps: each has the mesh of the accepted state.
+   subroutine visit_windows(archive, name, windows, tips, self, error)
+      type(archive_t), intent(inout) :: archive
+      character(len=*), intent(in) :: name
+      type(windows_t), intent(inout) :: windows
+      type(window_tip_t), allocatable, intent(in) :: tips(:)
+      class(two_levels_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+      integer(lk) :: n, w
+
+      call archive%enter(name)
+      n = -1_lk
+      if (allocated(windows%slot)) n = size(windows%slot, kind=lk)
+      call archive%count("slot", n)
+      if (archive%is_loading .and. n >= 0_lk) allocate (windows%slot(n))
+      call archive%list("window_of", windows%window_of)
+      call archive%list("resistance", windows%resistance)
+      call archive%item("is_beside_body", windows%is_beside_body)
+      do w = 1_lk, n
+         if (archive%is_loading) allocate (windows%slot(w)%window)
+         call windows%slot(w)%window%visit(archive, self%scene, self%problem%mesher, &
+                                           self%problem%mesh, self%problem%values, tips, error)
+         if (allocated(error) .or. allocated(archive%fault)) return
+      end do
+      call archive%leave()
+   end subroutine visit_windows
+
+   !> Step control, and results of all steps so far.
+   subroutine visit_control(archive, self)
+      type(archive_t), intent(inout) :: archive
+      class(two_levels_t), intent(inout) :: self
+
+      call archive%enter("control")
+      call archive%item("reference_most", self%reference_most)
+      call archive%item("has_begun", self%has_begun)
+      call archive%item("is_initial", self%is_initial)
+      call archive%enter("last_step")
+      call archive%item("dt", self%step%dt)
+      call archive%item("is_after_switch", self%step%is_after_switch)
+      call archive%item("ends_at_switch", self%step%ends_at_switch)
+      call archive%item("is_unstable", self%step%is_unstable)
+      call visit_report(archive, "report", self%step%report)
+      call archive%list("why_cut", self%step%why_cut)
+      call archive%list("places", self%step%places)
+      call archive%leave()
+      call archive%item("begins_stage", self%begins_stage)
+      call visit_stepper(archive, "stepper", self%stepper)
+      call self%notes%visit(archive)
+      call self%stimulation%visit(archive)
+      call self%well_results%visit(archive)
+      call visit_value_errors(archive, "value_errors", self%value_errors)
+      call archive%item("seismic_moment", self%seismic_moment)
+      call archive%item("compared_unknowns", self%compared_unknowns)
+      call archive%leave()
+   end subroutine visit_control
+
+end submodule twolevel_restart

@@ -1,0 +1,119 @@
+!> A window in an archive (base_archive): its meshes are stored, its model is made again from them.
+submodule(twolevel_window) twolevel_window_archive
+   use base_kinds, only: lk
+   use fine_archive, only: visit_conditions, visit_loads
+   use mesh_archive, only: visit_mesher, visit_mesher_and_mesh, visit_network
+   implicit none(type, external)
+
+contains
+
+   module subroutine visit(self, archive, scene, mesher, coarse, values, tips, error)
+      class(window_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(scene_t), intent(in) :: scene
+      type(mesher_t), intent(in) :: mesher
+      type(mesh_t), intent(in) :: coarse
+      type(coarse_values_t), intent(in) :: values
+      type(window_tip_t), intent(in) :: tips(:)
+      type(error_t), allocatable, intent(out) :: error
+
+      call archive%enter("window")
+      call archive%list("serves", self%serves)
+      call archive%item("is_body", self%is_body)
+      call archive%item("lower", self%lower)
+      call archive%item("upper", self%upper)
+      call archive%item("coarser", self%coarser)
+      call archive%item("element_size", self%element_size)
+      call archive%item("usual_edge", self%usual_edge)
+      call archive%item("times_larger", self%times_larger)
+      call archive%item("has_moved", self%has_moved)
+      call visit_mesher_and_mesh(archive, "mesh", self%mesher, self%mesh)
+      call visit_mesher(archive, "as_made", self%as_made)
+      call visit_made(self, archive)
+      if (self%mesh%n_cells > 0) call visit_model(self, archive, scene, tips, error)
+      call archive%leave()
+      if (.not. (archive%is_loading .and. allocated(self%made)) .or. allocated(error)) return
+      if (self%made%is_projected) call self%project(mesher, coarse, values, error)
+   end subroutine visit
+
+   subroutine visit_made(self, archive)
+      type(window_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      integer(lk) :: n
+
+      n = merge(1_lk, -1_lk, allocated(self%made))
+      call archive%count("made", n)
+      if (archive%is_loading) then
+         if (allocated(self%made)) deallocate (self%made)
+         if (n > 0_lk) allocate (self%made)
+      end if
+      if (n < 0_lk) return
+      associate (made => self%made)
+         call visit_network(archive, "network", made%network)
+         call archive%list("kept", made%kept)
+         call archive%list("place", made%place)
+         call archive%list("is_free", made%is_free)
+         call archive%list("has_focus", made%has_focus)
+         call archive%item("is_projected", made%is_projected)
+      end associate
+   end subroutine visit_made
+
+   !> The model of a mesh, with its matrix, and the last solution.
+   subroutine visit_model(self, archive, scene, tips, error)
+      type(window_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(scene_t), intent(in) :: scene
+      type(window_tip_t), intent(in) :: tips(:)
+      type(error_t), allocatable, intent(out) :: error
+      logical :: has_stiffness, is_ready, undrained
+      integer(lk) :: n
+
+      has_stiffness = allocated(self%model%stiffness)
+      is_ready = self%model%ready
+      undrained = self%undrained
+      call archive%item("undrained", undrained)
+      call archive%item("has_stiffness", has_stiffness)
+      call archive%item("is_ready", is_ready)
+      if (archive%is_loading) then
+         self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
+         call self%set_up(scene, tips, error)
+         if (.not. allocated(error) .and. undrained) call self%set_rock(scene, undrained, error)
+         if (allocated(error)) return
+      end if
+      call archive%list("at", self%at)
+      call visit_loads(archive, "loads", self%loads)
+      call archive%list("displacement", self%displacement)
+      call visit_conditions(archive, "conditions", self%model%conditions)
+      if (archive%is_loading .and. is_ready) then
+         call self%model%prepare(self%model%conditions, error, &
+                                 self%sides%held_edge(self%model%mesh))
+         if (allocated(error)) return
+      end if
+      if (.not. has_stiffness .and. archive%is_loading) deallocate (self%model%stiffness)
+      n = -1_lk
+      if (allocated(self%served)) n = size(self%served, kind=lk)
+      call archive%count("served", n)
+      if (archive%is_loading .and. n >= 0_lk) allocate (self%served(n))
+      if (n >= 0_lk) call visit_served(self, archive, error)
+   end subroutine visit_model
+
+   !> Tips that the window serves, with what finds their intensities.
+   subroutine visit_served(self, archive, error)
+      type(window_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: i
+      logical :: has_probe
+
+      do i = 1, size(self%served, kind=ik)
+         has_probe = self%served(i)%has_probe
+         call archive%item("is_evaluated", self%served(i)%is_evaluated)
+         call archive%item("has_probe", has_probe)
+         if (.not. archive%is_loading .or. .not. has_probe) cycle
+         call probe_of_tip(self%model, self%at(i), self%served(i)%probe, error)
+         if (allocated(error)) return
+         self%served(i)%has_probe = .true.
+      end do
+   end subroutine visit_served
+
+end submodule twolevel_window_archive

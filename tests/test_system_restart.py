@@ -1,0 +1,251 @@
+"""Runs go on from a checkpoint as if they had not been interrupted, bit for bit, or are refused."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied
+
+import wingcrack
+from wingcrack.runs.checkpoint import read_checkpoint
+
+pytestmark = pytest.mark.usefixtures("program")
+
+EVERY_STATE = "\n&scene name = 'a_run' /\n&output checkpoint_states = 1 /\n"
+FINE = varied(("size_fracture = 0.02", "size_fracture = 0.01"), ("step = 3600.0", "step = 600.0"))
+MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
+MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
+SCENES = {
+    "steps": FINE,
+    "growth": GROWING,
+    "paris": GROWING_BY_PARIS,
+    "mechanics": MECHANICS,
+    "sparse": FINE.replace("size_boundary = 0.25", "size_boundary = 0.25, condensation = 'sparse'"),
+}
+# Times and memory of run.json, which differ from run to run.
+_COST = re.compile(
+    r'"(?:\w+_s|peak_memory_mb|mesh|discretize|assemble|factorize|solve|contact|tips'
+    r'|remesh|transfer|output)": '
+)
+
+
+def solver(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [SOLVER, *map(str, words)], capture_output=True, text=True, check=False, timeout=300
+    )
+
+
+def contents(folder: Path) -> dict[str, bytes | list[str]]:
+    """All files but checkpoints and log, run.json without costs."""
+    found: dict[str, bytes | list[str]] = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_dir() or path.name == "run.log" or path.name.startswith("checkpoint"):
+            continue
+        name = str(path.relative_to(folder))
+        found[name] = path.read_bytes()
+        if name == "run.json":
+            lines = path.read_text().splitlines()
+            found[name] = [line for line in lines if not _COST.search(line)]
+    return found
+
+
+def assert_same(first: Path, second: Path) -> None:
+    one, other = contents(first), contents(second)
+    assert one.keys() == other.keys()
+    assert [name for name in one if one[name] != other[name]] == []
+
+
+@pytest.fixture(scope="module")
+def unbroken(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Give the folder of a run of a scene from start to end."""
+    top = tmp_path_factory.mktemp("unbroken")
+
+    def folder(name: str) -> Path:
+        if not (top / name).exists():
+            (top / f"{name}.nml").write_text(SCENES[name] + EVERY_STATE)
+            done = solver("run", top / f"{name}.nml", "--out", top / name, "--quiet")
+            assert done.returncode == 0, done.stderr
+        return top / name
+
+    return folder
+
+
+@pytest.mark.parametrize("name", list(SCENES))
+@pytest.mark.parametrize(
+    ("share", "sent"), [(0.0, signal.SIGTERM), (0.5, signal.SIGTERM), (0.7, signal.SIGKILL)]
+)
+def test_a_run_goes_on_as_if_it_had_not_been_ended(
+    name: str, share: float, sent: signal.Signals, unbroken: Callable[[str], Path], tmp_path: Path
+) -> None:
+    whole = unbroken(name)
+    wall = json.loads((whole / "run.json").read_text())["wall_s"]
+    (tmp_path / "scene.nml").write_text(SCENES[name] + EVERY_STATE)
+    out = tmp_path / "out"
+    words = [SOLVER, "run", tmp_path / "scene.nml", "--out", out, "--quiet"]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60
+        while not (out / "checkpoint.bin").exists():
+            assert time.monotonic() < deadline
+            time.sleep(0.005)
+        time.sleep(share * wall)
+        process.send_signal(sent)
+        begun = time.monotonic()
+        process.communicate(timeout=60)
+    assert time.monotonic() - begun < 2.0
+    assert process.returncode in {0, 128 + sent, -sent}
+    done = solver("run", "--restart", out, "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert_same(out, whole)
+    assert "restart from the state at" in (out / "run.log").read_text()
+
+
+def damaged(path: Path, place: int) -> None:
+    data = bytearray(path.read_bytes())
+    data[place] ^= 1
+    path.write_bytes(data)
+
+
+@pytest.fixture
+def ended(unbroken: Callable[[str], Path], tmp_path: Path) -> Path:
+    """Folder of a run that has ended, with two checkpoints."""
+    return Path(shutil.copytree(unbroken("steps"), tmp_path / "run"))
+
+
+def test_another_folder_gets_all_files_and_the_first_one_keeps_its_own(
+    ended: Path, tmp_path: Path
+) -> None:
+    before = {path: path.read_bytes() for path in ended.rglob("*") if path.is_file()}
+    (ended / "checkpoint.bin").rename(ended / "checkpoint_old.bin")
+    done = solver("run", "--restart", ended, "--out", tmp_path / "other", "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert_same(tmp_path / "other", ended)
+    (ended / "checkpoint_old.bin").rename(ended / "checkpoint.bin")
+    assert all(path.read_bytes() == before[path] for path in before if path.exists())
+
+
+@pytest.mark.parametrize("place", [0, 18, 30, 200, 5000, -1])
+def test_of_a_damaged_checkpoint_the_one_before_is_used(place: int, ended: Path) -> None:
+    expected = contents(ended)
+    damaged(ended / "checkpoint.bin", place)
+    done = solver("run", "--restart", ended, "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert contents(ended) == expected
+    log = (ended / "run.log").read_text()
+    assert re.search(r"warning: \S+/checkpoint.bin is .*checkpoint_old.bin is used", log)
+
+
+def test_without_a_good_checkpoint_nothing_changes(ended: Path) -> None:
+    for name in ("checkpoint.bin", "checkpoint_old.bin"):
+        (ended / name).write_bytes((ended / name).read_bytes()[:-1])
+    expected = contents(ended)
+    done = solver("run", "--restart", ended, "--quiet")
+    assert done.returncode == 2
+    assert done.stderr.count("is damaged") == 2
+    assert contents(ended) == expected
+
+
+def test_a_checkpoint_of_another_version_is_refused(ended: Path) -> None:
+    (ended / "checkpoint_old.bin").unlink()
+    path = ended / "checkpoint.bin"
+    body = path.read_bytes()[32:]
+    version = wingcrack.__version__.encode()
+    body = body.replace(version, b"9" * len(version), 1)
+    path.write_bytes(b"wingcrack state\n" + struct.pack("<qq", len(body), zlib.crc32(body)) + body)
+    done = solver("run", "--restart", ended, "--quiet")
+    assert done.returncode == 2
+    assert f"is of version {'9' * len(version)} of the program" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("friction = 0.5", "friction = 0.4", "friction of &fracture from 0.5"),
+        ("permeability = 5.0e-20", "permeability = 6.0e-20", "permeability_xx of &material"),
+        ("size_boundary = 0.25", "size_boundary = 0.26", "size_boundary of &coarse"),
+        ("&probe name = 'corner', x = 2.0, y = 2.0 /", "", "number of groups"),
+        ("end = 18000.0", "end = 3000.0", "after the end at 3000 s"),
+    ],
+)
+def test_other_changes_are_refused_by_name(
+    old: str, new: str, words: str, ended: Path, tmp_path: Path
+) -> None:
+    assert old in FINE
+    (tmp_path / "other.nml").write_text(FINE.replace(old, new) + EVERY_STATE)
+    done = solver("run", tmp_path / "other.nml", "--restart", ended, "--quiet")
+    assert done.returncode == 2, done.stderr
+    assert words in done.stderr
+
+
+def test_a_later_end_and_another_stage_continue_a_run(ended: Path, tmp_path: Path) -> None:
+    later = FINE.replace("end = 18000.0", "end = 21600.0").replace("end = 14400.0", "end = 20000.0")
+    (tmp_path / "later.nml").write_text(later + EVERY_STATE)
+    done = solver(
+        "run", tmp_path / "later.nml", "--restart", ended, "--out", tmp_path / "later", "--quiet"
+    )
+    assert done.returncode == 0, done.stderr
+    times = [
+        float(line.split(",")[0])
+        for line in (tmp_path / "later" / "history.csv").read_text().splitlines()[1:]
+    ]
+    assert times[-1] == 21600.0
+    assert times == sorted(set(times))
+    run = wingcrack.open(ended)
+    longer = run.continue_with(tmp_path / "longer", end=19800.0)
+    assert longer.status == "finished"
+    assert longer.history["time_s"].iloc[-1] == 19800.0
+
+
+def test_another_stage_and_end_are_as_if_they_had_been_there_from_the_start(
+    tmp_path: Path,
+) -> None:
+    whole = FINE.replace("end = 14400.0", "end = 16200.0") + EVERY_STATE
+    (tmp_path / "whole.nml").write_text(whole)
+    (tmp_path / "base.nml").write_text(FINE.replace("end = 18000.0", "end = 7200.0") + EVERY_STATE)
+    for words in (
+        ("run", tmp_path / "whole.nml", "--out", tmp_path / "whole"),
+        ("run", tmp_path / "base.nml", "--out", tmp_path / "base"),
+        *[
+            ("run", tmp_path / "whole.nml", "--restart", tmp_path / "base", "--out", tmp_path / out)
+            for out in ("fork_1", "fork_2")
+        ],
+    ):
+        done = solver(*words, "--quiet")
+        assert done.returncode == 0, done.stderr
+    assert_same(tmp_path / "fork_1", tmp_path / "whole")
+    assert_same(tmp_path / "fork_2", tmp_path / "whole")
+
+
+def test_runs_without_checkpoints_have_nothing_to_go_on_from(tmp_path: Path) -> None:
+    (tmp_path / "scene.nml").write_text(SCENE + "\n&output checkpoint = 0.0 /\n")
+    done = solver("run", tmp_path / "scene.nml", "--out", tmp_path / "out", "--quiet")
+    assert done.returncode == 0
+    assert not list((tmp_path / "out").glob("checkpoint*"))
+    done = solver("run", "--restart", tmp_path / "out")
+    assert done.returncode == 2
+    assert "has no checkpoint" in done.stderr
+
+
+def test_a_checkpoint_is_read_in_python(ended: Path) -> None:
+    state = read_checkpoint(ended / "checkpoint.bin")
+    run = wingcrack.open(ended)
+    assert state["about/time"] == 18000.0
+    assert state["about/scene"] == (ended / "scene.nml").read_text()
+    assert state["texts/text"] == (ended / "history.csv").read_text()
+    last = run.fractures[run.fractures.time_s == 18000.0]
+    assert np.array_equal(state["now/coarse/pressure"], last.pressure_pa.to_numpy())
+    assert state["now/coarse/jump"].shape == (2, 2, len(last))
+    assert state["simulation/steps"] == run.record["steps"]
+    damaged(ended / "checkpoint.bin", 100)
+    with pytest.raises(wingcrack.RunError, match="is damaged"):
+        read_checkpoint(ended / "checkpoint.bin")
