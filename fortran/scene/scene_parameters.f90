@@ -141,7 +141,7 @@ module scene_parameters
       group_t("fe", implied=.true., scenes=in_mechanics, &
          meaning="Finite elements on the whole body: six-node triangles, with quarter-point "// &
                  "elements around the fracture tips."), &
-      group_t("adaptive", implied=.true., scenes=in_mechanics, &
+      group_t("adaptive", implied=.true., &
          meaning="Adaptive meshes by the estimated error of the stresses (Zienkiewicz and "// &
                  "Zhu), for the first mesh and after growth. Within size_boundary of a point "// &
                  "load, whose energy is infinite, the error is ignored."), &

@@ -107,9 +107,11 @@ module twolevel_state
       procedure :: count_unknowns
       procedure :: grow_coarse
       procedure :: remesh_coarse
+      procedure :: judge_mesh
    end type two_levels_t
 
-   ! In the submodules twolevel_remeshing, twolevel_steps and twolevel_simulation
+   ! In the submodules twolevel_adaption, twolevel_remeshing, twolevel_steps and
+   ! twolevel_simulation
    interface
       !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if
       !! no growth follows.
@@ -129,6 +131,16 @@ module twolevel_state
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine remesh_coarse
+
+      !> Estimate the error of the response to the wells on the coarse mesh before the first step;
+      !! sizes are allocated where another mesh is needed.
+      module subroutine judge_mesh(self, sizes, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         real(rk), allocatable, intent(out) :: sizes(:)  !< (n_cells) of the cells of another [m]
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine judge_mesh
 
       !> Mesh both levels, without load.
       module subroutine begin(self, scene, timers, error)
