@@ -154,23 +154,18 @@ contains
       gradient = gradient/(a(1)*b(2) - a(2)*b(1))
    end function linear_gradient
 
-   !> Sizes with which all cells have the same error, and together the given one. The square of a
-   !! cell's error is of fourth order in its size: stress and flux are of first order.
-   pure function sizes_for(mesh, squares, total, coarsest) result(sizes)
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: squares(:)  !< (n_cells) squared errors [N m/m]
-      real(rk), intent(in) :: total  !< sum of the squares that is wanted [N m/m]
-      real(rk), intent(in) :: coarsest  !< largest growth of a cell [-]
-      real(rk) :: sizes(mesh%n_cells)  !< edges of equilateral cells [m]
-      real(rk) :: root(mesh%n_cells), share
-      integer(ik) :: c
+   !> Changes of size with which all cells have the same error, and together the given one. The
+   !! square of a cell's error is of fourth order in its size: stress and flux are of first order.
+   pure function sizes_for(squares, total) result(change)
+      real(rk), intent(in) :: squares(:)  !< (n_cells) squared errors [any unit]
+      real(rk), intent(in) :: total  !< sum of the squares that is wanted [unit of squares]
+      real(rk) :: change(size(squares))  !< size over the present one [-]
+      real(rk), parameter :: finest = 0.25_rk, coarsest = 4.0_rk  ! change of size at once
+      real(rk) :: root(size(squares)), share
 
       root = sqrt(squares)
       share = total/max(sum(root), tiny(total))
-      do c = 1, mesh%n_cells
-         sizes(c) = sqrt(4.0_rk*cell_area(mesh, c)/sqrt(3.0_rk)) &
-                    *min(coarsest, max(0.25_rk, sqrt(share/max(root(c), share/coarsest**2))))
-      end do
+      change = max(finest, sqrt(share/max(root, share/coarsest**2)))
    end function sizes_for
 
 end module coarse_cell_errors

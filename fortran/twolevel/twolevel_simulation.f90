@@ -90,7 +90,7 @@ contains
       if (.not. allocated(error)) call set_coarse(self, timers, error)
       if (allocated(error) .or. .not. self%scene%adaptive%enabled) return
       do pass = 1, self%scene%adaptive%passes
-         call self%judge_mesh(sizes, timers, error)
+         call self%judge_mesh(pass == 1, sizes, timers, error)
          if (allocated(error) .or. .not. allocated(sizes)) return
          allocate (problem)
          call timers%start(phase_remesh)
@@ -103,7 +103,7 @@ contains
          call set_coarse(self, timers, error)
          if (allocated(error)) return
       end do
-      call self%judge_mesh(sizes, timers, error)
+      call self%judge_mesh(.false., sizes, timers, error)
    end subroutine mesh_coarse
 
    !> Discretize on the coarse mesh, and set the state before the load.
@@ -161,6 +161,8 @@ contains
          call summary%note(scene%growth%intensities, "stress intensity factors", &
                            "no windows: intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
+         call summary%note(scene%adaptive%enabled, "adaptive coarse mesh", &
+                           "coarse mesh: not adapted")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
          call summary%note(self%problem%model%drained, "flow across the outer boundary", &
                            "boundary flow: the body is sealed")

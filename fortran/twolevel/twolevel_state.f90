@@ -133,10 +133,11 @@ module twolevel_state
       end subroutine remesh_coarse
 
       !> Estimate the error of the response to the wells on the coarse mesh before the first step;
-      !! sizes are allocated where another mesh is needed.
-      module subroutine judge_mesh(self, sizes, timers, error)
+      !! sizes are allocated where another mesh is needed, or is worthwhile because it is coarser.
+      module subroutine judge_mesh(self, may_coarsen, sizes, timers, error)
          implicit none(type, external)
          class(two_levels_t), intent(inout) :: self
+         logical, intent(in) :: may_coarsen
          real(rk), allocatable, intent(out) :: sizes(:)  !< (n_cells) of the cells of another [m]
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
