@@ -266,9 +266,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: reason
 
-      if (scene%growth%enabled) then
-         reason = "the mesh is adapted before the first step only, and &growth is enabled"
-      else if (size(scene%injections) == 0) then
+      if (size(scene%injections) == 0) then
          reason = "the mesh is adapted to the response to wells, and there is no &injection"
       else if (any(scene%injections%fracture == 0)) then
          reason = "the pressure of a well in the rock depends on the size of its cell"

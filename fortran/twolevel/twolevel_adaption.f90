@@ -31,6 +31,7 @@ contains
       real(rk), parameter :: aim = 0.7_rk  ! error that is aimed at, over the tolerance [-]
       real(rk), parameter :: worth = 0.6_rk  ! cells after coarsening, at most, over those before
       type(levels_state_t) :: start
+      real(rk), parameter :: most = 4.0_rk  ! times the present number of cells
       real(rk), parameter :: gain = 0.9_rk  ! error after refinement, at most, over that before
       real(rk) :: before, change(self%problem%mesh%n_cells), squares(self%problem%mesh%n_cells)
       logical :: is_known, is_refined
@@ -58,6 +59,7 @@ contains
          change = sizes_for(squares, (aim*tolerance)**2)
          sizes = [(sqrt(4.0_rk/sqrt(3.0_rk)*cell_area(mesh, c)), c=1, mesh%n_cells)]
          call limit_change(self%scene, mesh, sizes, change)
+         change = change*max(1.0_rk, sqrt(sum(1.0_rk/change**2)/(most*mesh%n_cells)))
          if (found > tolerance .or. (may_coarsen .and. sum(1.0_rk/change**2) &
                                      < worth*mesh%n_cells)) then
             sizes = sizes*change

@@ -161,8 +161,7 @@ contains
          call summary%note(scene%growth%intensities, "stress intensity factors", &
                            "no windows: intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
-         call summary%note(scene%adaptive%enabled, "adaptive coarse mesh", &
-                           "coarse mesh: not adapted")
+         if (scene%adaptive%enabled) call summary%use_feature("adaptive coarse mesh")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
          call summary%note(self%problem%model%drained, "flow across the outer boundary", &
                            "boundary flow: the body is sealed")
