@@ -39,7 +39,7 @@ MECHANICS = {
     "with tips and a toughness",
     "without a fluid",
     "without a fluid, with growth",
-    "without a fluid, with &adaptive",
+    "with &adaptive",
 }
 SLIP, WELLS = "slip_events.csv", "wells.csv"  # with a fluid only
 TABLES = ("history.csv", "tips.csv", "fractures.csv", "probes.csv", "events.csv", SLIP, WELLS)

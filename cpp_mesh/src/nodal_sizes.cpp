@@ -7,13 +7,6 @@
 
 namespace cpp_mesh {
 
-namespace {
-
-// A size that grows by this much per distance lets neighbours differ by a factor of about 1.3.
-constexpr double growth = 0.3;
-
-} // namespace
-
 NodalSizes::NodalSizes(const PlaneMesh& mesh, const std::vector<double>& cell_size, double largest)
     : xy_(mesh.xy), cells_(mesh.cells), size_(mesh.xy.size(), 0.0), tree_(xy_, cells_) {
     std::vector<int> n_cells(xy_.size(), 0);

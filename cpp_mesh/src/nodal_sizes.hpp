@@ -15,6 +15,9 @@ namespace cpp_mesh {
 // large as its neighbour.
 class NodalSizes {
 public:
+    // A size that grows by this much per distance lets neighbours differ by a factor of about 1.3.
+    static constexpr double growth = 0.3;
+
     // A size per cell [m].
     NodalSizes(const PlaneMesh& mesh, const std::vector<double>& cell_size, double largest);
     // Those of a checkpoint.

@@ -47,8 +47,9 @@ public:
     // Grows from the sources to size_far at half the distance to the body's farthest point.
     SizeField(std::vector<SizeSource> sources, const Domain& domain, double size_far);
 
-    // As wanted at the nodes of another mesh.
-    explicit SizeField(std::shared_ptr<const NodalSizes> wanted) : wanted_(std::move(wanted)) {}
+    // As wanted at the nodes of another mesh, and grown from sources that are added.
+    explicit SizeField(std::shared_ptr<const NodalSizes> wanted)
+        : wanted_(std::move(wanted)), slope_(NodalSizes::growth) {}
 
     double operator()(Vec2 p) const;
     bool follows_other_mesh() const { return wanted_ != nullptr; }

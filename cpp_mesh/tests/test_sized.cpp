@@ -106,6 +106,24 @@ void grades(Checks& checks) {
                    "grades: shape, " + std::to_string(mesh.smallest_angle()));
 }
 
+// A patch around an end that has grown, in a mesh by given sizes: cells as small as the new one at
+// the new segment only.
+void grows(Checks& checks) {
+    ApiMesh old_mesh, sized, grown;
+    const TestNetwork before({{{0.4, 0.5}, {0.6, 0.5}}}),
+        after({{{0.4, 0.5}, {0.6, 0.5}, {0.61, 0.5}}});
+    old_mesh.create(rectangle_spec(1.0, 1.0, 0.02, 0.2), before);
+    sized.create_sized(rectangle_spec(1.0, 1.0, 0.02, 0.2), before, old_mesh,
+                       wanted_in(old_mesh, [](Point p) {
+                           return 0.04 + 0.2 * std::hypot(p[0] - 0.5, p[1] - 0.5);
+                       }));
+    checks.is_true(grown.remesh(sized, after, {{0.61, 0.5}}, 0.06, 0.01), grown.error);
+    check_body(checks, grown, 1.0, 0, "grows");
+    checks.is_true(grown.counts.n_cells < 1.5 * sized.counts.n_cells,
+                   "grows: cells, " + std::to_string(grown.counts.n_cells) + " after " +
+                       std::to_string(sized.counts.n_cells));
+}
+
 // Fracture cells follow the sizes over three orders of magnitude, also on what has grown.
 void fractures(Checks& checks) {
     cm_spec spec = rectangle_spec(1.0, 2.0, 0.02, 0.2);
@@ -215,6 +233,7 @@ int main() {
     Checks checks;
     follows(checks);
     grades(checks);
+    grows(checks);
     fractures(checks);
     scale_free(checks);
     refusals(checks);

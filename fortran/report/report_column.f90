@@ -25,7 +25,7 @@ module report_column
    character(len=*), parameter :: with_one_well = "with a fluid and one well"
    character(len=*), parameter :: at_most_one = "with a fluid and at most one well"
    character(len=*), parameter :: with_several = "with a fluid and several wells"
-   character(len=*), parameter :: with_error = "without a fluid, with &adaptive"
+   character(len=*), parameter :: with_error = "with &adaptive"
 
    ! Reasons why no error is stated.
    character(len=*), parameter :: an_error = "none: itself an error"

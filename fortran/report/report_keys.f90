@@ -73,7 +73,8 @@ module report_keys
       column_t("smallest_angle_deg", "degree", without_fluid, &
          "Smallest angle of the triangles of all meshes", "none: of the mesh, exact"), &
       column_t("energy_error_relative", "-", with_error, &
-         "Estimated error of the last solution in the energy norm", an_error), &
+         "Estimated error in the energy norm, of the last solution, or with a fluid of the "// &
+         "response to the wells", an_error), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem", counted), &
       column_t("newton_iterations.total", "-", always, &
          "All iterations, including cut steps", counted), &

@@ -36,7 +36,8 @@ module report_words
       word_t("bifurcation", &
          "tips grow together, but any difference between them would grow: one of them may "// &
          "advance ahead of the others; or one of equal tips is ahead, by chance"), &
-      word_t("remesh", "the mesh was updated after growth"), &
+      word_t("remesh", "the mesh was updated after growth, or with &adaptive before the first "// &
+             "step; `detail` has its cells"), &
     word_t("well", &
          "a stage of a well begins, it is shut in, or it reaches or leaves its pressure limit; "// &
          "see `detail`"), &

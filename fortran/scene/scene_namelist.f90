@@ -317,7 +317,7 @@ contains
       if (own < not_given) value = own
    end subroutine take
 
-   !> Set the defaults of the tolerance, the smallest step and the interval of written fields, which
+   !> Set the defaults of the tolerances, the smallest step and the interval of written fields, which
    !! without a step is a hundredth of the run.
    pure subroutine choose_steps(scene)
       type(scene_t), intent(inout) :: scene
@@ -331,6 +331,7 @@ contains
             call default(time%tolerance, usual_tolerance)
          end if
          call default(time%smallest_factor, merge(1.0e-9_rk, 1.0e-6_rk, is_free))
+         call default(scene%adaptive%tolerance, merge(0.5_rk, 0.01_rk, scene%has_fluid()))
          call default(scene%output%interval, merge(0.01_rk*time%end, time%step, is_free))
       end associate
    end subroutine choose_steps

@@ -393,8 +393,10 @@ module scene_parameter_table
                  "quadrilaterals with quarter points, or ordinary triangles"), &
       parameter_t("adaptive", "enabled", kind_logical, default=".false.", &
          meaning="Adaptive meshes"), &
-      parameter_t("adaptive", "tolerance", default="0.01", range=share, &
-         meaning="Target relative error of the stresses in the energy norm"), &
+      parameter_t("adaptive", "tolerance", range=share, derived=.true., &
+         absent="0.01, or 0.5 with &fluid", &
+         meaning="Target relative error in the energy norm: of the stresses; with &fluid of the "// &
+                 "response to the wells"), &
       parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
          meaning="Maximum number of adapted meshes"), &
       parameter_t("coarse", "size_fracture", unit="m", range=positive, &

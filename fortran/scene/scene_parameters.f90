@@ -141,10 +141,12 @@ module scene_parameters
       group_t("fe", implied=.true., scenes=in_mechanics, &
          meaning="Finite elements on the whole body: six-node triangles, with quarter-point "// &
                  "elements around the fracture tips."), &
-      group_t("adaptive", implied=.true., scenes=in_mechanics, &
-         meaning="Adaptive meshes by the estimated error of the stresses (Zienkiewicz and "// &
-                 "Zhu), for the first mesh and after growth. Within size_boundary of a point "// &
-                 "load, whose energy is infinite, the error is ignored."), &
+      group_t("adaptive", implied=.true., &
+         meaning="Adaptive meshes. Without &fluid: by the estimated error of the stresses "// &
+                 "(Zienkiewicz and Zhu), for the first mesh and after growth. Within "// &
+                 "size_boundary of a point load, whose energy is infinite, the error is "// &
+                 "ignored. With &fluid: by the error of the response to the wells in trial "// &
+                 "steps, before the first step, without growth (docs/theory.md)."), &
       group_t("coarse", implied=.true., scenes=in_fluid, &
          meaning="The coarse level: finite volumes on the whole body."), &
       group_t("fine", implied=.true., scenes=in_fluid, &

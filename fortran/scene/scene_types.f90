@@ -129,7 +129,7 @@ module scene_types
    !> Adaptive meshes.
    type :: adaptive_t
       logical :: enabled = .false.
-      real(rk) :: tolerance = 0.01_rk  !< target error in the energy norm over the norm [-]
+      real(rk) :: tolerance = 0.0_rk  !< target error in the energy norm over the norm [-]
       integer(ik) :: passes = 4  !< largest number of meshes after the first
    end type adaptive_t
 

@@ -2,11 +2,11 @@
 submodule(twolevel_state) twolevel_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use base_timers, only: phase_mesh, timers_t
+   use base_timers, only: phase_mesh, phase_remesh, timers_t
    use base_tolerances, only: same_time
    use coarse_model, only: new_state
    use growth_network, only: fracture_length, network_of_scene
-   use mesh_builder, only: build_mesh
+   use mesh_builder, only: build_mesh, build_mesh_sized
    use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
@@ -54,26 +54,8 @@ contains
       self%network = self%start
       self%now%coarse_network = self%start
       self%rules = rules_of_scene(self%scene)
-      allocate (self%problem)
-      associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
-         call timers%start(phase_mesh)
-         call build_mesh(coarse_spec(scene), now%coarse_network, problem%mesher, mesh, error)
-         call timers%stop(phase_mesh)
-         if (allocated(error)) return
-         call first_cells(self%scene, mesh%fracture, problem%model%cells)
-         call share_wells(self%scene%injections, mesh%fracture, problem%share)
-         call choose_first_step(self%scene, problem%model%first_step)
-         call problem%model%set_mesh(mesh, self%scene, timers, error)
-         if (allocated(error)) return
-         call problem%feed_wells(self%scene, error)
-         if (allocated(error)) return
-         if (allocated(problem%model%in_situ)) then
-            call rest_joints(problem%model%in_situ, mesh%fracture, problem%model%cells)
-         end if
-         call new_state(mesh, problem%model%cells, scene%initial, problem%model, now%coarse)
-         call self%rest_wells()
-         call self%find_tips(mesh%fracture)
-      end associate
+      call mesh_coarse(self, timers, error)
+      if (allocated(error)) return
       call set_scales(self)
       if (scene%growth%intensities) then
          ! The body as reference has elements as large as the coarse cells; at the tips, where this
@@ -90,6 +72,62 @@ contains
       call self%now%interaction%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
    end subroutine mesh_levels
+
+   !> Mesh the coarse level, with &adaptive again until the estimated error is small enough.
+   subroutine mesh_coarse(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      type(coarse_problem_t), allocatable :: problem
+      real(rk), allocatable :: sizes(:)
+      integer(ik) :: pass
+
+      allocate (self%problem)
+      call timers%start(phase_mesh)
+      call build_mesh(coarse_spec(self%scene), self%now%coarse_network, self%problem%mesher, &
+                      self%problem%mesh, error)
+      call timers%stop(phase_mesh)
+      if (.not. allocated(error)) call set_coarse(self, timers, error)
+      if (allocated(error) .or. .not. self%scene%adaptive%enabled) return
+      do pass = 1, self%scene%adaptive%passes
+         call self%judge_mesh(pass == 1, sizes, timers, error)
+         if (allocated(error) .or. .not. allocated(sizes)) return
+         allocate (problem)
+         call timers%start(phase_remesh)
+         call build_mesh_sized(coarse_spec(self%scene), self%now%coarse_network, &
+                               self%problem%mesher, sizes, problem%mesher, problem%mesh, error)
+         call timers%stop(phase_remesh)
+         if (allocated(error)) return
+         call discard(self%problem)
+         call move_alloc(problem, self%problem)
+         call set_coarse(self, timers, error)
+         if (allocated(error)) return
+      end do
+      call self%judge_mesh(.false., sizes, timers, error)
+   end subroutine mesh_coarse
+
+   !> Discretize on the coarse mesh, and set the state before the load.
+   subroutine set_coarse(self, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
+         call first_cells(self%scene, mesh%fracture, problem%model%cells)
+         call share_wells(self%scene%injections, mesh%fracture, problem%share)
+         call choose_first_step(self%scene, problem%model%first_step)
+         call problem%model%set_mesh(mesh, self%scene, timers, error)
+         if (allocated(error)) return
+         call problem%feed_wells(self%scene, error)
+         if (allocated(error)) return
+         if (allocated(problem%model%in_situ)) then
+            call rest_joints(problem%model%in_situ, mesh%fracture, problem%model%cells)
+         end if
+         call new_state(mesh, problem%model%cells, self%scene%initial, problem%model, now%coarse)
+         call self%rest_wells()
+         call self%find_tips(mesh%fracture)
+      end associate
+   end subroutine set_coarse
 
    !> Set the pressure of the loads, and the least scale of K_eq of each tip: a share of K at this
    !! pressure in its fracture.
@@ -123,6 +161,7 @@ contains
          call summary%note(scene%growth%intensities, "stress intensity factors", &
                            "no windows: intensities off")
          call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
+         if (scene%adaptive%enabled) call summary%use_feature("adaptive coarse mesh")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
          call summary%note(self%problem%model%drained, "flow across the outer boundary", &
                            "boundary flow: the body is sealed")

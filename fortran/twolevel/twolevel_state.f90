@@ -113,9 +113,11 @@ module twolevel_state
       procedure :: remesh_coarse
       procedure :: prepare
       procedure :: visit
+      procedure :: judge_mesh
    end type two_levels_t
 
-   ! In the submodules twolevel_remeshing, twolevel_steps, twolevel_simulation and twolevel_restart
+   ! In the submodules twolevel_adaption, twolevel_remeshing, twolevel_restart, twolevel_steps and
+   ! twolevel_simulation
    interface
       module subroutine prepare(self, scene)
          implicit none(type, external)
@@ -149,6 +151,17 @@ module twolevel_state
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine remesh_coarse
+
+      !> Estimate the error of the response to the wells on the coarse mesh before the first step;
+      !! sizes are allocated where another mesh is needed, or is worthwhile because it is coarser.
+      module subroutine judge_mesh(self, may_coarsen, sizes, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         logical, intent(in) :: may_coarsen
+         real(rk), allocatable, intent(out) :: sizes(:)  !< (n_cells) of the cells of another [m]
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine judge_mesh
 
       !> Mesh both levels, without load.
       module subroutine begin(self, scene, timers, error)
