@@ -18,7 +18,7 @@
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
 !! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
-!! given share of the error (`slack`); it never exceeds K_IC by more than the tolerance.
+!! given share of the error (`slack`), and above it by the same, up to four times the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -35,6 +35,10 @@ module growth_advances
    !> Slope of the excess, times the distance between the bounds, below which no equilibrium of a
    !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
+
+   !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
+   !! tolerance [-].
+   real(rk), parameter :: most_over = 4.0_rk
 
    !> State of the iteration.
    type :: advances_t
@@ -154,7 +158,7 @@ contains
 
       lack = tolerance
       if (present(slack)) lack = slack
-      if (excess > tolerance) then
+      if (excess > min(lack, most_over*tolerance)) then
          in_equilibrium = place >= upper
       else if (excess < -lack) then
          in_equilibrium = place <= lower

@@ -184,11 +184,51 @@ contains
                                    self%rules%toughness)
       end if
       search%is_over = trial%onset < 1.0_rk
+      if (.not. (search%is_over .or. search%is_last .or. search%may_jump)) then
+         call see_overshoot(self, search, trial)
+      end if
       if (.not. search%is_over) then
          self%now%active = active_tips(self%tip, self%now%segment, self%rules%toughness, &
                                        search%kind)
       end if
    end subroutine find_state
+
+   !> End the tries after the first one, where a tip would have to begin a segment but exceeds its
+   !! toughness by so much that the growth of the others cannot change it: the step goes too far.
+   subroutine see_overshoot(self, search, trial)
+      class(two_levels_t), intent(in) :: self
+      type(search_t), intent(inout) :: search
+      type(trial_t), intent(inout) :: trial
+      real(rk), parameter :: by_far = 2.0_rk*excess_max
+      logical :: far(size(self%tip))
+
+      far = self%tip%is_loaded() .and. self%tip%path_target == target_none .and. &
+            .not. (self%now%segment%is_open .or. self%now%segment%stays() .or. &
+                   self%tip%arrested .or. self%has_gained() .or. is_viscous(self%tip)) .and. &
+            search%unmoved > by_far .and. &
+            overshoots(self%tip, self%now%segment, self%rules%toughness, self%increments())
+      search%is_over = any(far)
+      if (search%is_over) call reject_overshoot(self, search, far, trial)
+   end subroutine see_overshoot
+
+   !> Reject a step in which tips go too far, with the share of it in which they would not.
+   pure subroutine reject_overshoot(self, search, far, trial)
+      class(two_levels_t), intent(in) :: self
+      type(search_t), intent(in) :: search
+      logical, intent(in) :: far(:)  !< (tips)
+      type(trial_t), intent(inout) :: trial
+      real(rk), parameter :: aim = 0.75_rk*excess_max
+
+      trial%goes_too_far = .true.
+      associate (before => self%last%front%tip%excess(self%rules%toughness), &
+                 after => search%unmoved)
+         trial%was_beyond = any(far .and. before > excess_max)
+         ! Onset at the time when the tips reach the toughness, not at the start of the step.
+         trial%onset = onset(before, after, far)
+         trial%admissible = minval([1.0_rk, pack((aim - before)/(after - before), &
+                                                 far .and. after > aim .and. before < aim)])
+      end associate
+   end subroutine reject_overshoot
 
    !> Move the tips to where their excess is predicted to vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
@@ -320,7 +360,6 @@ contains
 
       beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
-                 before => self%last%front%tip%excess(self%rules%toughness), &
                  far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
                                    self%increments()))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
@@ -336,12 +375,9 @@ contains
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! jumps have no rates
          end if
-         trial%goes_too_far = trial%jumps .and. .not. search%may_jump
-         search%is_over = trial%goes_too_far
+         search%is_over = trial%jumps .and. .not. search%may_jump
          if (search%is_over) then
-            trial%was_beyond = any(wants .and. before > excess_max)
-            ! Onset at the time when the tips reach the toughness, not at the start of the step.
-            trial%onset = onset(before, search%unmoved, wants)
+            call reject_overshoot(self, search, wants, trial)
             return
          end if
       end associate

@@ -23,8 +23,8 @@ module twolevel_moves
    !! [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
-   !> Lack of toughness at which a search that has stalled ends, over the error of K_eq, and its
-   !! largest value [-].
+   !> Lack or excess of toughness at which a search that has stalled ends, over the error of K_eq,
+   !! and the largest lack [-].
    real(rk), parameter :: share_of_error = 0.5_rk, slack_max = 0.1_rk
 
    !> What drives one tip.
