@@ -18,7 +18,7 @@
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
 !! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
-!! given share of the error (`slack`), and above it by the same, up to four times the tolerance.
+!! given share of the error (`slack`), and above it by the same, up to three times the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -38,7 +38,7 @@ module growth_advances
 
    !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
    !! tolerance [-].
-   real(rk), parameter :: most_over = 4.0_rk
+   real(rk), parameter :: most_over = 3.0_rk
 
    !> State of the iteration.
    type :: advances_t
