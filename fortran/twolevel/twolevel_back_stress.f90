@@ -15,6 +15,7 @@ module twolevel_back_stress
    use base_kinds, only: ik, pi, rk
    use coarse_layers, only: layers_t
    use coarse_layout, only: end_block, layer_block
+   use coarse_rock, only: solid_t
    use coarse_state, only: state_t
    use mesh_geometry, only: cell_area, face_length
    use mesh_types, only: mesh_t
@@ -22,7 +23,7 @@ module twolevel_back_stress
    implicit none(type, external)
    private
 
-   public :: back_stress_of, strip_weight, weighted
+   public :: back_stress_of, diffusivity_at, strip_weight, weighted
 
    !> K_I of a layer that has diffused round the tip, over that of one which ends there [-].
    real(rk), parameter :: round_tip = 1.0_rk/sqrt(2.0_rk)
@@ -31,11 +32,12 @@ contains
 
    !> K_I of the layers of a fracture at one of its tips, beyond that of the rock's own pressure
    !! [Pa m^1/2].
-   pure real(rk) function back_stress_of(problem, state, fracture, end) result(k1)
+   pure real(rk) function back_stress_of(problem, state, fracture, end, age) result(k1)
       type(coarse_problem_t), intent(in) :: problem  !< with the values of the state
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: fracture  !< number of the fracture in the network
       integer(ik), intent(in) :: end  !< 1: start of the polyline, 2: its end
+      real(rk), intent(in) :: age  !< of the layer at the tip, where its cell has an older one [s]
       integer(ik), allocatable :: cells(:)
       integer(ik) :: cell, i, k, layer, side
       real(rk) :: behind(2)
@@ -60,9 +62,48 @@ contains
                                                    problem%values%nodal(3, :), layer))
             end do
          end do
+         if (age < huge(age)) k1 = max(k1, -young_moment(problem, state, cells(1), age))
          k1 = k1*factor_at(problem, cells(1))
       end associate
    end function back_stress_of
+
+   !> Integral with the weight of a half-plane of layers of a given age and the pressure that those
+   !! of a fracture cell have, dp erfc(n/(2 sqrt(c age))); huge unless that exceeds the rock's.
+   pure real(rk) function young_moment(problem, state, cell, age) result(moment)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: cell  !< fracture cell
+      real(rk), intent(in) :: age  !< [s]
+      real(rk), allocatable :: excess(:)
+      real(rk) :: pressure
+      integer(ik) :: layer, side
+
+      pressure = 0.0_rk
+      associate (mesh => problem%mesh, layers => problem%model%layers)
+         do side = 1, 2
+            layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
+            if (layer == 0) cycle
+            excess = excess_of(mesh, layers, state, problem%values%nodal(3, :), layer)
+            pressure = pressure + 0.5_rk*excess(1)
+         end do
+      end associate
+      moment = huge(1.0_rk)
+      if (pressure > 0.0_rk) moment = 4.0_rk*gamma(0.75_rk)/sqrt(pi)*pressure &
+                                      *(diffusivity_at(problem, cell)*age)**0.25_rk
+   end function young_moment
+
+   !> c of the rock at a fracture cell [m2/s].
+   pure real(rk) function diffusivity_at(problem, fracture_cell) result(diffusivity)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture_cell
+      type(solid_t) :: solid
+
+      associate (cell => problem%mesh%face_cells(1, problem%mesh%fracture%cell_faces(1, &
+                                                                             fracture_cell)))
+         solid = problem%model%rock%solid_at(cell)
+         diffusivity = problem%model%rock%mobility_at(cell)/solid%uniaxial_storage()
+      end associate
+   end function diffusivity_at
 
    !> 2 eta/sqrt(2 pi) of the rock at a fracture cell, with the effect of the tip [-].
    pure real(rk) function factor_at(problem, fracture_cell) result(factor)

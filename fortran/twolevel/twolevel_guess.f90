@@ -1,6 +1,6 @@
-!> Transfer of the initial guess of the next try to a new coarse mesh. Without it the tries of a step
-!! in which tips begin segments, above all those of a jump, would each begin from the state before
-!! the step.
+!> Transfer of the initial guess of the next try to a new coarse mesh. Without it the tries of a
+!! step in which tips begin segments, above all those of a jump, would each begin from the state
+!! before the step.
 module twolevel_guess
    use base_kinds, only: ik, rk
    use coarse_layout, only: fracture_layout_t
