@@ -40,9 +40,11 @@ contains
       real(rk), intent(in) :: age  !< of the layer at the tip, where its cell has an older one [s]
       integer(ik), allocatable :: cells(:)
       integer(ik) :: cell, i, k, layer, side
-      real(rk) :: behind(2)
+      real(rk), allocatable :: alone(:), excess(:), place(:)
+      real(rk) :: behind(2), of_layers, young
 
       k1 = 0.0_rk
+      of_layers = 0.0_rk
       associate (mesh => problem%mesh, layers => problem%model%layers)
          if (layers%n == 0 .or. problem%values%undrained) return
          cells = pack([(i, i=1, mesh%fracture%n_cells)], mesh%fracture%cell_fracture == fracture)
@@ -57,13 +59,22 @@ contains
             do side = 1, 2
                layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
                if (layer == 0) cycle
-               k1 = k1 - 0.5_rk*weighted(behind, place_of(mesh, layers, layer), &
-                                         excess_of(mesh, layers, state, &
-                                                   problem%values%nodal(3, :), layer))
+               place = place_of(mesh, layers, layer)
+               call find_excess(mesh, layers, state, problem%values%nodal(3, :), layer, alone, &
+                                excess)
+               k1 = k1 - 0.5_rk*weighted(behind, place, excess)
+               of_layers = of_layers - 0.5_rk*weighted(behind, place, alone)
             end do
          end do
-         if (age < huge(age)) k1 = max(k1, -young_moment(problem, state, cells(1), age))
-         k1 = k1*factor_at(problem, cells(1))
+         young = huge(1.0_rk)
+         if (age < huge(age)) young = young_moment(problem, state, cells(1), age)
+         if (young < -of_layers) then
+            ! The window has the content of the layers as pressure of its cells.
+            k1 = (k1 - of_layers)*without_tip(problem, cells(1)) &
+                 - young*factor_at(problem, cells(1))
+         else
+            k1 = k1*factor_at(problem, cells(1))
+         end if
       end associate
    end function back_stress_of
 
@@ -74,7 +85,7 @@ contains
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: cell  !< fracture cell
       real(rk), intent(in) :: age  !< [s]
-      real(rk), allocatable :: excess(:)
+      real(rk), allocatable :: alone(:), excess(:)
       real(rk) :: pressure
       integer(ik) :: layer, side
 
@@ -83,8 +94,8 @@ contains
          do side = 1, 2
             layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
             if (layer == 0) cycle
-            excess = excess_of(mesh, layers, state, problem%values%nodal(3, :), layer)
-            pressure = pressure + 0.5_rk*excess(1)
+            call find_excess(mesh, layers, state, problem%values%nodal(3, :), layer, alone, excess)
+            pressure = pressure + 0.5_rk*alone(1)
          end do
       end associate
       moment = huge(1.0_rk)
@@ -98,9 +109,9 @@ contains
       integer(ik), intent(in) :: fracture_cell
       type(solid_t) :: solid
 
+      solid = solid_beside(problem, fracture_cell)
       associate (cell => problem%mesh%face_cells(1, problem%mesh%fracture%cell_faces(1, &
                                                                              fracture_cell)))
-         solid = problem%model%rock%solid_at(cell)
          diffusivity = problem%model%rock%mobility_at(cell)/solid%uniaxial_storage()
       end associate
    end function diffusivity_at
@@ -109,19 +120,35 @@ contains
    pure real(rk) function factor_at(problem, fracture_cell) result(factor)
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture_cell
-      real(rk) :: drained_tip, stiffness, undrained
+      type(solid_t) :: solid
+      real(rk) :: undrained
+
+      solid = solid_beside(problem, fracture_cell)
+      undrained = solid%lame + solid%biot**2/solid%storage
+      factor = without_tip(problem, fracture_cell)*round_tip*0.5_rk &
+               *(1.0_rk + (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &
+                 *(solid%lame + solid%shear)/(solid%lame + 2.0_rk*solid%shear))
+   end function factor_at
+
+   !> The same without the effect of the tip [-].
+   pure real(rk) function without_tip(problem, fracture_cell) result(factor)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture_cell
+      type(solid_t) :: solid
+
+      solid = solid_beside(problem, fracture_cell)
+      factor = sqrt(2.0_rk/pi)*solid%biot*solid%shear/(solid%lame + 2.0_rk*solid%shear)
+   end function without_tip
+
+   !> The rock at a fracture cell.
+   pure type(solid_t) function solid_beside(problem, fracture_cell) result(solid)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture_cell
       integer(ik) :: face
 
       face = problem%mesh%fracture%cell_faces(1, fracture_cell)
-      associate (solid => problem%model%rock%solid_at(problem%mesh%face_cells(1, face)))
-         stiffness = solid%lame + 2.0_rk*solid%shear
-         undrained = solid%lame + solid%biot**2/solid%storage
-         drained_tip = (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &
-                       *(solid%lame + solid%shear)/stiffness
-         factor = round_tip*0.5_rk*(1.0_rk + drained_tip) &
-                  *sqrt(2.0_rk/pi)*solid%biot*solid%shear/stiffness
-      end associate
-   end function factor_at
+      solid = problem%model%rock%solid_at(problem%mesh%face_cells(1, face))
+   end function solid_beside
 
    !> Distances from the face: 0, the nodes of the layer, the centre of the cell and its far node
    !! [m].
@@ -144,14 +171,16 @@ contains
    !! therefore that of a difference from the window's pressure, with the shape that it has. The
    !! window's pressure, from the means of cells, has the content of the layer distributed over the
    !! cell: the rest of the cell has less.
-   pure function excess_of(mesh, layers, state, own_pressure, layer) result(excess)
+   pure subroutine find_excess(mesh, layers, state, own_pressure, layer, alone, excess)
       type(mesh_t), intent(in) :: mesh
       type(layers_t), intent(in) :: layers
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) [Pa]
       integer(ik), intent(in) :: layer
+      !> pressure beyond that of the rest of the cell, and beyond that of windows [Pa]
+      real(rk), allocatable, intent(out) :: alone(:), excess(:)
       real(rk), parameter :: at_most = 2.0_rk  ! times the pressures of the layer [-]
-      real(rk), allocatable :: excess(:), place(:)
+      real(rk), allocatable :: place(:)
       real(rk) :: at_centre, at_face, beyond, rest
       integer(ik) :: last
 
@@ -170,11 +199,12 @@ contains
             excess = max(0.0_rk, min(at_most, (excess(1) + x(3, cell) - at_centre)/excess(1))) &
                      *excess
          end if
+         alone = [excess, 0.0_rk]
          excess = [excess + beyond, 0.0_rk]
          last = size(place, kind=ik) - 1
          excess(:last) = excess(:last) - (at_face - at_centre)*(1.0_rk - place(:last)/place(last))
       end associate
-   end function excess_of
+   end subroutine find_excess
 
    !> Integral of values that are linear between places with the weight of a strip.
    pure real(rk) function weighted(behind, place, value)
