@@ -117,6 +117,8 @@ contains
                                            vapour_pressure=fluid%vapour_pressure, &
                                            damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
+         ! The tries of growth need many elimination steps.
+         if (scene%growth%in_equilibrium()) self%settings%many = 200
          if (has_law(fluid)) then
             self%settings%fluid_law = new_fluid_law(fluid)
             ! A density law contains the compression.

@@ -121,13 +121,15 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture_cell
       type(solid_t) :: solid
-      real(rk) :: undrained
+      real(rk) :: drained_tip, stiffness, undrained
 
       solid = solid_beside(problem, fracture_cell)
+      stiffness = solid%lame + 2.0_rk*solid%shear
       undrained = solid%lame + solid%biot**2/solid%storage
-      factor = without_tip(problem, fracture_cell)*round_tip*0.5_rk &
-               *(1.0_rk + (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &
-                 *(solid%lame + solid%shear)/(solid%lame + 2.0_rk*solid%shear))
+      drained_tip = (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &
+                    *(solid%lame + solid%shear)/stiffness
+      factor = round_tip*0.5_rk*(1.0_rk + drained_tip) &
+               *sqrt(2.0_rk/pi)*solid%biot*solid%shear/stiffness
    end function factor_at
 
    !> The same without the effect of the tip [-].
