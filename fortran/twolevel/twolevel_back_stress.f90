@@ -108,12 +108,12 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture_cell
       type(solid_t) :: solid
+      integer(ik) :: face
 
       solid = solid_beside(problem, fracture_cell)
-      associate (cell => problem%mesh%face_cells(1, problem%mesh%fracture%cell_faces(1, &
-                                                                             fracture_cell)))
-         diffusivity = problem%model%rock%mobility_at(cell)/solid%uniaxial_storage()
-      end associate
+      face = problem%mesh%fracture%cell_faces(1, fracture_cell)
+      diffusivity = problem%model%rock%mobility_at(problem%mesh%face_cells(1, face)) &
+                    /solid%uniaxial_storage()
    end function diffusivity_at
 
    !> 2 eta/sqrt(2 pi) of the rock at a fracture cell, with the effect of the tip [-].

@@ -51,7 +51,7 @@ contains
           new%n_joints == old%n_joints) then
          associate (n => new%n_branches + new%n_wells)
             change(new%at_branch(1_ik):new%at_branch(n)) = finer**2 &
-               *guess%change(old%at_branch(1_ik):old%at_branch(n))
+                                                 *guess%change(old%at_branch(1_ik):old%at_branch(n))
             change(new%at_joint(1_ik):) = guess%change(old%at_joint(1_ik):)
          end associate
       end if

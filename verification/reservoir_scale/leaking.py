@@ -1,4 +1,4 @@
-"""Growth of a fracture of 100 m that leaks off into tight rock: closed forms for across_leaking.nml.
+"""Growth of a fracture of 100 m with leak-off into tight rock: closed forms, across_leaking.nml.
 
     .venv/bin/python verification/reservoir_scale/leaking.py
 
@@ -28,6 +28,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from verification.kgd import leaking as kgd
+from verification.kgd.make_reference import MODULUS as KGD_MODULUS
+from verification.kgd.make_reference import RATE as KGD_RATE
+from verification.kgd.self_similar import Crack
 
 YOUNG, POISSON, BIOT, POROSITY = 40.0e9, 0.2, 0.8, 0.01
 PERMEABILITY, VISCOSITY, COMPRESSIBILITY = 1.0e-19, 3.0e-4, 4.0e-10
@@ -49,16 +52,16 @@ CARTER = LOSS * math.sqrt(DIFFUSIVITY / math.pi)  # C of a face [m/s^1/2]
 
 def apparent(back_stress: float) -> float:
     """Give K_u at which a tip with a back stress grows [Pa m^1/2]."""
-    return (TOUGHNESS + back_stress) / F**0.75
+    return (TOUGHNESS + back_stress) / math.pow(F, 0.75)
 
 
 def onset() -> float:
     """Give the time of the onset [s]."""
 
     def missing(time: float) -> float:
-        back = ETA * EXCESS * (DIFFUSIVITY * time) ** 0.25
+        back = ETA * EXCESS * math.pow(DIFFUSIVITY * time, 0.25)
         back *= 0.5 * (1.0 + F) * math.sqrt(2.0) / math.gamma(1.25)
-        volume = 2.0 * math.sqrt(math.pi) * HALF**1.5 * apparent(back) / MODULUS
+        volume = 2.0 * math.sqrt(math.pi) * math.pow(HALF, 1.5) * apparent(back) / MODULUS
         return volume + 8.0 * CARTER * HALF * math.sqrt(time) - RATE * time
 
     low, high = 1.0, 1.0e5
@@ -76,16 +79,16 @@ def doubled(speed: float) -> float:
     k_m = tough / (MODULUS**3 * thick * RATE) ** 0.25
     # The same crack in the units of kgd.leaking: K_m is equal, and so is what has leaked off over
     # what was injected.
-    other = (kgd.STIFF / k_m) ** 4 / (kgd.MODULUS**3 * kgd.RATE)
-    gamma = kgd.self_similar(kgd.Crack(60), other)[1]
+    other = (kgd.STIFF / k_m) ** 4 / (KGD_MODULUS**3 * KGD_RATE)
+    gamma = kgd.self_similar(Crack(60), other)[1]
     time = (2.0 * HALF / gamma) ** 1.5 / (MODULUS * RATE**3 / thick) ** 0.25
     end = kgd.TIMES[-1]
-    half = gamma * (kgd.MODULUS * kgd.RATE**3 * end**4 / other) ** (1.0 / 6.0)
+    half = gamma * (KGD_MODULUS * KGD_RATE**3 * end**4 / other) ** (1.0 / 6.0)
     leaked = 2.0 * CARTER * 2.0 * HALF / (RATE * math.sqrt(time))
-    rows = kgd.solution(60, 24, other / 12.0, leaked * kgd.RATE * math.sqrt(end) / half)
+    rows = kgd.solution(60, 24, other / 12.0, leaked * KGD_RATE * math.sqrt(end) / half)
     slope = math.log(rows[-1, 0] / rows[-2, 0]) / math.log(end / kgd.TIMES[-2])
     print(f"K_m {k_m:.3f}, K_b {back / 1e6:.3f} MPa m^1/2, without leak-off {time:.1f} s")
-    return time * (half / rows[-1, 0]) ** (1.0 / slope)
+    return float(time * (half / rows[-1, 0]) ** (1.0 / slope))
 
 
 if __name__ == "__main__":
