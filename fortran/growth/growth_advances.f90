@@ -216,7 +216,8 @@ contains
    subroutine propose(self, has_moved, is_stuck)
       class(advances_t), intent(inout) :: self
       logical, intent(out) :: has_moved
-      !> the solution of the linear problem is shorter than the resolution
+      !> the solution of the linear problem is shorter than the resolution, or leads to the place
+      !! that has just been rejected
       logical, intent(out) :: is_stuck
       real(rk), dimension(size(self%best)) :: change, reach, to
 
@@ -230,7 +231,8 @@ contains
       where (to < self%lower + resolution*self%length) to = self%lower
       where (to > self%upper - self%sliver) to = self%upper
       has_moved = any(abs(to - self%place) > resolution*self%length)
-      self%place = to
+      is_stuck = .not. has_moved
+      if (has_moved) self%place = to
    end subroutine propose
 
    !> One step of the monotone search: tips with K_eq > K_IC advance, tips with K_eq < K_IC return
