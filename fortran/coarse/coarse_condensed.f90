@@ -60,16 +60,21 @@ contains
 
    !> Begin with another mesh. By default S is formed where this costs less: its elimination grows
    !! with the cube of the fracture cells, that of the sparse matrix with the cells to the power
-   !! 1.2, and growth and contact need about as many of both.
-   subroutine forget(self, mesh, condensation)
+   !! 1.2, and contact needs about as many of both. In equilibrium growth several tries share the
+   !! factors, and each costs much less with S.
+   subroutine forget(self, mesh, condensation, has_tries)
       class(condensed_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       character(len=*), intent(in) :: condensation  !< "auto", "full" or "sparse"
-      real(rk), parameter :: cells_per_square = 30.0_rk  ! where both cost the same, measured
+      logical, intent(in) :: has_tries  !< each step is tried several times
+      ! where both cost the same, measured
+      real(rk), parameter :: cells_per_square = 30.0_rk, with_tries = 90.0_rk
+      integer(ik), parameter :: few = 800  ! fracture cells: S takes 180 MB
 
       call self%factors%release()
       associate (n => mesh%fracture%n_cells)
-         self%is_full = real(n, rk)**2 <= cells_per_square*mesh%n_cells
+         self%is_full = real(n, rk)**2 <= merge(with_tries, cells_per_square, &
+                                                has_tries .and. n <= few)*mesh%n_cells
          if (condensation /= "auto") self%is_full = condensation == "full"
          self%is_full = self%is_full .or. n == 0
       end associate

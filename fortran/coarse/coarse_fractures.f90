@@ -32,6 +32,8 @@ module coarse_fractures
       real(rk) :: damping = 0.0_rk  !< eta of radiation damping [Pa s/m]
       !> initial state: no exchange, p_F = (p+ + p-)/2 but not below vapour, no fluid balance
       logical :: equilibrate = .false.
+      !> unknowns from which those of faces are eliminated first; of fewer it costs milliseconds
+      integer(ik) :: many = 1000
       type(fluid_law_t), allocatable :: fluid_law  !< pressure dependence, if any
    end type newton_settings_t
 

@@ -27,7 +27,7 @@ module coarse_full_step
       !! among those of the flows before it.
       integer(ik), allocatable :: flow(:), end_of_flow(:)
       logical, allocatable :: is_flow(:)  !< (n) their errors are left out of the condition
-      integer(ik) :: many = 1000  !< unknowns: elimination of fewer costs milliseconds
+      integer(ik) :: many = 1000  !< unknowns from which faces are linked
    end type kinds_t
 
    !> Equations that remain after elimination of the links.

@@ -117,6 +117,8 @@ contains
                                            vapour_pressure=fluid%vapour_pressure, &
                                            damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
+         ! The tries of growth need many elimination steps.
+         if (scene%growth%in_equilibrium()) self%settings%many = 200
          if (has_law(fluid)) then
             self%settings%fluid_law = new_fluid_law(fluid)
             ! A density law contains the compression.
@@ -141,7 +143,8 @@ contains
          end if
       end if
       self%ends = free_ends(mesh%fracture)
-      call self%condensed%forget(mesh, scene%discretization%condensation)
+      call self%condensed%forget(mesh, scene%discretization%condensation, &
+                                 scene%growth%in_equilibrium())
       call self%factors%release()
       call timers%stop(phase_discretize)
    end subroutine set_mesh

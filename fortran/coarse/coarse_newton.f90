@@ -380,6 +380,7 @@ contains
       integer(ik) :: end, flow_to(eq%layout%n_cells), i, k
 
       associate (layout => eq%layout, kinds => eq%kinds, n => eq%layout%n_cells)
+         kinds%many = eq%paths%settings%many
          allocate (kinds%is_flow(layout%count()), source=.false.)
          kinds%is_flow(layout%at_flow(1_ik):layout%at_well(layout%n_wells)) = .true.
          kinds%jump = [((layout%at_jump(i, end), end=1, 2), i=1, n)]

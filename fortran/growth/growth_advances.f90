@@ -18,7 +18,7 @@
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
 !! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
-!! given share of the error (`slack`); it never exceeds K_IC by more than the tolerance.
+!! given share of the error (`slack`), and above it by the same, up to three times the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -35,6 +35,10 @@ module growth_advances
    !> Slope of the excess, times the distance between the bounds, below which no equilibrium of a
    !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
+
+   !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
+   !! tolerance [-].
+   real(rk), parameter :: most_over = 3.0_rk
 
    !> State of the iteration.
    type :: advances_t
@@ -154,7 +158,7 @@ contains
 
       lack = tolerance
       if (present(slack)) lack = slack
-      if (excess > tolerance) then
+      if (excess > min(lack, most_over*tolerance)) then
          in_equilibrium = place >= upper
       else if (excess < -lack) then
          in_equilibrium = place <= lower
@@ -212,7 +216,8 @@ contains
    subroutine propose(self, has_moved, is_stuck)
       class(advances_t), intent(inout) :: self
       logical, intent(out) :: has_moved
-      !> the solution of the linear problem is shorter than the resolution
+      !> the solution of the linear problem is shorter than the resolution, or leads to the place
+      !! that has just been rejected
       logical, intent(out) :: is_stuck
       real(rk), dimension(size(self%best)) :: change, reach, to
 
@@ -226,7 +231,8 @@ contains
       where (to < self%lower + resolution*self%length) to = self%lower
       where (to > self%upper - self%sliver) to = self%upper
       has_moved = any(abs(to - self%place) > resolution*self%length)
-      self%place = to
+      is_stuck = .not. has_moved
+      if (has_moved) self%place = to
    end subroutine propose
 
    !> One step of the monotone search: tips with K_eq > K_IC advance, tips with K_eq < K_IC return

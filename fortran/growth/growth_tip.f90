@@ -64,6 +64,8 @@ module growth_tip
       !> With viscous fluid: what K would have to be without viscosity for the same opening at a
       !! distance of a coarse cell, over the toughness [-]
       real(rk) :: viscous_rise = 1.0_rk
+      !> age of a layer of fluid pressure at a tip that has moved; huge: that of its cell [s]
+      real(rk) :: layer_age = huge(1.0_rk)
       type(intensity_t) :: intensity  !< at the present tip
       type(growth_drive_t) :: drive
       !> A small share of the K that the loads may bring about at the tip: a toughness below is no

@@ -15,6 +15,7 @@ module twolevel_back_stress
    use base_kinds, only: ik, pi, rk
    use coarse_layers, only: layers_t
    use coarse_layout, only: end_block, layer_block
+   use coarse_rock, only: solid_t
    use coarse_state, only: state_t
    use mesh_geometry, only: cell_area, face_length
    use mesh_types, only: mesh_t
@@ -22,7 +23,7 @@ module twolevel_back_stress
    implicit none(type, external)
    private
 
-   public :: back_stress_of, strip_weight, weighted
+   public :: back_stress_of, diffusivity_at, strip_weight, weighted
 
    !> K_I of a layer that has diffused round the tip, over that of one which ends there [-].
    real(rk), parameter :: round_tip = 1.0_rk/sqrt(2.0_rk)
@@ -31,16 +32,19 @@ contains
 
    !> K_I of the layers of a fracture at one of its tips, beyond that of the rock's own pressure
    !! [Pa m^1/2].
-   pure real(rk) function back_stress_of(problem, state, fracture, end) result(k1)
+   pure real(rk) function back_stress_of(problem, state, fracture, end, age) result(k1)
       type(coarse_problem_t), intent(in) :: problem  !< with the values of the state
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: fracture  !< number of the fracture in the network
       integer(ik), intent(in) :: end  !< 1: start of the polyline, 2: its end
+      real(rk), intent(in) :: age  !< of the layer at the tip, where its cell has an older one [s]
       integer(ik), allocatable :: cells(:)
       integer(ik) :: cell, i, k, layer, side
-      real(rk) :: behind(2)
+      real(rk), allocatable :: alone(:), excess(:), place(:)
+      real(rk) :: behind(2), of_layers, young
 
       k1 = 0.0_rk
+      of_layers = 0.0_rk
       associate (mesh => problem%mesh, layers => problem%model%layers)
          if (layers%n == 0 .or. problem%values%undrained) return
          cells = pack([(i, i=1, mesh%fracture%n_cells)], mesh%fracture%cell_fracture == fracture)
@@ -55,32 +59,98 @@ contains
             do side = 1, 2
                layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
                if (layer == 0) cycle
-               k1 = k1 - 0.5_rk*weighted(behind, place_of(mesh, layers, layer), &
-                                         excess_of(mesh, layers, state, &
-                                                   problem%values%nodal(3, :), layer))
+               place = place_of(mesh, layers, layer)
+               call find_excess(mesh, layers, state, problem%values%nodal(3, :), layer, alone, &
+                                excess)
+               k1 = k1 - 0.5_rk*weighted(behind, place, excess)
+               of_layers = of_layers - 0.5_rk*weighted(behind, place, alone)
             end do
          end do
-         k1 = k1*factor_at(problem, cells(1))
+         young = huge(1.0_rk)
+         if (age < huge(age)) young = young_moment(problem, state, cells(1), age)
+         if (young < -of_layers) then
+            ! The window has the content of the layers as pressure of its cells.
+            k1 = (k1 - of_layers)*without_tip(problem, cells(1)) &
+                 - young*factor_at(problem, cells(1))
+         else
+            k1 = k1*factor_at(problem, cells(1))
+         end if
       end associate
    end function back_stress_of
+
+   !> Integral with the weight of a half-plane of layers of a given age and the pressure that those
+   !! of a fracture cell have, dp erfc(n/(2 sqrt(c age))); huge unless that exceeds the rock's.
+   pure real(rk) function young_moment(problem, state, cell, age) result(moment)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: cell  !< fracture cell
+      real(rk), intent(in) :: age  !< [s]
+      real(rk), allocatable :: alone(:), excess(:)
+      real(rk) :: pressure
+      integer(ik) :: layer, side
+
+      pressure = 0.0_rk
+      associate (mesh => problem%mesh, layers => problem%model%layers)
+         do side = 1, 2
+            layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
+            if (layer == 0) cycle
+            call find_excess(mesh, layers, state, problem%values%nodal(3, :), layer, alone, excess)
+            pressure = pressure + 0.5_rk*alone(1)
+         end do
+      end associate
+      moment = huge(1.0_rk)
+      if (pressure > 0.0_rk) moment = 4.0_rk*gamma(0.75_rk)/sqrt(pi)*pressure &
+                                      *(diffusivity_at(problem, cell)*age)**0.25_rk
+   end function young_moment
+
+   !> c of the rock at a fracture cell [m2/s].
+   pure real(rk) function diffusivity_at(problem, fracture_cell) result(diffusivity)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture_cell
+      type(solid_t) :: solid
+      integer(ik) :: face
+
+      solid = solid_beside(problem, fracture_cell)
+      face = problem%mesh%fracture%cell_faces(1, fracture_cell)
+      diffusivity = problem%model%rock%mobility_at(problem%mesh%face_cells(1, face)) &
+                    /solid%uniaxial_storage()
+   end function diffusivity_at
 
    !> 2 eta/sqrt(2 pi) of the rock at a fracture cell, with the effect of the tip [-].
    pure real(rk) function factor_at(problem, fracture_cell) result(factor)
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture_cell
+      type(solid_t) :: solid
       real(rk) :: drained_tip, stiffness, undrained
+
+      solid = solid_beside(problem, fracture_cell)
+      stiffness = solid%lame + 2.0_rk*solid%shear
+      undrained = solid%lame + solid%biot**2/solid%storage
+      drained_tip = (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &
+                    *(solid%lame + solid%shear)/stiffness
+      factor = round_tip*0.5_rk*(1.0_rk + drained_tip) &
+               *sqrt(2.0_rk/pi)*solid%biot*solid%shear/stiffness
+   end function factor_at
+
+   !> The same without the effect of the tip [-].
+   pure real(rk) function without_tip(problem, fracture_cell) result(factor)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture_cell
+      type(solid_t) :: solid
+
+      solid = solid_beside(problem, fracture_cell)
+      factor = sqrt(2.0_rk/pi)*solid%biot*solid%shear/(solid%lame + 2.0_rk*solid%shear)
+   end function without_tip
+
+   !> The rock at a fracture cell.
+   pure type(solid_t) function solid_beside(problem, fracture_cell) result(solid)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture_cell
       integer(ik) :: face
 
       face = problem%mesh%fracture%cell_faces(1, fracture_cell)
-      associate (solid => problem%model%rock%solid_at(problem%mesh%face_cells(1, face)))
-         stiffness = solid%lame + 2.0_rk*solid%shear
-         undrained = solid%lame + solid%biot**2/solid%storage
-         drained_tip = (undrained + 2.0_rk*solid%shear)/(undrained + solid%shear) &
-                       *(solid%lame + solid%shear)/stiffness
-         factor = round_tip*0.5_rk*(1.0_rk + drained_tip) &
-                  *sqrt(2.0_rk/pi)*solid%biot*solid%shear/stiffness
-      end associate
-   end function factor_at
+      solid = problem%model%rock%solid_at(problem%mesh%face_cells(1, face))
+   end function solid_beside
 
    !> Distances from the face: 0, the nodes of the layer, the centre of the cell and its far node
    !! [m].
@@ -103,14 +173,16 @@ contains
    !! therefore that of a difference from the window's pressure, with the shape that it has. The
    !! window's pressure, from the means of cells, has the content of the layer distributed over the
    !! cell: the rest of the cell has less.
-   pure function excess_of(mesh, layers, state, own_pressure, layer) result(excess)
+   pure subroutine find_excess(mesh, layers, state, own_pressure, layer, alone, excess)
       type(mesh_t), intent(in) :: mesh
       type(layers_t), intent(in) :: layers
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) [Pa]
       integer(ik), intent(in) :: layer
+      !> pressure beyond that of the rest of the cell, and beyond that of windows [Pa]
+      real(rk), allocatable, intent(out) :: alone(:), excess(:)
       real(rk), parameter :: at_most = 2.0_rk  ! times the pressures of the layer [-]
-      real(rk), allocatable :: excess(:), place(:)
+      real(rk), allocatable :: place(:)
       real(rk) :: at_centre, at_face, beyond, rest
       integer(ik) :: last
 
@@ -129,11 +201,12 @@ contains
             excess = max(0.0_rk, min(at_most, (excess(1) + x(3, cell) - at_centre)/excess(1))) &
                      *excess
          end if
+         alone = [excess, 0.0_rk]
          excess = [excess + beyond, 0.0_rk]
          last = size(place, kind=ik) - 1
          excess(:last) = excess(:last) - (at_face - at_centre)*(1.0_rk - place(:last)/place(last))
       end associate
-   end function excess_of
+   end subroutine find_excess
 
    !> Integral of values that are linear between places with the weight of a strip.
    pure real(rk) function weighted(behind, place, value)

@@ -4,7 +4,7 @@
 !!   - The error of the edge follows from a comparison with the whole body as one window for all
 !!     tips, which takes nothing on its edge: the difference of K, and the error of K there, which
 !!     is that of its elements alone. No factor of safety is therefore needed. The comparison costs
-!!     about as much as the windows, and is repeated once per path segment.
+!!     about as much as the windows, and is repeated once per two path segments.
 !!   - The rock's pressure is linear in each cell. A quarter of the change of K with the pressures
 !!     of the cells' middles counts as error: slip changes the pressure of the rock around a tip,
 !!     and layers that are thinner than a cell appear there. At a fast well (C2 at 1e-6 m2/s, cells
@@ -209,7 +209,7 @@ contains
    end subroutine compare_with_body
 
    !> Whether the windows are to be compared with the body again: this requires no mesh, or a tip
-   !! has advanced by the length of a segment since the last comparison, or its intensities have
+   !! has advanced by the length of two segments since the last comparison, or its intensities have
    !! changed noticeably.
    pure logical function is_due(reference, tips, seen, rules)
       type(windows_t), intent(in) :: reference  !< the body as one window
@@ -223,7 +223,7 @@ contains
          if (.not. tips(i)%is_loaded()) cycle
          associate (tip => seen(i))
             is_due = is_due .or. norm2(tips(i)%xy - tip%compared_at) &
-                     > rules%increment_of(tips(i)%fracture) &
+                     > 2.0_rk*rules%increment_of(tips(i)%fracture) &
                      .or. .not. norm2([tip%found%k1, tip%found%k2] - tip%compared) &
                      <= admissible_change(tips(i), tip, rules%toughness)
          end associate
@@ -231,17 +231,17 @@ contains
    end function is_due
 
    !> Change of the intensities of a tip within which its last comparison with the body still
-   !! applies: more where the tip is far below its toughness [Pa m^1/2].
+   !! applies: more where the tip is below its toughness, as long as it cannot have reached it
+   !! [Pa m^1/2].
    pure real(rk) function admissible_change(tip, seen, toughness) result(change)
       type(tip_t), intent(in) :: tip
       type(window_tip_t), intent(in) :: seen  !< the tip in its window
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      real(rk), parameter :: far = 0.5_rk  ! lack of toughness, error included [-]
+      real(rk), parameter :: far = 0.5_rk
+      real(rk) :: lack  ! of toughness, error included [-]
 
-      change = like_before*norm2(seen%compared)
-      if (tip%excess(toughness) + tip%relative_error(toughness) <= -far) then
-         change = norm2(seen%compared)
-      end if
+      lack = -tip%excess(toughness) - tip%relative_error(toughness)
+      change = merge(1.0_rk, max(like_before, lack), lack >= far)*norm2(seen%compared)
    end function admissible_change
 
    !> Errors of a tip from its K in the whole body.
@@ -260,14 +260,17 @@ contains
       tip%uncertain = tip%uncertain + max(0.0_rk, of_body - of_window)
    end subroutine compare_tip
 
-   !> Errors of a tip from the last comparison with the whole body; the mesh is another one, with
-   !! other errors.
+   !> Errors of a tip from the last comparison with the whole body, larger where its intensities
+   !! have risen since; the mesh is another one, with other errors.
    pure subroutine keep_comparison(tip)
       type(window_tip_t), intent(inout) :: tip
+      real(rk) :: lacking(2)
 
+      lacking = tip%lacking*max(1.0_rk, norm2([tip%found%k1, tip%found%k2]) &
+                                /max(norm2(tip%compared), tiny(1.0_rk)))
       associate (own => [tip%found%k1_error, tip%found%k2_error])
-         tip%uncertain = shown(tip%lacking, tip%found%closed) + of_other_mesh*norm2(own)
-         if (tip%found%closed) tip%uncertain(1) = abs(tip%lacking(1)) + of_other_mesh*own(1)
+         tip%uncertain = shown(lacking, tip%found%closed) + of_other_mesh*norm2(own)
+         if (tip%found%closed) tip%uncertain(1) = abs(lacking(1)) + of_other_mesh*own(1)
          tip%of_elements = maxval(own)
       end associate
    end subroutine keep_comparison

@@ -28,8 +28,9 @@ module twolevel_equilibrium
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
    use twolevel_tip_layers, only: close_tips, find_tip_layers, is_viscous
-   use twolevel_moves, only: arrivals, at_joints, driven_t, first_onset, is_in_play, judge_tips, &
-                             keep_together, onset, separate_tips, tolerance
+   use twolevel_moves, only: arrivals, at_joints, driven_t, excess_max, first_onset, is_in_play, &
+                             judge_tips, keep_together, onset, overshoots, separate_tips, set_out, &
+                             tolerance
    use twolevel_refinement, only: find_refinements, is_uncertain
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
@@ -37,13 +38,6 @@ module twolevel_equilibrium
    private
 
    public :: accept_equilibrium, find_equilibrium, punctual
-
-   !> Excess K_eq/K_IC - 1 up to which a segment begins in a tried step, and that up to which it
-   !! does where the excess vanishes within the next segment by its slope: the direction of the
-   !! segment would otherwise be that of a state that does not occur. Where K_IC is far below the K
-   !! that the loads may bring about, the second one is a share of that K, as the least scales of
-   !! tips are [-].
-   real(rk), parameter :: excess_max = 0.2_rk, steep_excess_max = 1.0_rk, least_scales = 5.0_rk
 
    !> Time error of the first try, over the tolerance, above which a step is rejected before the
    !! tips move [-].
@@ -61,13 +55,10 @@ module twolevel_equilibrium
    !! one; a step that is a little longer need not be tried again.
    integer, parameter :: segments_max = 2
 
-   !> Position from which the search on a new segment starts, over the length of the segment: the
-   !! mesh of its full length can be moved there, but not much farther back [-].
-   real(rk), parameter :: first_place = 0.4_rk
-
    !> State of the tries of a step.
    type :: search_t
       real(rk) :: dt = 0.0_rk  !< [s]
+      real(rk) :: moment = 0.0_rk  !< step within which the time of a jump does not matter [s]
       logical :: is_last = .false.  !< last try: the time error is not checked
       logical :: may_jump = .false.  !< tips may advance by several segments in the step
       ! Data of the tries
@@ -99,15 +90,16 @@ contains
       integer, parameter :: tries_max = 25, jump_tries_max = 1000
       logical :: any_moves, wants(size(self%tip))
       type(search_t) :: search
-      integer :: k, most
+      integer :: k
 
       call begin_search(self%tip, self%rules, self%now, dt, is_last, may_jump, search)
       if (allocated(self%step%places)) then
          if (.not. may_jump) call self%now%segment%set_out_to(self%step%places)
          deallocate (self%step%places)
       end if
-      most = merge(jump_tries_max, tries_max, may_jump)
-      do k = 1, most
+      search%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
+      do k = 1, jump_tries_max
+         if (k > tries_max .and. .not. search%may_jump) exit
          call find_state(self, search, k == 1, timers, report, trial, error)
          if (search%is_over .or. allocated(error)) return
          call move_tips(self, search, timers, any_moves, wants, error)
@@ -184,11 +176,56 @@ contains
                                    self%rules%toughness)
       end if
       search%is_over = trial%onset < 1.0_rk
+      if (.not. (search%is_over .or. search%is_last .or. search%may_jump)) then
+         call see_overshoot(self, search, trial)
+      end if
       if (.not. search%is_over) then
          self%now%active = active_tips(self%tip, self%now%segment, self%rules%toughness, &
                                        search%kind)
       end if
    end subroutine find_state
+
+   !> End the tries after the first one, where a tip would have to begin a segment but exceeds its
+   !! toughness by so much that the growth of the others cannot change it: the step goes too far.
+   subroutine see_overshoot(self, search, trial)
+      class(two_levels_t), intent(in) :: self
+      type(search_t), intent(inout) :: search
+      type(trial_t), intent(inout) :: trial
+      real(rk), parameter :: by_far = 2.0_rk*excess_max
+      logical :: far(size(self%tip))
+
+      far = self%tip%is_loaded() .and. self%tip%path_target == target_none .and. &
+            .not. (self%now%segment%is_open .or. self%now%segment%stays() .or. &
+                   self%tip%arrested .or. self%has_gained() .or. is_viscous(self%tip)) .and. &
+            search%unmoved > by_far .and. &
+            overshoots(self%tip, self%now%segment, self%rules%toughness, self%increments())
+      search%is_over = any(far)
+      if (search%is_over) call reject_overshoot(self, search, far, trial)
+   end subroutine see_overshoot
+
+   !> Reject a step in which tips go too far, with the share of it in which they would not.
+   pure subroutine reject_overshoot(self, search, far, trial)
+      class(two_levels_t), intent(in) :: self
+      type(search_t), intent(in) :: search
+      logical, intent(in) :: far(:)  !< (tips)
+      type(trial_t), intent(inout) :: trial
+      real(rk), parameter :: aim = 0.75_rk*excess_max
+
+      trial%goes_too_far = .true.
+      associate (before => self%last%front%tip%excess(self%rules%toughness), &
+                 after => search%unmoved)
+         trial%was_beyond = any(far .and. before > excess_max)
+         ! Onset at the time when the tips reach the toughness, not at the start of the step.
+         trial%onset = onset(before, after, far)
+         trial%admissible = minval([1.0_rk, pack((aim - before)/(after - before), &
+                                                 far .and. after > aim .and. before < aim)])
+         ! Growth that raises K_eq is a jump, in a step of any length.
+         if (any(far .and. search%begun > 0 .and. &
+                 self%tip%excess(self%rules%toughness) > after)) then
+            trial%admissible = min(trial%admissible, search%moment/search%dt)
+         end if
+      end associate
+   end subroutine reject_overshoot
 
    !> Move the tips to where their excess is predicted to vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
@@ -296,7 +333,7 @@ contains
          trial%goes_too_far = any(joins .and. search%begun > 0)
          trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
                                          self%rules%toughness, at_joints), mask=joins)
-         trial%moment = punctual*(self%before%time - last_switch(self%scene, self%before%time))
+         trial%moment = search%moment
          trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
          if (search%is_over) return
@@ -320,7 +357,6 @@ contains
 
       beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
-                 before => self%last%front%tip%excess(self%rules%toughness), &
                  far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
                                    self%increments()))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
@@ -335,13 +371,11 @@ contains
                               (far .and. .not. is_viscous(self%tip))))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! jumps have no rates
+            search%may_jump = search%may_jump .or. search%dt <= search%moment
          end if
-         trial%goes_too_far = trial%jumps .and. .not. search%may_jump
-         search%is_over = trial%goes_too_far
+         search%is_over = trial%jumps .and. .not. search%may_jump
          if (search%is_over) then
-            trial%was_beyond = any(wants .and. before > excess_max)
-            ! Onset at the time when the tips reach the toughness, not at the start of the step.
-            trial%onset = onset(before, search%unmoved, wants)
+            call reject_overshoot(self, search, wants, trial)
             return
          end if
       end associate
@@ -364,40 +398,6 @@ contains
       search%previous_try = previous_try_t()  ! the segments have changed
       search%advances = advances_t()
    end subroutine begin_wanted
-
-   !> Whether a tip at the end of its segment exceeds its toughness by so much that it would go too
-   !! far, or that the direction of the next segment would be wrong.
-   elemental logical function overshoots(tip, segment, toughness, increment)
-      type(tip_t), intent(in) :: tip
-      type(segment_t), intent(in) :: segment
-      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      real(rk), intent(in) :: increment  !< length of the next segment [m]
-
-      associate (excess => tip%excess(toughness), &
-                 of_loads => least_scales*tip%least_scale/tip%scale_of(toughness))
-         overshoots = excess > excess_max
-         if (overshoots .and. excess <= max(steep_excess_max, of_loads)) then
-            overshoots = .not. excess < -segment%slope*increment
-         end if
-      end associate
-   end function overshoots
-
-   !> Put a tip on its new segment where the search is to start: at the end where tips may jump, as
-   !! they mostly do by more than a segment; else where its excess is predicted to vanish, but not
-   !! so near the start that the mesh of the whole segment cannot be moved there.
-   pure subroutine set_out(segment, excess, may_jump, is_whole)
-      type(segment_t), intent(inout) :: segment
-      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the segment [-]
-      logical, intent(in) :: may_jump
-      logical, intent(in) :: is_whole  !< the segment does not end before a target
-      logical :: has_moved
-
-      if (.not. segment%is_open) return
-      if (.not. may_jump) call segment%set_out(excess)
-      if (.not. is_whole) return
-      call segment%go_to(merge(segment%length, max(segment%reached, first_place*segment%length), &
-                               may_jump), has_moved)
-   end subroutine set_out
 
    !> End the tries: no tip is to advance. If the tips that have not been evaluated do not exceed
    !! the toughness either, and all intensities are accurate enough, the state is an equilibrium.

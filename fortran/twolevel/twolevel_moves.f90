@@ -11,8 +11,8 @@ module twolevel_moves
    implicit none(type, external)
    private
 
-   public :: arrivals, at_joints, driven_t, first_onset, is_in_play, judge_tips, keep_together
-   public :: onset, separate_tips, tolerance
+   public :: arrivals, at_joints, driven_t, excess_max, first_onset, is_in_play, judge_tips
+   public :: keep_together, onset, overshoots, separate_tips, set_out, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
 
@@ -23,9 +23,20 @@ module twolevel_moves
    !! [-].
    real(rk), parameter :: onset_lack = 5.0e-3_rk
 
-   !> Lack of toughness at which a search that has stalled ends, over the error of K_eq, and its
-   !! largest value [-].
+   !> Lack or excess of toughness at which a search that has stalled ends, over the error of K_eq,
+   !! and the largest lack [-].
    real(rk), parameter :: share_of_error = 0.5_rk, slack_max = 0.1_rk
+
+   !> Excess K_eq/K_IC - 1 up to which a segment begins in a tried step, and that up to which it
+   !! does where the excess vanishes within the next segment by its slope: the direction of the
+   !! segment would otherwise be that of a state that does not occur. Where K_IC is far below the K
+   !! that the loads may bring about, the second one is a share of that K, as the least scales of
+   !! tips are [-].
+   real(rk), parameter :: excess_max = 0.2_rk, steep_excess_max = 1.0_rk, least_scales = 5.0_rk
+
+   !> Position from which the search on a new segment starts, over the length of the segment: the
+   !! mesh of its full length can be moved there, but not much farther back [-].
+   real(rk), parameter :: first_place = 0.4_rk
 
    !> What drives one tip.
    type :: driven_t
@@ -235,5 +246,39 @@ contains
       end function lacks
 
    end subroutine separate_tips
+
+   !> Whether a tip at the end of its segment exceeds its toughness by so much that it would go too
+   !! far, or that the direction of the next segment would be wrong.
+   elemental logical function overshoots(tip, segment, toughness, increment)
+      type(tip_t), intent(in) :: tip
+      type(segment_t), intent(in) :: segment
+      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), intent(in) :: increment  !< length of the next segment [m]
+
+      associate (excess => tip%excess(toughness), &
+                 of_loads => least_scales*tip%least_scale/tip%scale_of(toughness))
+         overshoots = excess > excess_max
+         if (overshoots .and. excess <= max(steep_excess_max, of_loads)) then
+            overshoots = .not. excess < -segment%slope*increment
+         end if
+      end associate
+   end function overshoots
+
+   !> Put a tip on its new segment where the search is to start: at the end where tips may jump, as
+   !! they mostly do by more than a segment; else where its excess is predicted to vanish, but not
+   !! so near the start that the mesh of the whole segment cannot be moved there.
+   pure subroutine set_out(segment, excess, may_jump, is_whole)
+      type(segment_t), intent(inout) :: segment
+      real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the segment [-]
+      logical, intent(in) :: may_jump
+      logical, intent(in) :: is_whole  !< the segment does not end before a target
+      logical :: has_moved
+
+      if (.not. segment%is_open) return
+      if (.not. may_jump) call segment%set_out(excess)
+      if (.not. is_whole) return
+      call segment%go_to(merge(segment%length, max(segment%reached, first_place*segment%length), &
+                               may_jump), has_moved)
+   end subroutine set_out
 
 end module twolevel_moves

@@ -7,9 +7,12 @@ submodule(twolevel_state) twolevel_remeshing
    use base_tolerances, only: same_place
    use coarse_layer_profiles, only: kept_faces_t, no_profiles, profiles_of, profiles_t, &
                                     return_excess, set_apart, take_profiles
+   use coarse_layout, only: fracture_layout_t
    use coarse_model, only: rest_fluid
+   use coarse_state, only: guess_t
    use mesh_builder, only: remesh
    use mesh_types, only: fracture_mesh_t, mesh_map_t
+   use twolevel_guess, only: transfer_guess
    use twolevel_setup, only: choose_first_step
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
@@ -50,6 +53,10 @@ contains
       type(mesh_map_t) :: map
       type(profiles_t) :: profiles
       type(kept_faces_t) :: faces
+      type(fracture_mesh_t) :: fracture_before
+      type(fracture_layout_t) :: layout
+      type(guess_t) :: guess
+      integer(ik), allocatable :: pairs(:, :)
       real(rk) :: radius
       integer(ik) :: i, k, nearest
 
@@ -79,6 +86,10 @@ contains
             profiles = no_profiles()
          end if
       end associate
+      guess = self%now%coarse%guess
+      fracture_before = self%problem%mesh%fracture
+      pairs = self%problem%model%connections
+      layout = layout_of(self%problem)
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
       if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
@@ -93,8 +104,23 @@ contains
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
+      call transfer_guess(fracture_before, self%problem%mesh%fracture, pairs, &
+                          self%problem%model%connections, layout, layout_of(self%problem), guess)
+      self%now%coarse%guess = guess
       self%now%has_new_mesh = .true.
    end subroutine remesh_coarse
+
+   !> Numbering of the unknowns on the fractures.
+   pure type(fracture_layout_t) function layout_of(problem) result(layout)
+      type(coarse_problem_t), intent(in) :: problem
+
+      associate (model => problem%model)
+         layout = fracture_layout_t(n_cells=problem%mesh%fracture%n_cells, per_cell=7_ik, &
+                                    n_flows=size(model%connections, 2, kind=ik), &
+                                    n_branches=model%joints%branch_count(), &
+                                    n_wells=model%wells%n, n_joints=model%joints%n)
+      end associate
+   end function layout_of
 
    !> Transfer the pressures in layers to a new coarse mesh, after all else.
    subroutine transfer_layers(problem, profiles, map, faces, state)

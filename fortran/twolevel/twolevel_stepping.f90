@@ -69,6 +69,8 @@ module twolevel_stepping
       logical :: was_beyond = .false.  !< one of these tips exceeded its toughness before the step
       logical :: has_joined = .false.  !< a tip has joined a target in the step
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
+      !> share of the step in which these tips would not go too far, by linear interpolation [-]
+      real(rk) :: admissible = 1.0_rk
       logical :: is_late = .false.  !< a tip reaches a target long before the end of the step
       logical :: gains_all = .false.  !< a tip reaches the prescribed gain instead of a target
       real(rk) :: arrival = 1.0_rk  !< share of the step after which the tip does [-]
@@ -216,7 +218,7 @@ contains
          ! Not below half the shortest step; to this length at once where the volume that flows in
          ! the step does not matter.
          share = 0.0_rk
-         if (.not. trial%was_beyond) share = next_share(self%in_vain)
+         if (.not. trial%was_beyond) share = min(trial%admissible, next_share(self%in_vain))
          dt = max(min(0.5_rk*dt, 0.5_rk*self%shortest), share*dt)
          self%in_vain = self%in_vain + 1
       else

@@ -1,6 +1,10 @@
 !> What the viscosity of the fluid does at the tips that grow in a tried step (coarse_tip_layer):
 !! the parameter b of each tip follows from its speed in the step, which the try determines, and
 !! from the pressure in its cell before the step, at which fluid leaks off.
+!!
+!! Layers of fluid pressure at these tips: a tip moves on into rock that the fluid has not reached.
+!! Behind a tip of speed V a layer is sqrt(c x/V) thick at a distance x, and its back stress is that
+!! of a layer of uniform thickness and an age of `swept` c/V^2 (docs/theory.md).
 module twolevel_tip_layers
    use base_kinds, only: ik, rk
    use coarse_rock, only: mean_solid, rock_t, solid_t
@@ -8,6 +12,7 @@ module twolevel_tip_layers
    use growth_tip, only: tip_t
    use mesh_types, only: mesh_t
    use scene_regime, only: carter_coefficient
+   use twolevel_back_stress, only: diffusivity_at
    use twolevel_places, only: advances, end_cell
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
@@ -18,6 +23,10 @@ module twolevel_tip_layers
    !> b sqrt(d), with d the length of the tip's coarse cell, below which viscosity is neglected [-].
    !! The opening there is then 3 % larger than without it.
    real(rk), parameter :: negligible = 0.1_rk
+
+   !> Age of the layer at a moving tip, over c/V^2: (1.282)^4, the ratio of the half moments of the
+   !! two layers for V sqrt(c t) = c [-].
+   real(rk), parameter :: swept = 2.70_rk
 
 contains
 
@@ -39,9 +48,12 @@ contains
       gain = advances(self%front_state_t, self%start, self%now%segment, self%increments())
       pressure = self%problem%fracture_pressure(self%before) - self%scene%initial%pressure
       do i = 1, size(self%tip, kind=ik)
+         self%tip(i)%layer_age = self%last%front%tip(i)%layer_age + dt
          if (.not. (self%tip(i)%is_free .and. gain(i) > 0.0_rk)) cycle
-         if (may_jump .and. .not. is_viscous(self%last%front%tip(i))) cycle
          cell = end_cell(self%problem%mesh%fracture, self%tip(i))
+         self%tip(i)%layer_age = min(self%tip(i)%layer_age, &
+                                     swept*diffusivity_at(self%problem, cell)*(dt/gain(i))**2)
+         if (may_jump .and. .not. is_viscous(self%last%front%tip(i))) cycle
          length = abs(self%problem%mesh%fracture%cell_s(2, cell) &
                       - self%problem%mesh%fracture%cell_s(1, cell))
          solid = beside(self%problem%model%rock, self%problem%mesh, cell)

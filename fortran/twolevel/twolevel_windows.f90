@@ -266,7 +266,8 @@ contains
          do i = 1, size(window%serves, kind=ik)
             associate (t => window%serves(i), tip => front%tip(window%serves(i)))
                if (.not. window%served(i)%is_evaluated) cycle
-               seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end)
+               seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end, &
+                                                    tip%layer_age)
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
                tip%rosette_radius = window%mesh%fracture%tip_radius(window%at(i))
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, &

@@ -90,8 +90,8 @@ contains
    end subroutine test_steep_guess
 
    !> K of every mesh is off by up to 3 % of K_IC, six times the tolerance, within its stated error
-   !! of 20 %. The search ends after a few evaluations, with K_eq at most the tolerance above K_IC
-   !! and at most the slack below, and so at a place that is off by both and the noise.
+   !! of 20 %. The search ends after a few evaluations, with K_eq at most three times the tolerance
+   !! above K_IC and at most the slack below, and so at a place that is off by both and the noise.
    subroutine test_noise()
       real(rk), parameter :: slack = 0.05_rk, noise = 0.03_rk, slope = 2.3_rk
       integer, parameter :: problems = 500
@@ -115,12 +115,12 @@ contains
          end do
          total = total + advances%evaluations
          most = max(most, advances%evaluations)
-         call checks%is_true(excess(1) <= tolerance .and. excess(1) >= -slack, &
+         call checks%is_true(excess(1) <= 3.0_rk*tolerance .and. excess(1) >= -slack, &
                              "noise: in equilibrium")
          call checks%is_close(advances%place(1), 0.2_rk/slope, (slack + noise)/slope, &
                               "noise: place")
       end do
-      call checks%is_true(real(total, rk)/problems <= 6.0_rk, "noise: 6 evaluations on average")
+      call checks%is_true(real(total, rk)/problems <= 5.0_rk, "noise: 5 evaluations on average")
       call checks%is_true(most <= 25, "noise: 25 evaluations at most")
    end subroutine test_noise
 

@@ -261,6 +261,11 @@ contains
       dt = 1.0_rk
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_close(dt, 0.5_rk, 0.0_rk, "the next step is halved first")
+      call stepper%step_done(trial_t(converged=.true.), dt)
+      dt = 1.0_rk
+      trial%admissible = 0.3_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_close(dt, 0.3_rk, 1.0e-15_rk, "to where the tips do not go too far")
       trial%was_beyond = .true.
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_true(is_too_short, "at once where no time is needed to go too far")

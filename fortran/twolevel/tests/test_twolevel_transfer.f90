@@ -3,7 +3,8 @@
 program test_twolevel_transfer
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_state, only: fracture_cells_t, state_t
+   use coarse_layout, only: fracture_layout_t
+   use coarse_state, only: fracture_cells_t, guess_t, state_t
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use growth_network, only: extend
    use mesh_builder, only: mesher_t, remesh
@@ -11,6 +12,7 @@ program test_twolevel_transfer
    use mesh_types, only: mesh_map_t, mesh_t, network_t
    use sample_bodies, only: mesh_square, scattered, straight_network, uniform_cells
    use testing_checks, only: checks_t
+   use twolevel_guess, only: transfer_guess
    use twolevel_transfer, only: transfer_cells, transfer_state
    implicit none(type, external)
 
@@ -24,6 +26,7 @@ program test_twolevel_transfer
    call test_cells()
    call test_state(.false.)
    call test_state(.true.)
+   call test_guess()
    call test_uniform_content()
    call test_joint(0.5_rk)
    call test_joint(0.2_rk)
@@ -275,5 +278,69 @@ contains
       call checks%is_close(maxval(abs(after%unknowns(3, :mesh%n_cells) - 5.0e6_rk)), 0.0_rk, &
                            1.0e-4_rk, "uniform pressure")
    end subroutine test_uniform_content
+
+   !> The guess keeps the changes of old cells, flows and wells in physical units (jumps and flows
+   !! are scaled with the mean length of the cells); new cells do not change.
+   subroutine test_guess()
+      type(guess_t) :: guess
+      type(fracture_layout_t) :: new, old
+      integer(ik), allocatable :: pairs(:, :), pairs_before(:, :)
+      real(rk) :: finer
+      integer(ik) :: cell, k, of
+
+      pairs_before = neighbours(mesh_before)
+      pairs = neighbours(mesh)
+      old = fracture_layout_t(n_cells=mesh_before%fracture%n_cells, per_cell=7_ik, &
+                              n_flows=size(pairs_before, 2, kind=ik), n_wells=1_ik)
+      new = fracture_layout_t(n_cells=mesh%fracture%n_cells, per_cell=7_ik, &
+                              n_flows=size(pairs, 2, kind=ik), n_wells=1_ik)
+      guess%change = [(real(k, rk), k=1, old%count())]
+      associate (before => mesh_before%fracture, after => mesh%fracture)
+         finer = sum(before%cell_s(2, :) - before%cell_s(1, :))/before%n_cells &
+                 /(sum(after%cell_s(2, :) - after%cell_s(1, :))/after%n_cells)
+         call transfer_guess(before, after, pairs_before, pairs, old, new, guess)
+         call checks%is_true(guess%is_known(new%count()), "guess: as many as unknowns")
+         do cell = 1, after%n_cells
+            of = map%fracture_cell_old(cell)
+            if (of == 0) then
+               call checks%is_close(maxval(abs(guess%change(7*cell - 6:7*cell))), 0.0_rk, 0.0_rk, &
+                                    "guess: none in new cells")
+            else
+               call checks%is_close(guess%change(new%at_jump(cell, 2_ik)), &
+                                    finer*old%at_jump(of, 2_ik), 1.0e-10_rk, "guess: jump")
+               call checks%is_close(guess%change(new%at_pressure(cell)), &
+                                    real(old%at_pressure(of), rk), 1.0e-10_rk, "guess: pressure")
+            end if
+         end do
+         do k = 1, size(pairs, 2, kind=ik)
+            if (any(map%fracture_cell_old(pairs(:, k)) == 0)) cycle
+            of = findloc(pairs_before(1, :), map%fracture_cell_old(pairs(1, k)), dim=1, kind=ik)
+            call checks%is_close(guess%change(new%at_flow(k)), finer**2*old%at_flow(of), &
+                                 1.0e-10_rk, "guess: flow")
+         end do
+      end associate
+      call checks%is_close(guess%change(new%at_well(1_ik)), finer**2*old%at_well(1_ik), &
+                           1.0e-10_rk, "guess: well")
+      call transfer_guess(mesh_before%fracture, mesh%fracture, pairs_before, pairs, old, new, guess)
+      call checks%is_true(.not. guess%is_known(new%count()), "guess: not of another mesh")
+   end subroutine test_guess
+
+   !> Pairs of cells that follow each other on a fracture.
+   function neighbours(of) result(pairs)
+      type(mesh_t), intent(in) :: of
+      integer(ik), allocatable :: pairs(:, :)
+      integer(ik) :: i, k
+
+      allocate (pairs(2, 0))
+      associate (f => of%fracture)
+         do i = 1, f%n_cells
+            do k = 1, f%n_cells
+               if (f%cell_fracture(i) /= f%cell_fracture(k)) cycle
+               if (abs(f%cell_s(2, i) - f%cell_s(1, k)) > 1.0e-9_rk) cycle
+               pairs = reshape([pairs, i, k], [2, size(pairs, 2) + 1])
+            end do
+         end do
+      end associate
+   end function neighbours
 
 end program test_twolevel_transfer
