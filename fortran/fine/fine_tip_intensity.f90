@@ -2,10 +2,11 @@
 module fine_tip_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, pi, rk
-   use base_plane, only: norm2, turned_left
-   use base_tolerances, only: round_off, same_value
+   use base_plane, only: cross, norm2, turned_left
+   use base_tolerances, only: round_off, same_direction, same_value
    use fine_faces, only: face_contact
    use fine_loads, only: fine_loads_t
+   use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: face_traction, largest_radius, rosette_size
    use fine_tip_energy, only: displacement_correlation, release_rate
@@ -98,6 +99,7 @@ contains
          if (is_complete) then
             call doubt_friction(model, loads, displacement, probe, intensity)
             call doubt_joints(model, loads, displacement, probe, intensity)
+            call add_kink_error(model%mesh, displacement, frame, intensity)
          end if
          call complete_errors(frame%rock%crack_modulus(), intensity)
       end associate
@@ -229,6 +231,48 @@ contains
       intensity%k1_error = intensity%k1_error + k(1, 1)
       intensity%k2_error = intensity%k2_error + k(2, 1)
    end subroutine doubt_joints
+
+   !> What the kinks of a fracture add to the errors of K of its tips. Elements of the length h at a
+   !! kink miss a share of the jump there, in proportion to the sine of its angle: K of a jump [u]
+   !! over h at the distance d from the tip is E' [u] h/(4 sqrt(2 pi) d**1.5). The factor is that of
+   !! winged cracks (verification/winged_crack) and bent fractures drawn at random
+   !! (verification/stated_errors_unseen).
+   pure subroutine add_kink_error(mesh, displacement, frame, intensity)
+      type(fine_mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(tip_frame_t), intent(in) :: frame
+      type(intensity_t), intent(inout) :: intensity
+      real(rk), parameter :: factor = 1.0_rk
+      real(rk) :: added, sine
+      integer(ik) :: i
+
+      added = 0.0_rk
+      associate (fracture => mesh%fracture)
+         do i = 1, fracture%n_cells - 1
+            if (any(fracture%cell_fracture([i, i + 1]) /= frame%fracture)) cycle
+            if (fracture%cell_points(2, i) /= fracture%cell_points(1, i + 1)) cycle
+            sine = abs(cross(mesh%face_tangent(:, i), mesh%face_tangent(:, i + 1)))
+            if (.not. sine > same_direction) cycle
+            added = added + sine*minval(mesh%face_length([i, i + 1])) &
+                    *max(jump_of(i), jump_of(i + 1)) &
+                    /norm2(fracture%point_xy(:, fracture%cell_points(2, i)) - frame%origin)**1.5_rk
+         end do
+      end associate
+      added = factor*frame%rock%crack_modulus()/(4.0_rk*sqrt(2.0_rk*pi))*added
+      if (.not. intensity%closed) intensity%k1_error = intensity%k1_error + added
+      intensity%k2_error = intensity%k2_error + added
+
+   contains
+
+      !> Jump in the middle of a face [m].
+      pure real(rk) function jump_of(face)
+         integer(ik), intent(in) :: face
+
+         jump_of = norm2(displacement(:, mesh%face_nodes(3, 2, face)) &
+                         - displacement(:, mesh%face_nodes(3, 1, face)))
+      end function jump_of
+
+   end subroutine add_kink_error
 
    !> K_II where the slip up to the tip is given: what it says by itself, from displacement
    !! correlation. The integrals need the shear traction that this slip takes, whose error next to

@@ -1,0 +1,438 @@
+"""Draw states by a seed, run them as they are and with four times the resolution in everything.
+
+    .venv/bin/python verification/stated_errors_unseen/draw_states.py [SOLVER] [SEED ...]
+
+Rocks, fractures, loads, wells and steps are drawn. The share of values in which the stated error
+holds, and the median of stated over true error, are printed by quantity. The runs are kept in
+build/stated_errors_unseen.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import math
+import os
+import random
+import statistics
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+TOP = HERE.parents[1]
+STORE = TOP / "build/stated_errors_unseen"
+SOLVER = TOP / "build/release/fortran/app/wingcrack-solver"
+STATES = 12  # of each family and seed
+FINER = 4.0
+ROUNDING = 1e-7  # of the largest value in a table
+Scene = dict[str, Any]
+Rows = list[dict[str, str]]
+
+
+def value_text(value: object) -> str:
+    """Text of a value in a scene file."""
+    if isinstance(value, bool):
+        return ".true." if value else ".false."
+    if isinstance(value, str):
+        return f"'{value}'"
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(value_text, value))
+    return repr(value)
+
+
+def scene_text(scene: Scene) -> str:
+    """Text of a scene file."""
+    lines = []
+    for group, items in scene.items():
+        for item in items if isinstance(items, list) else [items]:
+            names = "\n  ".join(f"{k} = {value_text(v)}" for k, v in item.items())
+            lines.append(f"&{group}\n  {names}\n/\n")
+    return "".join(lines)
+
+
+class Draw:
+    """Random numbers with few digits."""
+
+    def __init__(self, seed: str) -> None:
+        """Start from a seed."""
+        self.random = random.Random(seed)
+
+    def among(self, *values: Any) -> Any:
+        """Choose one."""
+        return self.random.choice(values)
+
+    def between(self, low: float, high: float) -> float:
+        """Choose a number."""
+        return float(f"{self.random.uniform(low, high):.3g}")
+
+    def decades(self, low: float, high: float) -> float:
+        """Choose a positive number by its logarithm."""
+        return float(f"{math.exp(self.random.uniform(math.log(low), math.log(high))):.3g}")
+
+
+def path(draw: Draw, centre: Sequence[float], length: float, bends: int) -> np.ndarray:
+    """A fracture that turns by 10 to 60 degrees at each bend."""
+    angle = draw.random.uniform(0.0, math.pi)
+    points = [np.zeros(2)]
+    for _ in range(bends + 1):
+        along = np.array([math.cos(angle), math.sin(angle)])
+        points.append(points[-1] + along * length / (bends + 1))
+        angle += math.radians(draw.random.uniform(10.0, 60.0)) * draw.among(-1, 1)
+    all_points = np.array(points)
+    middle = 0.5 * (all_points.min(axis=0) + all_points.max(axis=0))
+    return np.round((all_points - middle + centre) / length, 4) * length
+
+
+def nearest(a: np.ndarray, b: np.ndarray) -> float:
+    """Least distance of two polylines, sampled."""
+    share = np.linspace(0.0, 1.0, 40)[:, None]
+    first, second = (
+        np.concatenate([p[i] + share * (p[i + 1] - p[i]) for i in range(len(p) - 1)])
+        for p in (a, b)
+    )
+    return float(np.min(np.linalg.norm(first[:, None] - second[None], axis=2)))
+
+
+def network(draw: Draw, n: int, length: float, bends: int) -> list[np.ndarray]:
+    """Fractures that do not meet, near the middle of a body ten lengths wide."""
+    paths: list[np.ndarray] = []
+    while len(paths) < n:
+        spread = 0.9 if n > 1 else 0.2
+        centre = [draw.random.uniform(-spread, spread) * length for _ in range(2)]
+        own = length * (draw.random.uniform(0.6, 1.2) if n > 1 else 1.0)
+        new = path(draw, centre, float(f"{own:.3g}"), draw.random.randint(0, bends))
+        if all(nearest(new, old) > 0.15 * length for old in paths):
+            paths.append(new)
+    return paths
+
+
+def base(draw: Draw, length: float) -> tuple[Scene, tuple[float, float]]:
+    """The body, its rock and its load."""
+    w = 5.0 * length
+    most, least = draw.between(12.0, 30.0) * 1e6, draw.between(6.0, 12.0) * 1e6
+    scene: Scene = {
+        "scene": {"name": "state"},
+        "domain": {"x_min": -w, "x_max": w, "y_min": -w, "y_max": w},
+        "material": {"young": draw.between(5.0, 60.0) * 1e9, "poisson": draw.between(0.1, 0.4)},
+        "fracture": [],
+        "side": [
+            {"name": "left", "x_displacement": 0.0},
+            {"name": "bottom", "y_displacement": 0.0},
+            {"name": "right", "x_traction": -most},
+            {"name": "top", "y_traction": -least},
+        ],
+        "probe": [],
+        "output": {"vtu": False},
+    }
+    for i in range(2):
+        place = [draw.between(-2.0, 2.0) * length for _ in range(2)]
+        scene["probe"].append({"name": f"p{i + 1}", "x": place[0], "y": place[1]})
+    return scene, (most, least)
+
+
+def add_fractures(draw: Draw, scene: Scene, paths: list[np.ndarray], kind: str) -> None:
+    """Fractures of one kind."""
+    friction = draw.between(0.2, 0.7)
+    joint = {}
+    if kind == "joint":
+        joint = {"normal_stiffness": draw.decades(3e9, 3e11), "closure": draw.decades(1e-5, 9e-5)}
+    for i, p in enumerate(paths):
+        scene["fracture"].append(
+            {
+                "name": f"f{i + 1}",
+                "x": [float(f"{v:.6g}") for v in p[:, 0]],
+                "y": [float(f"{v:.6g}") for v in p[:, 1]],
+                "friction": friction,
+                **joint,
+            }
+        )
+
+
+def body(draw: Draw) -> Scene:
+    """Without a fluid: sliding, opened, bent, joints, several fractures."""
+    length = draw.among(0.1, 1.0, 10.0)
+    scene, (most, least) = base(draw, length)
+    kind = draw.among("slide", "slide", "open", "joint")
+    n = draw.among(1, 1, 2, 3, 5)
+    add_fractures(draw, scene, network(draw, n, length, 2), kind)
+    for fracture in scene["fracture"]:
+        share = draw.between(0.1, 0.8) if kind != "open" else draw.between(1.0, 1.6)
+        fracture["face_pressure"] = float(f"{share * least:.3g}")
+        if kind == "open":
+            fracture["face_pressure"] = float(f"{most + 0.3 * share * least:.3g}")
+    if kind == "open" and draw.among(True, False):
+        scene["load"] = {"factors": [1.0, 0.4], "steps": 2}
+    size = float(f"{length / draw.among(8, 10, 15, 20, 30):.3g}")
+    scene["growth"] = {"intensities": True}
+    scene["fe"] = {"size_fracture": size, "size_boundary": draw.among(0.5, 1.0) * length}
+    return scene
+
+
+def injected(draw: Draw) -> Scene:
+    """With a fluid and without growth: wells and stages; slip of a part; joints."""
+    length = draw.among(0.3, 1.0, 5.0, 20.0, 50.0)
+    scene, (most, least) = base(draw, length)
+    kind = draw.among("slide", "slide", "joint")
+    n = draw.among(1, 1, 2, 3)
+    add_fractures(draw, scene, network(draw, n, length, 1), kind)
+    aperture = draw.decades(2e-5, 1e-3)
+    for fracture in scene["fracture"]:
+        fracture["aperture"] = aperture + fracture.get("closure", 0.0)
+        fracture["dilation_deg"] = draw.among(0.0, 1.0, 3.0)
+    fluid(draw, scene, least, draw.decades(1e-20, 1e-16))
+    end = draw.decades(10.0, 1e5)
+    start = scene["initial"]["pressure"]
+    wells = []
+    for i in range(draw.among(1, 1, 2) if n > 1 else 1):
+        well: dict[str, Any] = {"fracture": f"f{i + 1}"}
+        if draw.among(True, False):
+            held = length**2 * (1e6 / scene["material"]["young"] + aperture / length * 4e-4)
+            rate = float(f"{held / end * draw.decades(0.3, 10.0):.3g}")
+            well["rate"] = rate
+            if draw.among(True, False):
+                well["time"], well["rate"] = [0.0, end / 2.0], [rate, rate * draw.between(-0.3, 2)]
+        else:
+            well["pressure"] = float(f"{start + draw.between(0.2, 1.3) * (least - start):.4g}")
+        wells.append(well)
+    scene["injection"] = wells
+    scene["time"] = {"end": end, "tolerance": 0.01}
+    if draw.among(True, False, False):
+        scene["time"]["step"] = end / 20.0
+    scene["growth"] = {"intensities": True}
+    cells(draw, scene, length)
+    return scene
+
+
+def fluid(draw: Draw, scene: Scene, least: float, permeability: float) -> None:
+    """Fluid in fractures and rock."""
+    porosity = draw.between(0.01, 0.1)
+    scene["material"].update(
+        {"biot": draw.between(0.4, 1.0), "porosity": porosity, "permeability": permeability}
+    )
+    scene["fluid"] = {"compressibility": 4.4e-10, "viscosity": draw.decades(1e-4, 1e-3)}
+    scene["initial"] = {
+        "fracture_pressure": "equilibrated",
+        "pressure": float(f"{draw.between(0.1, 0.6) * least:.4g}"),
+    }
+
+
+def cells(draw: Draw, scene: Scene, length: float) -> None:
+    """Cells and windows."""
+    size = float(f"{length / draw.among(8, 10, 15, 20):.3g}")
+    scene["coarse"] = {"size_fracture": size, "size_boundary": length}
+    scene["fine"] = {"window": draw.among(5.0, 8.0) * size, "size_ratio": 0.5}
+
+
+def growing(draw: Draw) -> Scene:
+    """Wings that grow by a fraction of their fracture."""
+    length = draw.among(0.3, 1.0, 5.0, 20.0)
+    scene, (most, least) = base(draw, length)
+    add_fractures(draw, scene, network(draw, draw.among(1, 1, 2), length, 1), "slide")
+    aperture = draw.decades(5e-5, 1e-3)
+    for fracture in scene["fracture"]:
+        fracture["aperture"] = aperture
+        fracture["dilation_deg"] = draw.among(0.0, 1.0)
+    fluid(draw, scene, least, draw.decades(1e-20, 1e-17))
+    toughness = float(f"{draw.decades(0.1, 1.0) * 2e6 * math.sqrt(length):.3g}")
+    scene["material"]["toughness"] = toughness
+    held = length**2 * (2e6 / scene["material"]["young"] + aperture / length * 4e-3)
+    scene["injection"] = [{"fracture": "f1", "rate": float(f"{held / draw.decades(100, 1e4):.3g}")}]
+    scene["time"] = {"end": 1e6, "tolerance": 0.01}
+    cells(draw, scene, length)
+    size = scene["coarse"]["size_fracture"]
+    gain = float(f"{draw.between(0.1, 0.4) * length:.3g}")
+    scene["growth"] = {"enabled": True, "stop_gain": gain, "increment": size / 2.0}
+    return scene
+
+
+FAMILIES = {"body": body, "injected": injected, "growing": growing}
+
+
+def finer(scene: Scene) -> Scene:
+    """The scene with four times the resolution."""
+    fine = json.loads(json.dumps(scene))
+    for group in ("fe", "coarse"):
+        if group in fine:
+            for size in ("size_fracture", "size_boundary"):
+                fine[group][size] /= FINER
+    if "load" in fine:
+        fine["load"]["steps"] *= int(FINER)
+    if "time" in fine:
+        fine["time"]["tolerance"] /= FINER
+        if "step" in fine["time"]:
+            fine["time"]["step"] /= FINER
+    if "increment" in fine.get("growth", {}):
+        fine["growth"]["increment"] /= FINER
+    fine.get("growth", {}).pop("stop_gain", None)
+    return fine
+
+
+def solve(solver: Path, scene: Scene, limit: float, *, again: bool = True) -> Path | None:
+    """Folder of a finished run, or None; `again` with another solver."""
+    text = scene_text(scene)
+    key = text + (str(solver.stat().st_mtime_ns) if again else "")
+    key = hashlib.sha256(key.encode()).hexdigest()[:16]
+    folder = STORE / key
+    if not (folder / "done").exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "state.nml").write_text(text)
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        command = ["nice", str(solver), "run", str(folder / "state.nml"), "--out", str(folder)]
+        try:
+            done = subprocess.run(
+                command, capture_output=True, text=True, timeout=limit, env=environment, check=False
+            )
+            (folder / "done").write_text(f"{done.returncode}\n{done.stdout}{done.stderr}")
+        except subprocess.TimeoutExpired:
+            (folder / "done").write_text("late\n")
+    return folder if (folder / "done").read_text().startswith("0") else None
+
+
+def rows_of(folder: Path, name: str) -> Rows:
+    """Rows of a table of a run."""
+    try:
+        with (folder / name).open() as file:
+            return list(csv.DictReader(file))
+    except FileNotFoundError:
+        return []
+
+
+def error_name(column: str, columns: Mapping[str, str]) -> str | None:
+    """Name of the column with the error of another one."""
+    own = {"ux_m": "u_error_m", "uy_m": "u_error_m"}
+    own.update({f"s{c}_pa": "s_error_pa" for c in ("xx", "yy", "xy")})
+    for end, error in own.items():
+        if column.endswith("_" + end) and column.startswith("p"):
+            return column[: -len(end)] + error
+    if column.startswith(("k1_corrected", "k2_corrected")):
+        return column[:2] + "_error_pa_sqrtm"
+    parts = column.split("_")
+    for i in range(len(parts), 0, -1):
+        name = "_".join([*parts[:i], "error", *parts[i:]])
+        if name in columns and name != column:
+            return name
+    return None
+
+
+def last_time(rows: Rows) -> Rows:
+    """Rows of the last state."""
+    key = "time_s" if "time_s" in rows[0] else "load_factor"
+    last = rows[-1][key]
+    return [row for row in rows if row[key] == last]
+
+
+def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[dict[str, str], Any]]:
+    """Rows of the last state, and values of the finer run at the same places."""
+    ours, theirs = last_time(coarse), last_time(fine)
+    if name != "fractures.csv":
+        if len(ours) == len(theirs):
+            for a, b in zip(ours, theirs, strict=True):
+                yield a, lambda column, b=b: float(b[column])
+        return
+    for f in sorted({row["fracture"] for row in ours}):
+        own = [row for row in ours if row["fracture"] == f]
+        other = [row for row in theirs if row["fracture"] == f]
+        s = [float(row["s_m"]) for row in other]
+        for row in own[:: max(1, len(own) // 6)]:
+            place = float(row["s_m"])
+
+            def at(column: str, other: Rows = other, s: list[float] = s, x: float = place) -> float:
+                return float(np.interp(x, s, [float(r[column] or "nan") for r in other]))
+
+            yield row, at
+
+
+def _size(text: str) -> float:
+    """Magnitude of a number of a table."""
+    try:
+        return abs(float(text))
+    except ValueError:
+        return 0.0
+
+
+def compare(coarse: Path, fine: Path) -> Iterator[tuple[str, float, float, float]]:
+    """Quantity, value, stated error and true error."""
+    for name in ("history.csv", "tips.csv", "wells.csv", "probes.csv", "fractures.csv"):
+        ours, theirs = rows_of(coarse, name), rows_of(fine, name)
+        if not ours or not theirs:
+            continue
+        largest = {c: max(_size(row[c]) for row in ours) for c in ours[0]}
+        for c, other in (("k1", "k2"), ("k2", "k1"), ("ux", "uy"), ("uy", "ux")):
+            for column in [k for k in largest if c in k]:
+                pair = largest.get(column.replace(c, other), 0.0)
+                largest[column] = max(largest[column], pair)
+        for row, reference in matched(name, ours, theirs):
+            for column in row:
+                error = error_name(column, row)
+                if error is None or "_error" in column or not row[column] or not row[error]:
+                    continue
+                value, stated, true = float(row[column]), float(row[error]), reference(column)
+                if stated < 0.0 or not math.isfinite(true):
+                    continue
+                if abs(value - true) <= ROUNDING * max(largest[column], abs(value)):
+                    continue  # equal, as in cells at rest: says nothing
+                what = column[3:] if name == "probes.csv" else column
+                yield f"{name[:-4]}: {what}", value, stated, abs(value - true)
+
+
+def state(family: str, seed: str, i: int, solver: Path) -> list[tuple[str, float, float, float]]:
+    """Compare one state."""
+    scene = FAMILIES[family](Draw(f"{seed} {family} {i}"))
+    label = f"{family} {seed} {i}"
+    if family == "growing":
+        pilot = solve(solver, scene, 60.0)
+        if pilot is None:
+            print(label, "did not end", flush=True)
+            return []
+        scene["time"]["end"] = float(f"{0.9 * float(rows_of(pilot, 'history.csv')[-1]['time_s']):.4g}")
+        scene["growth"].pop("stop_gain")
+    coarse, fine = solve(solver, scene, 60.0), solve(solver, finer(scene), 240.0, again=False)
+    if coarse is None or fine is None:
+        print(label, "not run", coarse, fine, flush=True)
+        return []
+    values = list(compare(coarse, fine))
+    missed = defaultdict(list)
+    for what, value, stated, true in values:
+        if true > stated:
+            missed[what].append(f"{value:.4g}+-{stated:.2g} true {true:.2g}")
+    cpu = [json.loads((f / "run.json").read_text())["cpu_s"] for f in (coarse, fine)]
+    print(label, coarse.name, fine.name, f"{len(values)} values, CPU {cpu[0]:.1f} {cpu[1]:.1f} s")
+    for what, texts in missed.items():
+        print("   ", what, len(texts), "; ".join(texts[:3]), flush=True)
+    return values
+
+
+def main() -> None:
+    """Print the table by quantity."""
+    solver = SOLVER
+    if len(sys.argv) > 1 and Path(sys.argv[1]).exists():
+        solver = Path(sys.argv.pop(1))
+    families = [a for a in sys.argv[1:] if a in FAMILIES] or list(FAMILIES)
+    seeds = [a for a in sys.argv[1:] if a not in FAMILIES] or ["1"]
+    jobs = [(f, s, i, solver) for f in families for s in seeds for i in range(STATES)]
+    with ThreadPoolExecutor(1) as pool:
+        results = list(pool.map(lambda job: (job[0], state(*job)), jobs))
+    for family in families:
+        table: dict[str, list[tuple[float, float]]] = defaultdict(list)
+        for name, values in results:
+            if name == family:
+                for what, _, stated, true in values:
+                    table[what].append((stated, true))
+        print(f"\n{family}\n{'quantity':52} values held  factor")
+        for what, pairs in sorted(table.items()):
+            held = 100.0 * sum(t <= s for s, t in pairs) / len(pairs)
+            factor = statistics.median(s / max(t, 1e-300) for s, t in pairs)
+            need = np.quantile([t / max(s, 1e-300) for s, t in pairs], 0.95)
+            print(f"{what:52} {len(pairs):6d} {held:5.1f} {factor:7.2f}  {need:.3g}")
+
+
+if __name__ == "__main__":
+    main()
