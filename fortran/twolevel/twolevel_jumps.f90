@@ -5,6 +5,13 @@
 !! after a jump, it may not yet have happened; and a tip at rest that has jumped before may jump
 !! again as soon as K_eq equals K_IC within its error. In both cases the length of the jump is part
 !! of the error of the position.
+!!
+!! A tip that grows in equilibrium rests now and then, as K_eq falls along a path segment and rises
+!! with the next one by some per cent of K_IC. The slope within a segment is steeper than that over
+!! many, by which an error of K_eq changes the position. The rate of K_eq at rest and the mean speed
+!! show the latter: the error of K_eq over that rate is one of time, and times the speed one of the
+!! position. Near the end of stable growth the speed rises, and so does this error: then a jump may
+!! be ahead.
 module twolevel_jumps
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
@@ -25,6 +32,12 @@ module twolevel_jumps
       real(rk), allocatable, private :: speed(:)  !< (tips) in equilibrium in the last step [m/s]
       real(rk), allocatable, private :: late(:)  !< (tips) error of the position over the speed [s]
       logical, allocatable, private :: jumps(:)  !< (tips) the tip has jumped in this step
+      !> (tips) mean rate of K_eq at rest, over the scale of K_IC; 0: not known [1/s]
+      real(rk), allocatable, private :: rate(:)
+      !> (before and at the last mark, tips) time [s] and growth [m], for the mean speed
+      real(rk), allocatable, private :: mark(:, :), grown_then(:, :)
+      real(rk), allocatable, private :: grown(:)  !< (tips) growth [m]
+      integer, allocatable, private :: n_steps(:)  !< (tips) steps of growth since the last mark
    contains
       procedure :: begin
       procedure :: note
@@ -38,7 +51,10 @@ contains
       class(jumps_t), intent(out) :: self
       integer, intent(in) :: n  !< tips
 
-      allocate (self%length(n), self%remaining(n), self%speed(n), self%late(n), source=0.0_rk)
+      allocate (self%length(n), self%remaining(n), self%speed(n), self%late(n), self%rate(n), &
+                self%grown(n), source=0.0_rk)
+      allocate (self%mark(2, n), self%grown_then(2, n), source=0.0_rk)
+      allocate (self%n_steps(n), source=0)
       allocate (self%jumps(n), source=.false.)
       allocate (self%rest(n))
    end subroutine begin
@@ -80,16 +96,16 @@ contains
       end do
    end subroutine note
 
-   !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps
-   !! [m].
-   pure subroutine follow(self, tips, toughness, position_error, dt, time, error)
+   !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps,
+   !! and by the time error of K_eq, which is halved: its errors differ from segment to segment [m].
+   pure subroutine follow(self, tips, toughness, position_error, dt, time, error, by_time)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: position_error(:)  !< (tips) without jumps [m]
       real(rk), intent(in) :: dt, time  !< [s]
-      real(rk), intent(out) :: error(:)  !< (tips) [m]
-      real(rk) :: uncertainty(size(tips))
+      real(rk), intent(out) :: error(:), by_time(:)  !< (tips) [m]
+      real(rk), dimension(size(tips)) :: late, new, uncertainty
       logical :: rests(size(tips))
 
       rests = .not. tips%advance > 0.0_rk
@@ -99,12 +115,41 @@ contains
       self%speed = 0.0_rk
       if (dt > 0.0_rk) where (.not. (rests .or. self%jumps)) self%speed = tips%advance/dt
       self%jumps = .false.
-      where (self%speed > 0.0_rk) self%late = position_error/self%speed
       call self%rest%follow(time, tips%drive%intensity, uncertainty, toughness)
+      new = self%rest%drive%rate/tips%scale_of(toughness)
+      where (rests .and. new > 0.0_rk .and. self%grown > 0.0_rk)
+         self%rate = merge(0.5_rk*(self%rate + new), new, self%rate > 0.0_rk)
+      end where
+      late = 0.0_rk
+      where (self%rate > 0.0_rk) late = (tolerance + uncertainty/tips%scale_of(toughness))/self%rate
+      where (self%speed > 0.0_rk) self%late = max(position_error/self%speed, late)
+      call note_growth(self, tips%advance, time)
+      by_time = 0.5_rk*late*(self%grown - self%grown_then(1, :)) &
+                /max(time - self%mark(1, :), tiny(time))
       error = 0.0_rk
       where (self%remaining > 0.0_rk .or. &
              (rests .and. .not. tips%arrested .and. &
               tips%drive%intensity + uncertainty >= toughness)) error = self%length
    end subroutine follow
+
+   !> Follow the growth of the tips: a mark every five steps of growth, the first at the onset.
+   pure subroutine note_growth(self, advance, time)
+      class(jumps_t), intent(inout) :: self
+      real(rk), intent(in) :: advance(:)  !< (tips) [m]
+      real(rk), intent(in) :: time  !< [s]
+      integer, parameter :: often = 5
+      integer :: i
+
+      do i = 1, size(advance)
+         if (.not. self%grown(i) > 0.0_rk) self%mark(:, i) = time
+         if (.not. advance(i) > 0.0_rk) cycle
+         self%grown(i) = self%grown(i) + advance(i)
+         self%n_steps(i) = self%n_steps(i) + 1
+         if (self%n_steps(i) < often) cycle
+         self%n_steps(i) = 0
+         self%mark(:, i) = [self%mark(2, i), time]
+         self%grown_then(:, i) = [self%grown_then(2, i), self%grown(i)]
+      end do
+   end subroutine note_growth
 
 end module twolevel_jumps
