@@ -49,6 +49,8 @@ module report_jump_errors
       !> mean of the distances from the ends of its zone by their product: a uniform change of
       !! traction by s changes the jump by 4 s/E' times it; 0 where no face moves [m]
       real(rk), allocatable :: reach(:)
+      !> sine of the sharper of the kinks at its ends within the zone: faces that slide past it open
+      real(rk), allocatable :: kink(:)
    end type jump_errors_t
 
 contains
@@ -62,7 +64,7 @@ contains
       integer(ik) :: first, last
 
       allocate (errors%share(size(moves)), errors%of_sum(size(moves)), source=law%rest)
-      allocate (errors%reach(size(moves)), source=0.0_rk)
+      allocate (errors%reach(size(moves)), errors%kink(size(moves)), source=0.0_rk)
       first = 1
       do while (first <= fracture%n_cells)
          last = first
@@ -96,14 +98,17 @@ contains
       half = 0.5_rk*(ends(2) - ends(1))
       if (.not. half > 0.0_rk) return
       kink = kinks(fracture, first, last)
+      errors%kink(first:last) = max(kink, eoshift(kink, -1)) &
+                                /(fracture%cell_s(2, first:last) - fracture%cell_s(1, first:last))
       do i = first, last
          associate (middle => 0.5_rk*sum(fracture%cell_s(:, i)))
             if (.not. (middle > ends(1) .and. middle < ends(2))) cycle
             errors%reach(i) = sqrt((middle - ends(1))*(ends(2) - middle))
             errors%share(i) = law%rest + law%of_kink*maxval(kink)/half &
-                              + law%at_kink*maxval(kink/abs(fracture%cell_s(2, first:last) - middle)) &
                               + max(share_at(first, 1)*size_of(1)/(middle - ends(1)), &
                                     share_at(last, 2)*size_of(2)/(ends(2) - middle))
+            if (any(kink > 0.0_rk)) errors%share(i) = errors%share(i) + law%at_kink &
+               & *maxval(kink/abs(fracture%cell_s(2, first:last) - middle))
          end associate
       end do
       errors%of_sum(first:last) = law%rest + law%of_kink*maxval(kink)/half &

@@ -8,10 +8,10 @@
 !!
 !! A tip that grows in equilibrium rests now and then, as K_eq falls along a path segment and rises
 !! with the next one by some per cent of K_IC. The slope within a segment is steeper than that over
-!! many, by which an error of K_eq changes the position. The rate of K_eq at rest and the mean speed
-!! show the latter: the error of K_eq over that rate is one of time, and times the speed one of the
-!! position. Near the end of stable growth the speed rises, and so does this error: then a jump may
-!! be ahead.
+!! many, by which an error of K_eq changes the position. The rate of K_eq at rest shows the latter: the
+!! error of K_eq over that rate is one of the time, and what the tip has grown within half of it one
+!! of the position. Near the end of stable growth the tips grow faster, and so does this error: then a
+!! jump may be ahead.
 module twolevel_jumps
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
@@ -24,6 +24,8 @@ module twolevel_jumps
 
    public :: jumps_t
 
+   integer, parameter :: memory = 100  !< states in which the growth is remembered
+
    !> Last jump of each tip, and the present rest.
    type :: jumps_t
       real(rk), allocatable, private :: length(:)  !< (tips) of the last jump, 0: none [m]
@@ -34,10 +36,9 @@ module twolevel_jumps
       logical, allocatable, private :: jumps(:)  !< (tips) the tip has jumped in this step
       !> (tips) mean rate of K_eq at rest, over the scale of K_IC; 0: not known [1/s]
       real(rk), allocatable, private :: rate(:)
-      !> (before and at the last mark, tips) time [s] and growth [m], for the mean speed
-      real(rk), allocatable, private :: mark(:, :), grown_then(:, :)
-      real(rk), allocatable, private :: grown(:)  !< (tips) growth [m]
-      integer, allocatable, private :: n_steps(:)  !< (tips) steps of growth since the last mark
+      ! The last states, the latest one first:
+      real(rk), private :: times(memory) = -huge(1.0_rk)  !< [s]
+      real(rk), allocatable, private :: grown(:, :)  !< (tips, states) growth [m]
    contains
       procedure :: begin
       procedure :: note
@@ -52,9 +53,8 @@ contains
       integer, intent(in) :: n  !< tips
 
       allocate (self%length(n), self%remaining(n), self%speed(n), self%late(n), self%rate(n), &
-                self%grown(n), source=0.0_rk)
-      allocate (self%mark(2, n), self%grown_then(2, n), source=0.0_rk)
-      allocate (self%n_steps(n), source=0)
+                source=0.0_rk)
+      allocate (self%grown(n, memory), source=0.0_rk)
       allocate (self%jumps(n), source=.false.)
       allocate (self%rest(n))
    end subroutine begin
@@ -97,7 +97,7 @@ contains
    end subroutine note
 
    !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps,
-   !! and by the time error of K_eq, which is halved: its errors differ from segment to segment [m].
+   !! and by that of the time [m].
    pure subroutine follow(self, tips, toughness, position_error, dt, time, error, by_time)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
@@ -117,39 +117,39 @@ contains
       self%jumps = .false.
       call self%rest%follow(time, tips%drive%intensity, uncertainty, toughness)
       new = self%rest%drive%rate/tips%scale_of(toughness)
-      where (rests .and. new > 0.0_rk .and. self%grown > 0.0_rk)
+      where (rests .and. new > 0.0_rk .and. self%grown(:, 1) > 0.0_rk)
          self%rate = merge(0.5_rk*(self%rate + new), new, self%rate > 0.0_rk)
       end where
       late = 0.0_rk
       where (self%rate > 0.0_rk) late = (tolerance + uncertainty/tips%scale_of(toughness))/self%rate
       where (self%speed > 0.0_rk) self%late = max(position_error/self%speed, late)
-      call note_growth(self, tips%advance, time)
-      by_time = 0.5_rk*late*(self%grown - self%grown_then(1, :)) &
-                /max(time - self%mark(1, :), tiny(time))
+      self%times = [time, self%times(:memory - 1)]
+      self%grown = reshape([self%grown(:, 1) + tips%advance, self%grown(:, :memory - 1)], &
+                           shape(self%grown))
+      by_time = self%grown(:, 1) - grown_before(self, time - 0.5_rk*late)
       error = 0.0_rk
       where (self%remaining > 0.0_rk .or. &
              (rests .and. .not. tips%arrested .and. &
               tips%drive%intensity + uncertainty >= toughness)) error = self%length
    end subroutine follow
 
-   !> Follow the growth of the tips: a mark every five steps of growth, the first at the onset.
-   pure subroutine note_growth(self, advance, time)
-      class(jumps_t), intent(inout) :: self
-      real(rk), intent(in) :: advance(:)  !< (tips) [m]
-      real(rk), intent(in) :: time  !< [s]
-      integer, parameter :: often = 5
-      integer :: i
+   !> Growth of each tip until a time of its own, as far as it is remembered [m].
+   pure function grown_before(self, time) result(grown)
+      class(jumps_t), intent(in) :: self
+      real(rk), intent(in) :: time(:)  !< (tips) [s]
+      real(rk) :: grown(size(time))
+      real(rk) :: share
+      integer :: i, k
 
-      do i = 1, size(advance)
-         if (.not. self%grown(i) > 0.0_rk) self%mark(:, i) = time
-         if (.not. advance(i) > 0.0_rk) cycle
-         self%grown(i) = self%grown(i) + advance(i)
-         self%n_steps(i) = self%n_steps(i) + 1
-         if (self%n_steps(i) < often) cycle
-         self%n_steps(i) = 0
-         self%mark(:, i) = [self%mark(2, i), time]
-         self%grown_then(:, i) = [self%grown_then(2, i), self%grown(i)]
+      do i = 1, size(time)
+         k = count(self%times > time(i))
+         if (k == 0 .or. k == memory) then
+            grown(i) = self%grown(i, max(1, k))
+         else
+            share = (time(i) - self%times(k + 1))/(self%times(k) - self%times(k + 1))
+            grown(i) = self%grown(i, k + 1) + share*(self%grown(i, k) - self%grown(i, k + 1))
+         end if
       end do
-   end subroutine note_growth
+   end function grown_before
 
 end module twolevel_jumps

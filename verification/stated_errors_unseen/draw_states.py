@@ -19,7 +19,7 @@ import statistics
 import subprocess
 import sys
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -329,9 +329,42 @@ def last_time(rows: Rows) -> Rows:
     return [row for row in rows if row[key] == last]
 
 
+# Columns that are means over the last step, and those of which they are the rates.
+MEANS = {
+    "history.csv": {
+        "max_slip_rate_m_s": "max_slip_m",
+        "injection_rate_m2_s": "injected_m2",
+    },
+    "wells.csv": {"rate_m2_s": "injected_m2", "flow_m2_s": "injected_m2"},
+}
+
+
+def mean_over_step(
+    coarse: Rows, fine: Rows, i: int, n: int, means: Mapping[str, str]
+) -> Callable[[str], float]:
+    """Values of the finer run, those of rates over the last step of the other one."""
+    start = float(coarse[i - 2 * n]["time_s"]) if len(coarse) > n else 0.0
+    end = float(coarse[i - n]["time_s"])
+    rows = fine[i::n]
+    times = [float(row["time_s"]) for row in rows]
+
+    def value(column: str) -> float:
+        if column not in means or not end > start:
+            return float(rows[-1][column])
+        amounts = [float(row[means[column]]) for row in rows]
+        change = np.interp(end, times, amounts) - np.interp(start, times, amounts)
+        return float(change) / (end - start)
+
+    return value
+
+
 def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[dict[str, str], Any]]:
     """Rows of the last state, and values of the finer run at the same places."""
     ours, theirs = last_time(coarse), last_time(fine)
+    if name in MEANS:
+        for i, a in enumerate(ours):
+            yield a, mean_over_step(coarse, fine, i, len(ours), MEANS[name])
+        return
     if name != "fractures.csv":
         if len(ours) == len(theirs):
             for a, b in zip(ours, theirs, strict=True):
