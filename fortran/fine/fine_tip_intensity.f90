@@ -25,6 +25,8 @@ module fine_tip_intensity
    real(rk), parameter :: inner_share = 0.6_rk  !< smaller radius over larger one
    real(rk), parameter :: plateau = 0.3_rk  !< share of the radius within which the weight is 1
 
+   real(rk), parameter :: least = 1.0e-4_rk  !< least error, relative [-]
+
    !> Above this ratio of Poisson elements around tips show a wrong normal traction, and friction
    !! follows it; by the mean beyond the domain, up to so many radii, it is judged.
    real(rk), parameter :: nearly_incompressible = 0.49_rk, judged_reach = 3.0_rk
@@ -58,7 +60,8 @@ contains
    !! rate.
    !!
    !! The estimated error of an intensity is the difference between the domains, plus that between
-   !! the magnitude of both intensities and the one that the energy release rate gives. These share
+   !! the magnitude of both intensities and the one that the energy release rate gives, and a least
+   !! one. These share
    !! the tractions on the faces, whose errors they do not see (take_given_slip).
    subroutine tip_intensity(model, loads, displacement, probe, intensity, error, quickly)
       type(fine_model_t), intent(in) :: model
@@ -87,7 +90,8 @@ contains
             result%g_domain = release_rate(model, loads, displacement, frame, result%radius, &
                                            plateau)
             of_energy = sqrt(frame%rock%crack_modulus()*max(result%g_domain, 0.0_rk))
-            mismatch = abs(hypot(result%k1, result%k2) - of_energy)
+            mismatch = abs(hypot(result%k1, result%k2) - of_energy) &
+                       + least*hypot(result%k1, result%k2)
             result%k1_error = abs(result%k1 - result%k1_inner) + mismatch
             result%k2_error = abs(result%k2 - result%k2_inner) + mismatch
          end if
@@ -242,7 +246,7 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: factor = 1.0_rk
+      real(rk), parameter :: factor = 0.7_rk
       real(rk) :: added, sine
       integer(ik) :: i
 

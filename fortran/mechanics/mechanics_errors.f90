@@ -18,9 +18,10 @@ module mechanics_errors
    public :: find_fracture_errors, find_point_errors, find_rock_errors, note_row
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
-   real(rk), parameter :: least_at_point = 1.0e-4_rk  !< the same at a point [-]
-   !> share of the difference from the neighbours at a point [-]
-   real(rk), parameter :: of_neighbours = 0.5_rk
+   !> the same of displacement and stress at a point [-]
+   real(rk), parameter :: least_at_point(2) = [2.0e-5_rk, 1.0e-4_rk]
+   !> shares of the difference from the neighbours at a point [-]
+   real(rk), parameter :: of_neighbours(2) = [0.2_rk, 0.5_rk]
 
 contains
 
@@ -115,9 +116,9 @@ contains
          call point_state(body, other, xy, unused, of_other)
          stress = max(stress, maxval(abs(of_other - of_cell)))
       end do
-      displacement = of_neighbours*stress/rock%young*sqrt(cell_area(body%mesh, cell)) &
-                     + least_at_point*maxval(abs(moved))
-      stress = of_neighbours*stress + least_at_point*maxval(abs(of_cell))
+      displacement = of_neighbours(1)*stress/rock%young*sqrt(cell_area(body%mesh, cell)) &
+                     + least_at_point(1)*maxval(abs(moved))
+      stress = of_neighbours(2)*stress + least_at_point(2)*maxval(abs(of_cell))
    end subroutine find_point_errors
 
    !> Errors of the fields of the elements: the difference of the stress from the mean of the
