@@ -18,10 +18,12 @@ module mechanics_errors
    public :: find_fracture_errors, find_point_errors, find_rock_errors, note_row
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
-   !> the same of displacement and stress at a point [-]
-   real(rk), parameter :: least_at_point(2) = [2.0e-5_rk, 1.0e-4_rk]
+   !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
+   real(rk), parameter :: of_largest = 0.0007_rk, of_joints = 0.008_rk
+   !> relative errors of displacement and stress at a point [-]
+   real(rk), parameter :: least_at_point(2) = [1.0e-5_rk, 1.0e-4_rk]
    !> shares of the difference from the neighbours at a point [-]
-   real(rk), parameter :: of_neighbours(2) = [0.2_rk, 0.5_rk]
+   real(rk), parameter :: of_neighbours(2) = [0.1_rk, 0.5_rk]
 
 contains
 
@@ -89,8 +91,11 @@ contains
          ! The tractions of contact err less than those that the errors of the jumps are equal to.
          e%traction_n = 0.3_rk*by_jump*moved + unevenness(fracture, fields%traction_n)
          e%traction_t = 0.15_rk*by_jump*moved + unevenness(fracture, fields%traction_t)
-         e%jump_t = slip%share*moved
+         e%jump_t = slip%share*moved + of_largest*maxval(moved)
+         where (fields%jump_n < 0.0_rk) e%jump_t = e%jump_t + of_joints*maxval(moved)
+         where (.not. moved > 0.0_rk) e%jump_t = 0.0_rk
          e%jump_n = opening%share*merge(moved, n, fields%state == state_open) &
+                    + merge(of_largest*maxval(moved), 0.0_rk, n > 0.0_rk) &
                     + closure_error(fields%jump_n, fields%traction_n, e%traction_n)
       end associate
    end subroutine find_fracture_errors

@@ -37,8 +37,8 @@ module report_jump_errors
                         jump_law_t(0.005_rk, 0.003_rk, 0.25_rk, 0.075_rk, 0.15_rk, 0.5_rk, 0.2_rk, &
                                              0.03_rk, 0.075_rk, 1.0_rk)
    type(jump_law_t), parameter :: finite_elements = &
-                          jump_law_t(0.001_rk, 0.0_rk, 0.0_rk, 0.006_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
-                                             0.03_rk, 0.35_rk, 1.5_rk)
+                          jump_law_t(0.0005_rk, 0.0_rk, 0.0_rk, 0.01_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
+                                             0.05_rk, 0.35_rk, 1.5_rk)
 
    !> (fracture cells)
    type :: jump_errors_t
@@ -194,7 +194,7 @@ contains
    pure real(rk) function error_of_largest(fracture, values, errors) result(error)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: values(:), errors(:)  !< (cells)
-      real(rk), parameter :: to_peak = 0.5_rk  ! of the height over the neighbours
+      real(rk), parameter :: to_peak = 0.25_rk  ! of the height over the neighbours
       real(rk) :: height(size(values))
       integer(ik) :: at
 

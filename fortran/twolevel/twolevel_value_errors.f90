@@ -186,16 +186,15 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(jumps_in_space_t), intent(in) :: jumps
       type(history_row_t), intent(in) :: row
-      integer :: at
+      real(rk), parameter :: of_slip_rate = 0.5_rk  ! cells slip in turn as their zone grows
 
-      at = maxloc(jumps%t, dim=1)
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
          self%row%max_opening = time(opening) + error_of_largest(fracture, jumps%n, jumps%error_n)
          self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
          self%row%fracture_volume = time(volume) + jumps%volume
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                  + jumps%slip%of_slip(at)*row%max_slip_rate
+                                  + of_slip_rate*row%max_slip_rate
          self%of_opening = 0.0_rk
          if (row%max_opening > 0.0_rk) self%of_opening = time(opening)/row%max_opening
          self%of_slip = 0.0_rk

@@ -333,7 +333,6 @@ def last_time(rows: Rows) -> Rows:
 # Columns that are means over the last step, and those of which they are the rates.
 MEANS = {
     "history.csv": {
-        "max_slip_rate_m_s": "max_slip_m",
         "injection_rate_m2_s": "injected_m2",
     },
     "wells.csv": {"rate_m2_s": "injected_m2", "flow_m2_s": "injected_m2"},
