@@ -19,7 +19,7 @@ module mechanics_errors
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
    !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
-   real(rk), parameter :: of_largest = 0.0007_rk, of_joints = 0.008_rk
+   real(rk), parameter :: of_largest = 0.0004_rk, of_joints = 0.005_rk
    !> relative errors of displacement and stress at a point [-]
    real(rk), parameter :: least_at_point(2) = [1.0e-5_rk, 1.0e-4_rk]
    !> shares of the difference from the neighbours at a point [-]

@@ -37,7 +37,7 @@ module report_jump_errors
                         jump_law_t(0.005_rk, 0.003_rk, 0.25_rk, 0.075_rk, 0.15_rk, 0.5_rk, 0.2_rk, &
                                              0.03_rk, 0.075_rk, 1.0_rk)
    type(jump_law_t), parameter :: finite_elements = &
-                          jump_law_t(0.0005_rk, 0.0_rk, 0.0_rk, 0.01_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
+                          jump_law_t(0.0004_rk, 0.0_rk, 0.0_rk, 0.008_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
                                              0.05_rk, 0.35_rk, 1.5_rk)
 
    !> (fracture cells)

@@ -5,6 +5,7 @@ module twolevel_field_errors
    use coarse_fields, only: cell_stress
    use coarse_state, only: state_t
    use contact_law, only: state_open
+   use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: jump_errors_t, unevenness
    use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
                           matrix_fields_t
@@ -18,7 +19,23 @@ module twolevel_field_errors
 
    public :: add_rock_errors, find_fracture_errors, note_joint_errors
 
+   !> errors of flows, over the difference from the neighbours and the largest one of a fracture [-]
+   real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
+
 contains
+
+   !> Largest value on the fracture of each cell.
+   pure function largest_of(fracture, values) result(largest)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: values(:)
+      real(rk) :: largest(size(values))
+      integer(ik) :: f
+
+      do f = 1, maxval([0_ik, fracture%cell_fracture])
+         where (fracture%cell_fracture == f) largest = maxval(values, &
+                                                             mask=fracture%cell_fracture == f)
+      end do
+   end function largest_of
 
    !> Errors of the fields of the fracture cells.
    subroutine find_fracture_errors(scene, problem, state, errors, fields)
@@ -37,8 +54,9 @@ contains
          e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
          e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
                       + of_solution*abs(fields%pressure)
-         e%flow = unevenness(fracture, fields%flow) + errors%of_flow*abs(fields%flow) &
-                  + errors%time_share()*abs(fields%flow)
+         e%flow = of_neighbours*unevenness(fracture, fields%flow) &
+                  + (errors%of_flow + errors%time_share())*abs(fields%flow) &
+                  + of_largest*largest_of(fracture, abs(fields%flow))
       end associate
       call note_tractions(scene, problem, state, jumps%slip, fields)
    end subroutine find_fracture_errors
