@@ -220,14 +220,15 @@ contains
 
    !> What K of joints that close may be off because elements are larger than the part of the joint
    !! next to the tip that bears its pressure at rest: a share of what the variation of the traction
-   !! within elements has in K. By 40 random joints against series (verification/normal_closure).
+   !! within elements has in K. By random joints against series (verification/normal_closure)
+   !! and finer elements (verification/stated_errors_unseen).
    pure subroutine doubt_joints(model, loads, displacement, probe, intensity)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_probe_t), intent(in) :: probe
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: unresolved = 0.25_rk  !< that share [-]
+      real(rk), parameter :: unresolved = 0.45_rk  !< that share [-]
       real(rk) :: k(2, 2)
 
       if (size(probe%interactions%joint) == 0) return

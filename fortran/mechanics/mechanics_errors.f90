@@ -21,9 +21,9 @@ module mechanics_errors
    !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
    real(rk), parameter :: of_largest = 0.0004_rk, of_joints = 0.005_rk
    !> relative errors of displacement and stress at a point [-]
-   real(rk), parameter :: least_at_point(2) = [1.0e-5_rk, 1.0e-4_rk]
+   real(rk), parameter :: least_at_point(2) = [2.0e-5_rk, 1.0e-4_rk]
    !> shares of the difference from the neighbours at a point [-]
-   real(rk), parameter :: of_neighbours(2) = [0.1_rk, 0.5_rk]
+   real(rk), parameter :: of_neighbours(2) = [0.2_rk, 0.5_rk]
 
 contains
 
@@ -52,7 +52,9 @@ contains
                                *(sum(length*slip%share*t**2/slip%reach, &
                                      mask=slip%reach > 0.0_rk) &
                                  + sum(length*opening%share*n**2/opening%reach, &
-                                       mask=opening%reach > 0.0_rk)) + body%estimate%total**2
+                                       mask=opening%reach > 0.0_rk)) &
+                               + sum(length*abs(fields%traction_n)*e%jump_n, mask=n < 0.0_rk) &
+                               + body%estimate%total**2
       end associate
    end subroutine note_row
 
@@ -89,8 +91,8 @@ contains
          by_jump = 0.0_rk
          where (slip%reach > 0.0_rk) by_jump = slip%share*0.25_rk*modulus_of(rock)/slip%reach
          ! The tractions of contact err less than those that the errors of the jumps are equal to.
-         e%traction_n = 0.3_rk*by_jump*moved + unevenness(fracture, fields%traction_n)
-         e%traction_t = 0.15_rk*by_jump*moved + unevenness(fracture, fields%traction_t)
+         e%traction_n = 0.35_rk*by_jump*moved + unevenness(fracture, fields%traction_n)
+         e%traction_t = 0.25_rk*by_jump*moved + unevenness(fracture, fields%traction_t)
          e%jump_t = slip%share*moved + of_largest*maxval(moved)
          where (fields%jump_n < 0.0_rk) e%jump_t = e%jump_t + of_joints*maxval(moved)
          where (.not. moved > 0.0_rk) e%jump_t = 0.0_rk
