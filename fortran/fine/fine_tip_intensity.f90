@@ -103,7 +103,7 @@ contains
          if (is_complete) then
             call doubt_friction(model, loads, displacement, probe, intensity)
             call doubt_joints(model, loads, displacement, probe, intensity)
-            call add_kink_error(model%mesh, displacement, frame, intensity)
+            call add_element_error(model%mesh, displacement, frame, intensity)
          end if
          call complete_errors(frame%rock%crack_modulus(), intensity)
       end associate
@@ -237,18 +237,20 @@ contains
       intensity%k2_error = intensity%k2_error + k(2, 1)
    end subroutine doubt_joints
 
-   !> What the kinks of a fracture add to the errors of K of its tips. Elements of the length h at a
+   !> What the elements along a fracture add to the errors of K of its tips: of closed ones that slide
+   !! a share that falls with the number of elements, and what kinks do. Elements of the length h at a
    !! kink miss a share of the jump there, in proportion to the sine of its angle: K of a jump [u]
    !! over h at the distance d from the tip is E' [u] h/(4 sqrt(2 pi) d**1.5). The factor is that of
    !! winged cracks (verification/winged_crack) and bent fractures drawn at random
    !! (verification/stated_errors_unseen).
-   pure subroutine add_kink_error(mesh, displacement, frame, intensity)
+   pure subroutine add_element_error(mesh, displacement, frame, intensity)
       type(fine_mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       type(intensity_t), intent(inout) :: intensity
       real(rk), parameter :: factor = 0.7_rk
-      real(rk) :: added, sine
+      real(rk), parameter :: of_sliding = 0.015_rk  ! times (element over length)**1.5
+      real(rk) :: added, length, sine
       integer(ik) :: i
 
       added = 0.0_rk
@@ -264,7 +266,12 @@ contains
          end do
       end associate
       added = factor*frame%rock%crack_modulus()/(4.0_rk*sqrt(2.0_rk*pi))*added
-      if (.not. intensity%closed) intensity%k1_error = intensity%k1_error + added
+      if (intensity%closed) then
+         length = sum(mesh%face_length, mask=mesh%fracture%cell_fracture == frame%fracture)
+         added = added + of_sliding*(mesh%face_length(frame%face)/length)**1.5_rk*abs(intensity%k2)
+      else
+         intensity%k1_error = intensity%k1_error + added
+      end if
       intensity%k2_error = intensity%k2_error + added
 
    contains
@@ -277,7 +284,7 @@ contains
                          - displacement(:, mesh%face_nodes(3, 1, face)))
       end function jump_of
 
-   end subroutine add_kink_error
+   end subroutine add_element_error
 
    !> K_II where the slip up to the tip is given: what it says by itself, from displacement
    !! correlation. The integrals need the shear traction that this slip takes, whose error next to

@@ -21,6 +21,8 @@ module twolevel_field_errors
 
    !> errors of flows, over the difference from the neighbours and the largest one of a fracture [-]
    real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
+   !> error of pressures by that of the resistance to flow, over their range in a fracture [-]
+   real(rk), parameter :: of_drop = 0.06_rk
 
 contains
 
@@ -53,7 +55,9 @@ contains
          e%jump_n = jumps%error_n + errors%of_opening*abs(fields%jump_n)
          e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
          e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
-                      + of_solution*abs(fields%pressure)
+                      + of_solution*abs(fields%pressure) &
+                      + of_drop*(largest_of(fracture, fields%pressure) &
+                                 + largest_of(fracture, -fields%pressure))
          e%flow = of_neighbours*unevenness(fracture, fields%flow) &
                   + (errors%of_flow + errors%time_share())*abs(fields%flow) &
                   + of_largest*largest_of(fracture, abs(fields%flow))

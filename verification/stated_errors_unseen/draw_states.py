@@ -423,17 +423,26 @@ def compare(coarse: Path, fine: Path) -> Iterator[tuple[str, float, float, float
                 yield f"{name[:-4]}: {what}", value, stated, abs(value - true)
 
 
-def state(family: str, seed: str, i: int, solver: Path) -> list[tuple[str, float, float, float]]:
-    """Compare one state."""
+def state_of(family: str, seed: str, i: int, solver: Path) -> Scene | None:
+    """The scene of a state; growth ends where a first run has nearly reached its gain."""
     scene = FAMILIES[family](Draw(f"{seed} {family} {i}"))
-    label = f"{family} {seed} {i}"
     if family == "growing":
         pilot = solve(solver, scene, 60.0)
         if pilot is None:
-            print(label, "did not end", flush=True)
-            return []
-        scene["time"]["end"] = float(f"{0.9 * float(rows_of(pilot, 'history.csv')[-1]['time_s']):.4g}")
+            return None
+        end = 0.9 * float(rows_of(pilot, "history.csv")[-1]["time_s"])
+        scene["time"]["end"] = float(f"{end:.4g}")
         scene["growth"].pop("stop_gain")
+    return scene
+
+
+def state(family: str, seed: str, i: int, solver: Path) -> list[tuple[str, float, float, float]]:
+    """Compare one state."""
+    scene = state_of(family, seed, i, solver)
+    label = f"{family} {seed} {i}"
+    if scene is None:
+        print(label, "did not end", flush=True)
+        return []
     coarse, fine = solve(solver, scene, 60.0), solve(solver, finer(scene), 240.0, again=False)
     if coarse is None or fine is None:
         print(label, "not run", coarse, fine, flush=True)
@@ -450,9 +459,110 @@ def state(family: str, seed: str, i: int, solver: Path) -> list[tuple[str, float
     return values
 
 
+def toml(value: object) -> str:
+    """Text of a value in TOML."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(map(toml, value)) + "]"
+    return json.dumps(value)
+
+
+def settings(scene: Scene) -> str:
+    """The scene as changes of an empty one."""
+    addresses = {}
+    for group, items in scene.items():
+        for i, item in enumerate(items if isinstance(items, list) else [items]):
+            middle = f".{i + 1}" if isinstance(items, list) else ""
+            addresses.update({f"{group}{middle}.{name}": v for name, v in item.items()})
+    return "{ " + ", ".join(f'"{k}" = {toml(v)}' for k, v in addresses.items()) + " }"
+
+
+def floor(column: str) -> float:
+    """Least error that counts, as in `compare`."""
+    return next((v for k, v in LEAST.items() if column.endswith(k)), 0.0) or 1e-200
+
+
+def known(name: str, rows: Rows) -> dict[str, str]:
+    """Columns of a table that have errors, and the columns of these."""
+    errors = {c: error_name(c, rows[0]) for c in rows[0] if "_error" not in c}
+    return {c: e for c, e in errors.items() if e is not None and last_time(rows)[0][e] != ""}
+
+
+def write_case(families: list[str], seeds: list[str], solver: Path, limit: float) -> None:
+    """Write check.toml with the references of the finer runs."""
+    parts = [(HERE / "head.toml").read_text()]
+    gaps = json.loads((HERE / "gaps.json").read_text())
+    for family in families:
+        columns: dict[str, dict[str, str]] = {}
+        runs = []
+        for seed, i in ((s, i) for s in seeds for i in range(STATES)):
+            scene = state_of(family, seed, i, solver)
+            if scene is None:
+                continue
+            coarse = solve(solver, scene, 60.0)
+            fine = solve(solver, finer(scene), 240.0, again=False)
+            if coarse is None or fine is None:
+                continue
+            if json.loads((coarse / "run.json").read_text())["cpu_s"] > limit:
+                continue
+            exact: dict[str, float] = {}
+            for name in ("history", "tips", "wells", "probes"):
+                ours, theirs = rows_of(coarse, name + ".csv"), rows_of(fine, name + ".csv")
+                if not ours:
+                    continue
+                found = known(name + ".csv", ours)
+                before = columns.get(name, found)
+                columns[name] = {c: e for c, e in found.items() if c in before}
+                for k, (_, reference) in enumerate(matched(name + ".csv", ours, theirs)):
+                    if k < (2 if name == "tips" else 1):
+                        exact.update({f"{name}_{c}_{k + 1}": reference(c) for c in found})
+            runs.append((f"{family}, {seed} {i}", scene, exact))
+        for label, scene, exact in runs:
+            used = {
+                k: v
+                for k, v in exact.items()
+                if k.partition("_")[2][:-2] in columns[k.partition("_")[0]]
+            }
+            constants = ", ".join(f'"{k}" = {v!r}' for k, v in used.items())
+            parts.append(
+                f'[[run]]\nname = "{label}"\nmethod = "{family}"\nscene = "empty.nml"\n'
+                f"set = {settings(scene)}\nconstants = {{ {constants} }}\n"
+            )
+        parts += checks(family, columns, gaps)
+    (HERE / "check.toml").write_text("\n".join(parts))
+
+
+def checks(
+    family: str, columns: Mapping[str, Mapping[str, str]], gaps: Mapping[str, str]
+) -> Iterator[str]:
+    """Checks of the quantities of a family."""
+    for name, errors in columns.items():
+        for c, error in errors.items():
+            first, second = f"{name}_{c}_1", f"{name}_{c}_2"
+            how = 'take = "last"'
+            exact = first
+            if name == "tips":
+                exact = f"({first}*(2 - tip) + {second}*(tip - 1))"
+                time = "load_factor" if family == "body" else "time_s"
+                how = f'x = "tip", where = {{ tip = {{ min = 1, max = 2 }}, {time} = "last" }}'
+            elif name == "wells":
+                how = 'take = "last", where = { well = 1 }'
+            what = f"{family}, {name}: {c}"
+            column = f"({c} - {exact})/maximum({error}, {floor(c)!r})"
+            gap = f'known_gap = "{gaps[what]}"\n' if what in gaps else ""
+            yield (
+                f'[[check]]\nquantity = "{what}"\nruns = ["{family}, *"]\n'
+                f'result = {{ file = "{name}.csv", column = "{column}", {how} }}\n{gap}'
+            )
+
+
 def main() -> None:
-    """Print the table by quantity."""
+    """Print the table by quantity, or write check.toml."""
     solver = SOLVER
+    if sys.argv[1:2] == ["write"]:
+        write_case(["body"], ["7", "8", "9"], solver, 2.0)
+        return
     if len(sys.argv) > 1 and Path(sys.argv[1]).exists():
         solver = Path(sys.argv.pop(1))
     families = [a for a in sys.argv[1:] if a in FAMILIES] or list(FAMILIES)
