@@ -220,7 +220,7 @@ contains
 
    !> What K of joints that close may be off because elements are larger than the part of the joint
    !! next to the tip that bears its pressure at rest: a share of what the variation of the traction
-   !! within elements has in K. By random joints against series (verification/normal_closure)
+   !! within elements has in K, and more where that is not small compared with K. By random joints against series (verification/normal_closure)
    !! and finer elements (verification/stated_errors_unseen).
    pure subroutine doubt_joints(model, loads, displacement, probe, intensity)
       type(fine_model_t), intent(in) :: model
@@ -228,11 +228,13 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_probe_t), intent(in) :: probe
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: unresolved = 0.45_rk  !< that share [-]
+      real(rk), parameter :: unresolved(2) = [0.3_rk, 1.5_rk]  !< that share, and what is added [-]
       real(rk) :: k(2, 2)
 
       if (size(probe%interactions%joint) == 0) return
-      k = unresolved*abs(probe%interactions%by_joints(model, loads, displacement))
+      k = abs(probe%interactions%by_joints(model, loads, displacement))
+      k = k*(unresolved(1) + unresolved(2)*k/max(hypot(intensity%k1, intensity%k2) + k, &
+                                                 tiny(1.0_rk)))
       intensity%k1_error = intensity%k1_error + k(1, 1)
       intensity%k2_error = intensity%k2_error + k(2, 1)
    end subroutine doubt_joints

@@ -381,10 +381,10 @@ def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[dict[str, str
             def at(column: str, other: Rows = other, s: list[float] = s, x: float = place, length: float = length) -> float:
                 values = np.array([float(r[column] or "nan") for r in other])
                 # Jumps fall with the root of the distance from an end.
-                root = np.sqrt(np.array(s) * (length - np.array(s)))
+                root = np.sqrt(np.abs(np.array(s) * (length - np.array(s))))
                 if not column.startswith("jump"):
                     return float(np.interp(x, s, values))
-                return float(np.interp(x, s, values / root)) * math.sqrt(x * (length - x))
+                return float(np.interp(x, s, values / root)) * math.sqrt(abs(x * (length - x)))
 
             yield row, at
 
