@@ -25,7 +25,7 @@ module fine_tip_intensity
    real(rk), parameter :: inner_share = 0.6_rk  !< smaller radius over larger one
    real(rk), parameter :: plateau = 0.3_rk  !< share of the radius within which the weight is 1
 
-   real(rk), parameter :: least = 1.0e-4_rk  !< least error, relative [-]
+   real(rk), parameter :: least = 1.3e-4_rk  !< least error, relative [-]
 
    !> Above this ratio of Poisson elements around tips show a wrong normal traction, and friction
    !! follows it; by the mean beyond the domain, up to so many radii, it is judged.
@@ -242,7 +242,8 @@ contains
    !> What the elements along a fracture add to the errors of K of its tips: of closed ones that slide
    !! a share that falls with the number of elements, and what kinks do. Elements of the length h at a
    !! kink miss a share of the jump there, in proportion to the sine of its angle: K of a jump [u]
-   !! over h at the distance d from the tip is E' [u] h/(4 sqrt(2 pi) d**1.5). The factor is that of
+   !! over l at the distance d from the tip is E' [u] l/(4 sqrt(2 pi) d**1.5); l is in proportion to
+   !! sqrt(h d). The factor is that of
    !! winged cracks (verification/winged_crack) and bent fractures drawn at random
    !! (verification/stated_errors_unseen).
    pure subroutine add_element_error(mesh, displacement, frame, intensity)
@@ -250,8 +251,8 @@ contains
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_frame_t), intent(in) :: frame
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: factor = 0.7_rk
-      real(rk), parameter :: of_sliding = 0.015_rk  ! times (element over length)**1.5
+      real(rk), parameter :: factor = 0.055_rk
+      real(rk), parameter :: of_sliding = 0.02_rk  ! times (element over length)**1.5
       real(rk) :: added, length, sine
       integer(ik) :: i
 
@@ -262,9 +263,9 @@ contains
             if (fracture%cell_points(2, i) /= fracture%cell_points(1, i + 1)) cycle
             sine = abs(cross(mesh%face_tangent(:, i), mesh%face_tangent(:, i + 1)))
             if (.not. sine > same_direction) cycle
-            added = added + sine*minval(mesh%face_length([i, i + 1])) &
+            added = added + sine*sqrt(minval(mesh%face_length([i, i + 1]))) &
                     *max(jump_of(i), jump_of(i + 1)) &
-                    /norm2(fracture%point_xy(:, fracture%cell_points(2, i)) - frame%origin)**1.5_rk
+                    /norm2(fracture%point_xy(:, fracture%cell_points(2, i)) - frame%origin)
          end do
       end associate
       added = factor*frame%rock%crack_modulus()/(4.0_rk*sqrt(2.0_rk*pi))*added
