@@ -2,10 +2,11 @@
 module fine_tip_intensity
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, pi, rk
-   use base_plane, only: norm2, turned_left
-   use base_tolerances, only: round_off, same_value
+   use base_plane, only: cross, norm2, turned_left
+   use base_tolerances, only: round_off, same_direction, same_value
    use fine_faces, only: face_contact
    use fine_loads, only: fine_loads_t
+   use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
    use fine_tip_domain, only: face_traction, largest_radius, rosette_size
    use fine_tip_energy, only: displacement_correlation, release_rate
@@ -23,6 +24,8 @@ module fine_tip_intensity
    real(rk), parameter :: share_of_room = 0.15_rk  !< least radius over the largest possible
    real(rk), parameter :: inner_share = 0.6_rk  !< smaller radius over larger one
    real(rk), parameter :: plateau = 0.3_rk  !< share of the radius within which the weight is 1
+
+   real(rk), parameter :: least = 1.3e-4_rk  !< least error, relative [-]
 
    !> Above this ratio of Poisson elements around tips show a wrong normal traction, and friction
    !! follows it; by the mean beyond the domain, up to so many radii, it is judged.
@@ -57,7 +60,8 @@ contains
    !! rate.
    !!
    !! The estimated error of an intensity is the difference between the domains, plus that between
-   !! the magnitude of both intensities and the one that the energy release rate gives. These share
+   !! the magnitude of both intensities and the one that the energy release rate gives, and a least
+   !! one. These share
    !! the tractions on the faces, whose errors they do not see (take_given_slip).
    subroutine tip_intensity(model, loads, displacement, probe, intensity, error, quickly)
       type(fine_model_t), intent(in) :: model
@@ -86,7 +90,8 @@ contains
             result%g_domain = release_rate(model, loads, displacement, frame, result%radius, &
                                            plateau)
             of_energy = sqrt(frame%rock%crack_modulus()*max(result%g_domain, 0.0_rk))
-            mismatch = abs(hypot(result%k1, result%k2) - of_energy)
+            mismatch = abs(hypot(result%k1, result%k2) - of_energy) &
+                       + least*hypot(result%k1, result%k2)
             result%k1_error = abs(result%k1 - result%k1_inner) + mismatch
             result%k2_error = abs(result%k2 - result%k2_inner) + mismatch
          end if
@@ -98,6 +103,7 @@ contains
          if (is_complete) then
             call doubt_friction(model, loads, displacement, probe, intensity)
             call doubt_joints(model, loads, displacement, probe, intensity)
+            call add_element_error(model%mesh, displacement, frame, intensity)
          end if
          call complete_errors(frame%rock%crack_modulus(), intensity)
       end associate
@@ -214,21 +220,74 @@ contains
 
    !> What K of joints that close may be off because elements are larger than the part of the joint
    !! next to the tip that bears its pressure at rest: a share of what the variation of the traction
-   !! within elements has in K. By 40 random joints against series (verification/normal_closure).
+   !! within elements has in K, and more where that is not small compared with K. By random joints against series (verification/normal_closure)
+   !! and finer elements (verification/stated_errors_unseen).
    pure subroutine doubt_joints(model, loads, displacement, probe, intensity)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
       type(tip_probe_t), intent(in) :: probe
       type(intensity_t), intent(inout) :: intensity
-      real(rk), parameter :: unresolved = 0.25_rk  !< that share [-]
+      real(rk), parameter :: unresolved(2) = [0.3_rk, 1.5_rk]  !< that share, and what is added [-]
       real(rk) :: k(2, 2)
 
       if (size(probe%interactions%joint) == 0) return
-      k = unresolved*abs(probe%interactions%by_joints(model, loads, displacement))
+      k = abs(probe%interactions%by_joints(model, loads, displacement))
+      k = k*(unresolved(1) + unresolved(2)*k/max(hypot(intensity%k1, intensity%k2) + k, &
+                                                 tiny(1.0_rk)))
       intensity%k1_error = intensity%k1_error + k(1, 1)
       intensity%k2_error = intensity%k2_error + k(2, 1)
    end subroutine doubt_joints
+
+   !> What the elements along a fracture add to the errors of K of its tips: of closed ones that slide
+   !! a share that falls with the number of elements, and what kinks do. Elements of the length h at a
+   !! kink miss a share of the jump there, in proportion to the sine of its angle: K of a jump [u]
+   !! over l at the distance d from the tip is E' [u] l/(4 sqrt(2 pi) d**1.5); l is in proportion to
+   !! sqrt(h d). The factor is that of
+   !! winged cracks (verification/winged_crack) and bent fractures drawn at random
+   !! (verification/stated_errors_unseen).
+   pure subroutine add_element_error(mesh, displacement, frame, intensity)
+      type(fine_mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(tip_frame_t), intent(in) :: frame
+      type(intensity_t), intent(inout) :: intensity
+      real(rk), parameter :: factor = 0.055_rk
+      real(rk), parameter :: of_sliding = 0.02_rk  ! times (element over length)**1.5
+      real(rk) :: added, length, sine
+      integer(ik) :: i
+
+      added = 0.0_rk
+      associate (fracture => mesh%fracture)
+         do i = 1, fracture%n_cells - 1
+            if (any(fracture%cell_fracture([i, i + 1]) /= frame%fracture)) cycle
+            if (fracture%cell_points(2, i) /= fracture%cell_points(1, i + 1)) cycle
+            sine = abs(cross(mesh%face_tangent(:, i), mesh%face_tangent(:, i + 1)))
+            if (.not. sine > same_direction) cycle
+            added = added + sine*sqrt(minval(mesh%face_length([i, i + 1]))) &
+                    *max(jump_of(i), jump_of(i + 1)) &
+                    /norm2(fracture%point_xy(:, fracture%cell_points(2, i)) - frame%origin)
+         end do
+      end associate
+      added = factor*frame%rock%crack_modulus()/(4.0_rk*sqrt(2.0_rk*pi))*added
+      if (intensity%closed) then
+         length = sum(mesh%face_length, mask=mesh%fracture%cell_fracture == frame%fracture)
+         added = added + of_sliding*(mesh%face_length(frame%face)/length)**1.5_rk*abs(intensity%k2)
+      else
+         intensity%k1_error = intensity%k1_error + added
+      end if
+      intensity%k2_error = intensity%k2_error + added
+
+   contains
+
+      !> Jump in the middle of a face [m].
+      pure real(rk) function jump_of(face)
+         integer(ik), intent(in) :: face
+
+         jump_of = norm2(displacement(:, mesh%face_nodes(3, 2, face)) &
+                         - displacement(:, mesh%face_nodes(3, 1, face)))
+      end function jump_of
+
+   end subroutine add_element_error
 
    !> K_II where the slip up to the tip is given: what it says by itself, from displacement
    !! correlation. The integrals need the shear traction that this slip takes, whose error next to

@@ -4,10 +4,12 @@
 !! that of the fractures, and with &adaptive by the estimate in the energy norm.
 module mechanics_errors
    use base_kinds, only: ik, pi, rk
+   use contact_law, only: state_open
    use mechanics_body, only: body_t
    use mechanics_fields, only: point_state
    use mesh_geometry, only: cell_area
-   use report_jump_errors, only: finite_elements, jump_errors_t, relative_jump_errors, unevenness
+   use report_jump_errors, only: closure_error, error_of_largest, finite_elements, jump_errors_t, &
+                                 relative_jump_errors, unevenness
    use report_rows, only: fracture_fields_t, history_row_t, matrix_fields_t
    use scene_types, only: material_t
    implicit none(type, external)
@@ -16,34 +18,43 @@ module mechanics_errors
    public :: find_fracture_errors, find_point_errors, find_rock_errors, note_row
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
+   !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
+   real(rk), parameter :: of_largest = 0.0004_rk, of_joints = 0.005_rk
+   !> relative errors of displacement and stress at a point [-]
+   real(rk), parameter :: least_at_point(2) = [2.5e-5_rk, 1.0e-4_rk]
+   !> shares of the difference from the neighbours at a point [-]
+   real(rk), parameter :: of_neighbours(2) = [0.15_rk, 0.35_rk]
 
 contains
 
    !> Errors of a row of history.csv.
-   pure subroutine note_row(rock, body, jump, row)
+   pure subroutine note_row(rock, body, fields, row)
       type(material_t), intent(in) :: rock
       type(body_t), intent(in) :: body
-      real(rk), intent(in) :: jump(:, :)  !< (2, fracture cells) opening, slip [m]
+      type(fracture_fields_t), intent(in) :: fields  !< with their errors
       type(history_row_t), intent(inout) :: row
-      type(jump_errors_t) :: errors
-      integer(ik) :: at(2)
-      real(rk) :: share, weight(size(jump, 2))
+      type(jump_errors_t) :: slip, opening
+      real(rk) :: weight(size(fields%jump_t))
 
-      errors = relative_jump_errors(body%mesh%fracture, moving(jump), finite_elements)
-      at = [maxloc(jump(1, :), kind=ik), maxloc(abs(jump(2, :)), kind=ik)]
-      associate (length => body%model%mesh%face_length, error => row%error)
-         error%max_opening = errors%share(at(1))*abs(row%max_opening)
-         error%max_slip = errors%share(at(2))*row%max_slip
-         error%fracture_volume = sum(length*errors%of_sum*abs(jump(1, :)))
-         weight = length*abs(jump(2, :))
-         share = maxval(errors%share(at))
+      associate (length => body%model%mesh%face_length, error => row%error, e => fields%error, &
+                 fracture => body%mesh%fracture, n => fields%jump_n, t => fields%jump_t)
+         slip = relative_jump_errors(fracture, moving(t), finite_elements)
+         opening = relative_jump_errors(fracture, moving(max(0.0_rk, n)), finite_elements)
+         error%max_opening = error_of_largest(fracture, n, e%jump_n)
+         error%max_slip = error_of_largest(fracture, abs(t), e%jump_t)
+         error%fracture_volume = sum(length*merge(opening%of_sum*n, e%jump_n, n > 0.0_rk))
+         weight = length*abs(t)
          if (sum(weight) > 0.0_rk) then
-            error%seismic_moment = row%seismic_moment*sum(weight*errors%of_sum)/sum(weight)
+            error%seismic_moment = row%seismic_moment*sum(weight*slip%of_sum)/sum(weight)
          end if
-         ! Of an open crack of the same opening: pi/16 E' w**2.
-         error%strain_energy = share*pi/16.0_rk*modulus_of(rock)*(row%max_opening**2 &
-                                                                  + row%max_slip**2)
-         error%strain_energy = error%strain_energy + body%estimate%total**2
+         ! Of an open crack of the opening w: E'/8 w**2/sqrt(d1 d2) in each place.
+         error%strain_energy = 0.125_rk*modulus_of(rock) &
+                               *(sum(length*slip%share*t**2/slip%reach, &
+                                     mask=slip%reach > 0.0_rk) &
+                                 + sum(length*opening%share*n**2/opening%reach, &
+                                       mask=opening%reach > 0.0_rk)) &
+                               + sum(length*abs(fields%traction_n)*e%jump_n, mask=n < 0.0_rk) &
+                               + body%estimate%total**2
       end associate
    end subroutine note_row
 
@@ -57,11 +68,11 @@ contains
 
    !> Faces of each cell have moved.
    pure function moving(jump) result(moves)
-      real(rk), intent(in) :: jump(:, :)  !< (2, fracture cells) [m]
-      logical :: moves(size(jump, 2))
+      real(rk), intent(in) :: jump(:)  !< (fracture cells) [m]
+      logical :: moves(size(jump))
       real(rk), parameter :: rounding = 1.0e-9_rk
 
-      moves = maxval(abs(jump), dim=1) > rounding*maxval(abs(jump))
+      moves = abs(jump) > rounding*maxval(abs(jump))
    end function moving
 
    !> Errors of the fields of the fracture cells.
@@ -69,23 +80,25 @@ contains
       type(material_t), intent(in) :: rock
       type(body_t), intent(in) :: body
       type(fracture_fields_t), intent(inout) :: fields
-      type(jump_errors_t) :: jumps
-      real(rk) :: by_jump(size(fields%jump_n))
+      type(jump_errors_t) :: slip, opening
+      real(rk), dimension(size(fields%jump_n)) :: by_jump, moved, n
 
-      associate (jump => reshape([fields%jump_n, fields%jump_t], [2, size(fields%jump_n)], &
-                                 order=[2, 1]))
-         jumps = relative_jump_errors(body%mesh%fracture, moving(jump), finite_elements)
-      end associate
-      by_jump = 0.0_rk
-      where (jumps%reach > 0.0_rk) by_jump = jumps%share*0.25_rk*modulus_of(rock)/jumps%reach
-      associate (e => fields%error)
-         e%jump_n = jumps%share*abs(fields%jump_n)
-         e%jump_t = jumps%share*abs(fields%jump_t)
+      associate (e => fields%error, fracture => body%mesh%fracture, t => fields%jump_t)
+         n = max(0.0_rk, fields%jump_n)
+         moved = hypot(n, t)
+         slip = relative_jump_errors(fracture, moving(t), finite_elements)
+         opening = relative_jump_errors(fracture, moving(n), finite_elements)
+         by_jump = 0.0_rk
+         where (slip%reach > 0.0_rk) by_jump = slip%share*0.25_rk*modulus_of(rock)/slip%reach
          ! The tractions of contact err less than those that the errors of the jumps are equal to.
-         e%traction_n = 0.3_rk*by_jump*hypot(fields%jump_n, fields%jump_t) &
-                        + unevenness(body%mesh%fracture, fields%traction_n)
-         e%traction_t = 0.15_rk*by_jump*hypot(fields%jump_n, fields%jump_t) &
-                        + unevenness(body%mesh%fracture, fields%traction_t)
+         e%traction_n = 0.35_rk*by_jump*moved + unevenness(fracture, fields%traction_n)
+         e%traction_t = 0.25_rk*by_jump*moved + unevenness(fracture, fields%traction_t)
+         e%jump_t = slip%share*moved + of_largest*maxval(moved)
+         where (fields%jump_n < 0.0_rk) e%jump_t = e%jump_t + of_joints*maxval(moved)
+         where (.not. moved > 0.0_rk) e%jump_t = 0.0_rk
+         e%jump_n = opening%share*merge(moved, n, fields%state == state_open) &
+                    + merge(of_largest*maxval(moved), 0.0_rk, n > 0.0_rk) &
+                    + closure_error(fields%jump_n, fields%traction_n, e%traction_n)
       end associate
    end subroutine find_fracture_errors
 
@@ -110,8 +123,9 @@ contains
          call point_state(body, other, xy, unused, of_other)
          stress = max(stress, maxval(abs(of_other - of_cell)))
       end do
-      displacement = stress/rock%young*sqrt(cell_area(body%mesh, cell)) + least*maxval(abs(moved))
-      stress = stress + least*maxval(abs(of_cell))
+      displacement = of_neighbours(1)*stress/rock%young*sqrt(cell_area(body%mesh, cell)) &
+                     + least_at_point(1)*maxval(abs(moved))
+      stress = of_neighbours(2)*stress + least_at_point(2)*maxval(abs(of_cell))
    end subroutine find_point_errors
 
    !> Errors of the fields of the elements: the difference of the stress from the mean of the

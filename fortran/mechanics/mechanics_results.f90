@@ -14,7 +14,7 @@ module mechanics_results
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: point_boundary, point_interior, point_tip
    use report_limits, only: limit_angle, limit_contact, limit_jump, limit_strain
-   use report_rows, only: history_row_t, probe_row_t
+   use report_rows, only: fracture_fields_t, history_row_t, probe_row_t
    use report_simulation, only: snapshot_t
    use report_watch, only: worst_place
    use scene_types, only: fracture_t
@@ -29,7 +29,7 @@ contains
    function history_of_body(simulation) result(row)
       class(loaded_body_t), intent(in) :: simulation
       type(history_row_t) :: row
-      real(rk), allocatable :: jump(:, :)
+      type(fracture_fields_t) :: fields
       integer(ik) :: i
 
       associate (body => simulation%body, fracture => simulation%body%mesh%fracture)
@@ -42,17 +42,17 @@ contains
                                            [point_interior, point_tip, point_boundary]), &
                                        i=1, fracture%n_points)])
          if (fracture%n_cells == 0) return
-         jump = fracture_jump(body)
-         row%max_opening = maxval(jump(1, :))
-         row%max_slip = maxval(abs(jump(2, :)))
-         row%fracture_volume = sum(jump(1, :)*body%model%mesh%face_length)
+         fields = fracture_fields(simulation)
+         row%max_opening = maxval(fields%jump_n)
+         row%max_slip = maxval(abs(fields%jump_t))
+         row%fracture_volume = sum(fields%jump_n*body%model%mesh%face_length)
          associate (state => body%contact%state(3, :))
             row%n_stick = count(state == state_stick)
             row%n_slip = count(state == state_slip)
             row%n_open = count(state == state_open)
          end associate
          row%newton_iterations = body%contact%iterations
-         call note_row(simulation%scene%material, body, jump, row)
+         call note_row(simulation%scene%material, body, fields, row)
       end associate
    end function history_of_body
 
@@ -67,9 +67,8 @@ contains
    function body_snapshot(simulation) result(snapshot)
       class(loaded_body_t), intent(in) :: simulation
       type(snapshot_t) :: snapshot
-      real(rk), allocatable :: pairs(:, :)
 
-      associate (body => simulation%body, matrix => snapshot%matrix, fracture => snapshot%fracture)
+      associate (body => simulation%body, matrix => snapshot%matrix)
          snapshot%time = simulation%time()
          snapshot%mesh = body%mesh
          matrix%displacement = cell_displacement(body)
@@ -80,21 +79,31 @@ contains
          associate (rocks => body%model%rocks)
             if (size(rocks%of_cell) > 1) matrix%poisson = rocks%elasticity(rocks%of_cell)%poisson
          end associate
-         pairs = fracture_jump(body)
-         fracture%jump_n = pairs(1, :)
-         fracture%jump_t = pairs(2, :)
-         pairs = fracture_traction(body)
-         fracture%traction_n = pairs(1, :)
-         fracture%traction_t = pairs(2, :)
-         fracture%state = body%contact%state(3, :)
-         if (size(fracture%state) > 0) then
-            call find_fracture_errors(simulation%scene%material, body, fracture)
-         end if
+         snapshot%fracture = fracture_fields(simulation)
          if (simulation%scene%output%vtu) then
             call find_rock_errors(simulation%scene%material, body, matrix)
          end if
       end associate
    end function body_snapshot
+
+   !> Jumps and tractions of the fracture faces, with their errors.
+   function fracture_fields(simulation) result(fields)
+      class(loaded_body_t), intent(in) :: simulation
+      type(fracture_fields_t) :: fields
+      real(rk), allocatable :: pairs(:, :)
+
+      associate (body => simulation%body)
+         pairs = fracture_jump(body)
+         fields%jump_n = pairs(1, :)
+         fields%jump_t = pairs(2, :)
+         pairs = fracture_traction(body)
+         fields%traction_n = pairs(1, :)
+         fields%traction_t = pairs(2, :)
+         fields%state = body%contact%state(3, :)
+         if (size(fields%state) == 0) return
+         call find_fracture_errors(simulation%scene%material, body, fields)
+      end associate
+   end function fracture_fields
 
    !> Displacement and stress at the probes.
    subroutine probes_of_body(simulation, row, error)

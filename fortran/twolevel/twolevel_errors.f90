@@ -2,7 +2,7 @@
 !!
 !! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid volume in the crack.
 !! If K_eq has an error e K_IC, the error of the tip position is e divided by the slope of K_eq/K_IC
-!! along the path. The pressure error follows from the derivative of the pressure with respect to
+!! along the path, or that of the time times the speed (twolevel_jumps). The pressure error follows from the derivative of the pressure with respect to
 !! the length. Both slopes come from the tries of a step, at the fluid volume of the step. These
 !! errors do not accumulate, since each state is in equilibrium. Before growth the time errors of
 !! the steps accumulate with their signs. Where fluid leaks off, each of them decays like the
@@ -72,6 +72,7 @@ module twolevel_errors
       real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
       real(rk) :: wing = 0.0_rk  !< distance of the tip from where it began to grow [m]
       real(rk) :: bend = 0.0_rk  !< sine of the angle of this wing with its fracture [-]
+      real(rk) :: by_time = 0.0_rk  !< error of the position by that of its time (twolevel_jumps) [m]
       !> length of a jump (twolevel_jumps), or growth since the onset, that is uncertain in time [m]
       real(rk) :: jump = 0.0_rk
    end type tip_excess_t
@@ -162,7 +163,7 @@ contains
       real(rk) :: before
 
       if (.not. allocated(self%tip)) allocate (self%tip(size(tips)), source=0.0_rk)
-      where (tips%grows) self%tip = tips%error/abs(tips%slope) &
+      where (tips%grows) self%tip = max(tips%error/abs(tips%slope), tips%by_time) &
                                     + share*tips%cell*(1.0_rk + leaked) + error_of_bend(tips)
       self%length = sum(self%tip) + sum(tips%jump)
       call age_time_error(self, step, leaked, age)

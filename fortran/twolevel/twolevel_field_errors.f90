@@ -6,19 +6,38 @@ module twolevel_field_errors
    use coarse_state, only: state_t
    use contact_law, only: state_open
    use mesh_types, only: fracture_mesh_t
-   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors, unevenness
+   use report_jump_errors, only: jump_errors_t, unevenness
    use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
                           matrix_fields_t
    use scene_types, only: scene_t
+   use twolevel_jump_errors, only: jumps_in_space_t
    use twolevel_pressure_errors, only: least
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_value_errors, only: by_pressure_of, moving, of_solution, value_errors_t
+   use twolevel_value_errors, only: of_solution, value_errors_t
    implicit none(type, external)
    private
 
    public :: add_rock_errors, find_fracture_errors, note_joint_errors
 
+   !> errors of flows, over the difference from the neighbours and the largest one of a fracture [-]
+   real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
+   !> error of pressures by that of the resistance to flow, over their range in a fracture [-]
+   real(rk), parameter :: of_drop = 0.06_rk
+
 contains
+
+   !> Largest value on the fracture of each cell.
+   pure function largest_of(fracture, values) result(largest)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk), intent(in) :: values(:)
+      real(rk) :: largest(size(values))
+      integer(ik) :: f
+
+      do f = 1, maxval([0_ik, fracture%cell_fracture])
+         where (fracture%cell_fracture == f) largest = maxval(values, &
+                                                             mask=fracture%cell_fracture == f)
+      end do
+   end function largest_of
 
    !> Errors of the fields of the fracture cells.
    subroutine find_fracture_errors(scene, problem, state, errors, fields)
@@ -27,26 +46,23 @@ contains
       type(state_t), intent(in) :: state
       type(value_errors_t), intent(in) :: errors
       type(fracture_fields_t), intent(inout) :: fields
-      type(jump_errors_t) :: jumps
-      real(rk) :: by_pressure(2, size(state%pressure)), of_pressure
-      logical :: moves(size(state%pressure))
+      type(jumps_in_space_t) :: jumps
+      real(rk) :: of_pressure
 
-      moves = moving(state)
       of_pressure = errors%pressure_error()
+      call errors%jumps_of(scene, problem, state, jumps)
       associate (fracture => problem%mesh%fracture, e => fields%error)
-         jumps = relative_jump_errors(fracture, moves, finite_volumes)
-         by_pressure = by_pressure_of(scene, problem, state, jumps, errors%in_space())
-         e%jump_n = (jumps%share + errors%of_opening + errors%of_length - errors%given_volume()) &
-                    *abs(fields%jump_n) + by_pressure(1, :) &
-                    + at_ends(fracture, moves, fields%jump_n)
-         e%jump_t = (jumps%of_slip + errors%of_slip + errors%of_length)*abs(fields%jump_t) &
-                    + by_pressure(2, :) + at_ends(fracture, moves, fields%jump_t)
+         e%jump_n = jumps%error_n + errors%of_opening*abs(fields%jump_n)
+         e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
          e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
-                      + of_solution*abs(fields%pressure)
-         e%flow = unevenness(fracture, fields%flow) + errors%of_flow*abs(fields%flow) &
-                  + errors%time_share()*abs(fields%flow)
+                      + of_solution*abs(fields%pressure) &
+                      + of_drop*(largest_of(fracture, fields%pressure) &
+                                 + largest_of(fracture, -fields%pressure))
+         e%flow = of_neighbours*unevenness(fracture, fields%flow) &
+                  + (errors%of_flow + errors%time_share())*abs(fields%flow) &
+                  + of_largest*largest_of(fracture, abs(fields%flow))
       end associate
-      call note_tractions(scene, problem, state, jumps, fields)
+      call note_tractions(scene, problem, state, jumps%slip, fields)
    end subroutine find_fracture_errors
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
@@ -78,26 +94,6 @@ contains
          end where
       end associate
    end subroutine note_tractions
-
-   !> Half of the jump next to a cell whose faces have not moved: the zone may end in it [m].
-   pure function at_ends(fracture, moves, jump) result(error)
-      type(fracture_mesh_t), intent(in) :: fracture
-      logical, intent(in) :: moves(:)
-      real(rk), intent(in) :: jump(:)  !< [m]
-      real(rk) :: error(size(jump))
-      integer(ik) :: i, k, next
-
-      error = 0.0_rk
-      do i = 1, fracture%n_cells
-         if (moves(i)) cycle
-         do k = -1, 1, 2
-            next = i + k
-            if (next < 1 .or. next > fracture%n_cells) cycle
-            if (fracture%cell_fracture(next) /= fracture%cell_fracture(i)) cycle
-            error(i) = max(error(i), 0.5_rk*abs(jump(next)))
-         end do
-      end do
-   end function at_ends
 
    !> Errors of the pressures of joints.
    pure subroutine note_joint_errors(errors, fields)

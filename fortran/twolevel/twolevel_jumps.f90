@@ -5,6 +5,13 @@
 !! after a jump, it may not yet have happened; and a tip at rest that has jumped before may jump
 !! again as soon as K_eq equals K_IC within its error. In both cases the length of the jump is part
 !! of the error of the position.
+!!
+!! A tip that grows in equilibrium rests now and then, as K_eq falls along a path segment and rises
+!! with the next one by some per cent of K_IC. The slope within a segment is steeper than that over
+!! many, by which an error of K_eq changes the position. The rate of K_eq at rest shows the latter: the
+!! error of K_eq over that rate is one of the time, and what the tip has grown within half of it one
+!! of the position. Near the end of stable growth the tips grow faster, and so does this error: then a
+!! jump may be ahead.
 module twolevel_jumps
    use, intrinsic :: iso_c_binding, only: c_loc
    use base_archive, only: archive_t
@@ -19,6 +26,8 @@ module twolevel_jumps
 
    public :: jumps_t
 
+   integer, parameter :: memory = 100  !< states in which the growth is remembered
+
    !> Last jump of each tip, and the present rest.
    type :: jumps_t
       real(rk), allocatable, private :: length(:)  !< (tips) of the last jump, 0: none [m]
@@ -27,6 +36,11 @@ module twolevel_jumps
       real(rk), allocatable, private :: speed(:)  !< (tips) in equilibrium in the last step [m/s]
       real(rk), allocatable, private :: late(:)  !< (tips) error of the position over the speed [s]
       logical, allocatable, private :: jumps(:)  !< (tips) the tip has jumped in this step
+      !> (tips) mean rate of K_eq at rest, over the scale of K_IC; 0: not known [1/s]
+      real(rk), allocatable, private :: rate(:)
+      ! The last states, the latest one first:
+      real(rk), private :: times(memory) = -huge(1.0_rk)  !< [s]
+      real(rk), allocatable, private :: grown(:, :)  !< (tips, states) growth [m]
    contains
       procedure :: begin
       procedure :: note
@@ -41,7 +55,9 @@ contains
       class(jumps_t), intent(out) :: self
       integer, intent(in) :: n  !< tips
 
-      allocate (self%length(n), self%remaining(n), self%speed(n), self%late(n), source=0.0_rk)
+      allocate (self%length(n), self%remaining(n), self%speed(n), self%late(n), self%rate(n), &
+                source=0.0_rk)
+      allocate (self%grown(n, memory), source=0.0_rk)
       allocate (self%jumps(n), source=.false.)
       allocate (self%rest(n))
    end subroutine begin
@@ -83,16 +99,16 @@ contains
       end do
    end subroutine note
 
-   !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps
-   !! [m].
-   pure subroutine follow(self, tips, toughness, position_error, dt, time, error)
+   !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps,
+   !! and by that of the time [m].
+   pure subroutine follow(self, tips, toughness, position_error, dt, time, error, by_time)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: position_error(:)  !< (tips) without jumps [m]
       real(rk), intent(in) :: dt, time  !< [s]
-      real(rk), intent(out) :: error(:)  !< (tips) [m]
-      real(rk) :: uncertainty(size(tips))
+      real(rk), intent(out) :: error(:), by_time(:)  !< (tips) [m]
+      real(rk), dimension(size(tips)) :: late, new, uncertainty
       logical :: rests(size(tips))
 
       rests = .not. tips%advance > 0.0_rk
@@ -102,8 +118,18 @@ contains
       self%speed = 0.0_rk
       if (dt > 0.0_rk) where (.not. (rests .or. self%jumps)) self%speed = tips%advance/dt
       self%jumps = .false.
-      where (self%speed > 0.0_rk) self%late = position_error/self%speed
       call self%rest%follow(time, tips%drive%intensity, uncertainty, toughness)
+      new = self%rest%drive%rate/tips%scale_of(toughness)
+      where (rests .and. new > 0.0_rk .and. self%grown(:, 1) > 0.0_rk)
+         self%rate = merge(0.5_rk*(self%rate + new), new, self%rate > 0.0_rk)
+      end where
+      late = 0.0_rk
+      where (self%rate > 0.0_rk) late = (tolerance + uncertainty/tips%scale_of(toughness))/self%rate
+      where (self%speed > 0.0_rk) self%late = max(position_error/self%speed, late)
+      self%times = [time, self%times(:memory - 1)]
+      self%grown = reshape([self%grown(:, 1) + tips%advance, self%grown(:, :memory - 1)], &
+                           shape(self%grown))
+      by_time = self%grown(:, 1) - grown_before(self, time - 0.5_rk*late)
       error = 0.0_rk
       where (self%remaining > 0.0_rk .or. &
              (rests .and. .not. tips%arrested .and. &
@@ -129,6 +155,28 @@ contains
       call archive%list("speed", self%speed)
       call archive%list("late", self%late)
       call archive%list("jumps", self%jumps)
+      call archive%list("rate", self%rate)
+      call archive%plain("times", c_loc(self%times), memory*storage_size(self%times)/8_lk)
+      call archive%list("grown", self%grown)
    end subroutine visit
+
+   !> Growth of each tip until a time of its own, as far as it is remembered [m].
+   pure function grown_before(self, time) result(grown)
+      class(jumps_t), intent(in) :: self
+      real(rk), intent(in) :: time(:)  !< (tips) [s]
+      real(rk) :: grown(size(time))
+      real(rk) :: share
+      integer :: i, k
+
+      do i = 1, size(time)
+         k = count(self%times > time(i))
+         if (k == 0 .or. k == memory) then
+            grown(i) = self%grown(i, max(1, k))
+         else
+            share = (time(i) - self%times(k + 1))/(self%times(k) - self%times(k + 1))
+            grown(i) = self%grown(i, k + 1) + share*(self%grown(i, k) - self%grown(i, k + 1))
+         end if
+      end do
+   end function grown_before
 
 end module twolevel_jumps

@@ -232,7 +232,8 @@ contains
          tips%cell = tip_cell_lengths(tip, problem)
          position_error = 0.0_rk
          if (allocated(now%stated_errors%tip)) position_error = now%stated_errors%tip
-         call notes%jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump)
+         call notes%jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump, &
+                                 tips%by_time)
          tips%jump = max(tips%jump, notes%approach%early_growth(now%segment%gain, now%coarse%time, &
                                                                 tolerance*tip%scale_of(toughness)))
          do i = 1, size(tips, kind=ik)

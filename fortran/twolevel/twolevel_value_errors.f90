@@ -2,9 +2,7 @@
 !! and in space; no further solution is needed.
 !!
 !! In space:
-!! - Slip, opening and their sums have the relative errors of report_jump_errors. An error of the
-!!   pressure changes them further: by 4/E' times sqrt(d1 d2) of opening per pressure, d1 and d2 the
-!!   distances from the ends of the zone, and of slip per pressure times friction.
+!! - Slip, opening and their sums: twolevel_jump_errors.
 !! - The pressure in fractures, relative to its rise: where the fluid leaks off, the error of the
 !!   layers next to the faces (twolevel_pressure_errors); where the fractures hold the fluid, the
 !!   error of their compliance, that of opening. Both are weighted by their share of the fluid.
@@ -15,20 +13,19 @@
 module twolevel_value_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
-   use contact_law, only: state_open, state_slip
-   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors
+   use report_jump_errors, only: error_of_largest, finite_volumes
    use report_rows, only: history_errors_t, history_row_t, probe_row_t, well_row_t
    use scene_types, only: scene_t
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
+   use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
    use twolevel_pressure_errors, only: least, of_layers, of_well_in_rock
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_results, only: cell_states
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
 
-   public :: by_pressure_of, moving, of_solution, step_facts_t, value_errors_t
+   public :: of_solution, step_facts_t, value_errors_t
 
    ! Positions of the quantities of a row that are followed.
    integer, parameter :: injected = 1, produced = 2, leakoff = 3, outflow = 4, fracture_fluid = 5, &
@@ -74,6 +71,7 @@ module twolevel_value_errors
       procedure :: note_wells
       procedure :: note_probes
       procedure :: in_space
+      procedure :: jumps_of
       procedure :: given_volume
       procedure :: pressure_error
       procedure :: time_share
@@ -130,7 +128,7 @@ contains
       type(history_row_t), intent(in) :: row
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
-      type(jump_errors_t) :: errors
+      type(jumps_in_space_t) :: jumps
       real(rk) :: values(n_followed)
 
       values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
@@ -153,105 +151,68 @@ contains
       end if
       self%of_rock = of_well_in_rock(problem, facts%since_switch)
       if (problem%mesh%fracture%n_cells > 0) then
-         errors = relative_jump_errors(problem%mesh%fracture, moving(state), finite_volumes)
-         self%of_flow = self%diffusing*of_layers(problem, facts%since_switch) &
-                        + (1.0_rk - self%diffusing) &
-                        *max(least, mean_share(problem, state, errors%of_sum))
+         call self%jumps_of(scene, problem, state, jumps)
+         associate (s => problem%mesh%fracture%cell_s)
+            self%of_flow = self%diffusing*of_layers(problem, facts%since_switch) &
+                           + (1.0_rk - self%diffusing) &
+                           *max(least, mean_share(jumps, s(2, :) - s(1, :)))
+         end associate
          self%of_pressure = 0.0_rk
          if (facts%has_given_rates) self%of_pressure = self%of_flow
          self%rise = abs(values(pressure) - self%quantities%first(pressure))
-         call note_jumps(self, scene, problem, state, errors, row)
+         call self%jumps_of(scene, problem, state, jumps)
+         call note_jumps(self, problem, jumps, row)
       end if
       call note_fluid(self, scene, problem, row, facts)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
 
-   !> Faces of each cell have moved.
-   pure function moving(state) result(moves)
-      type(state_t), intent(in) :: state
-      logical :: moves(size(state%pressure))
-      real(rk), parameter :: rounding = 1.0e-9_rk
-      real(rk) :: jump(size(moves))
-
-      jump = maxval(maxval(abs(state%jump), dim=1), dim=1)
-      moves = jump > rounding*maxval(jump)
-   end function moving
-
    !> Mean relative error of the sums over zones, weighted by the jumps [-].
-   pure real(rk) function mean_share(problem, state, of_sum) result(share)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk), intent(in) :: of_sum(:)  !< (fracture cells) relative errors of sums [-]
-      real(rk) :: weight(size(of_sum))
+   pure real(rk) function mean_share(jumps, length) result(share)
+      type(jumps_in_space_t), intent(in) :: jumps
+      real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
+      real(rk) :: total
 
-      associate (s => problem%mesh%fracture%cell_s)
-         weight = (s(2, :) - s(1, :))*sum(sum(abs(state%jump), dim=1), dim=1)
+      associate (n => length*abs(jumps%n), t => length*jumps%t)
+         total = sum(n + t)
+         share = 0.0_rk
+         if (total > 0.0_rk) share = sum(n*jumps%opening%of_sum + t*jumps%slip%of_sum)/total
       end associate
-      share = 0.0_rk
-      if (sum(weight) > 0.0_rk) share = sum(weight*of_sum)/sum(weight)
    end function mean_share
 
    !> Errors of slip, opening, volume and moment.
-   subroutine note_jumps(self, scene, problem, state, errors, row)
+   subroutine note_jumps(self, problem, jumps, row)
       class(value_errors_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      type(jump_errors_t), intent(in) :: errors
+      type(jumps_in_space_t), intent(in) :: jumps
       type(history_row_t), intent(in) :: row
-      real(rk) :: by_pressure(2, size(errors%share)), length(size(errors%share))
-      integer(ik) :: at(2)
-      logical :: is_open(size(errors%share))
+      real(rk), parameter :: of_slip_rate = 0.5_rk  ! cells slip in turn as their zone grows
 
-      associate (s => problem%mesh%fracture%cell_s, jump => 0.5_rk*sum(state%jump, dim=2))
-         length = s(2, :) - s(1, :)
-         is_open = cell_states(state) == state_open
-         by_pressure = by_pressure_of(scene, problem, state, errors, self%in_space())
-         at = [maxloc(jump(1, :), kind=ik), maxloc(abs(jump(2, :)), kind=ik)]
-         associate (time => self%quantities%error, of_sum => errors%of_sum + self%of_length)
-            self%row%max_opening = time(opening) + by_pressure(1, at(1)) &
-                                   + (errors%share(at(1)) + self%of_length &
-                                      - self%given_volume())*abs(row%max_opening)
-            self%row%max_slip = time(slip) + by_pressure(2, at(2)) &
-                                + (errors%of_slip(at(2)) + self%of_length)*row%max_slip
-            self%row%fracture_volume = time(volume) + sum(length*(of_sum*abs(jump(1, :)) &
-                                                                  + by_pressure(1, :)))
-            self%row%seismic_moment = time(moment) &
-                                      + mean_share(problem, state, errors%of_slip_sum) &
-                                      *row%seismic_moment &
-                                      + self%of_length*row%seismic_moment &
-                                      + problem%model%rock%shear(1)*sum(length*by_pressure(2, :))
-            self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                     + errors%of_slip(at(2))*row%max_slip_rate
-            self%of_opening = 0.0_rk
-            if (row%max_opening > 0.0_rk) self%of_opening = time(opening)/row%max_opening
-            self%of_slip = 0.0_rk
-            if (row%max_slip > 0.0_rk) self%of_slip = time(slip)/row%max_slip
-         end associate
+      associate (fracture => problem%mesh%fracture, time => self%quantities%error)
+         self%row%max_opening = time(opening) + error_of_largest(fracture, jumps%n, jumps%error_n)
+         self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
+         self%row%fracture_volume = time(volume) + jumps%volume
+         self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
+         self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
+                                  + of_slip_rate*row%max_slip_rate
+         self%of_opening = 0.0_rk
+         if (row%max_opening > 0.0_rk) self%of_opening = time(opening)/row%max_opening
+         self%of_slip = 0.0_rk
+         if (row%max_slip > 0.0_rk) self%of_slip = time(slip)/row%max_slip
       end associate
    end subroutine note_jumps
 
-   !> Errors of opening (1) and slip (2) of the cells by that of the pressure [m].
-   pure function by_pressure_of(scene, problem, state, errors, of_pressure) result(change)
+   !> Errors in space of slip and opening of a state.
+   subroutine jumps_of(self, scene, problem, state, jumps)
+      class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      type(jump_errors_t), intent(in) :: errors
-      real(rk), intent(in) :: of_pressure(2)  !< of `in_space` [Pa]
-      real(rk) :: change(2, size(errors%share))
-      integer(ik) :: states(size(errors%share))
-      real(rk) :: modulus
+      type(jumps_in_space_t), intent(out) :: jumps
 
-      associate (rock => scene%material)
-         modulus = rock%young
-         if (.not. rock%plane_stress) modulus = modulus/(1.0_rk - rock%poisson**2)
-      end associate
-      states = cell_states(state)
-      change(1, :) = 4.0_rk/modulus*errors%reach*of_pressure(1)
-      change(2, :) = 4.0_rk/modulus*errors%reach*of_pressure(2)*problem%model%cells%law%friction
-      where (states /= state_open) change(1, :) = 0.0_rk
-      where (states /= state_slip) change(2, :) = 0.0_rk
-   end function by_pressure_of
+      call jumps%find(scene%material, problem, state, &
+                      jump_facts_t(self%of_length, self%given_volume(), self%in_space()))
+   end subroutine jumps_of
 
    !> Errors of the fluid volumes.
    subroutine note_fluid(self, scene, problem, row, facts)

@@ -15,6 +15,7 @@ program test_twolevel_jumps
    call test_rest()
    call test_speed()
    call test_next()
+   call test_time()
    call checks%finish()
 
 contains
@@ -41,7 +42,7 @@ contains
       logical, intent(in) :: is_known  !< the error of its time is
       type(chronicle_t), intent(inout) :: chronicle
       type(summary_t), intent(inout) :: summary
-      real(rk) :: error(2)
+      real(rk) :: by_time(2), error(2)
       real(rk), parameter :: from(2, 2) = reshape([1.0_rk, 2.0_rk, 3.0_rk, 2.0_rk], [2, 2])
 
       tip(1)%advance = 0.1_rk
@@ -49,7 +50,7 @@ contains
       call jumps%note(tip, from, toughness, [3.0e6_rk, 2.0e6_rk], 10.0_rk, chronicle, summary)
       call set(tip, 0.8_rk, 0.05_rk, 0.0_rk)
       tip(1)%advance = 0.1_rk
-      call jumps%follow(tip, toughness, position_error, 1.0e-3_rk, 10.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 1.0e-3_rk, 10.0_rk, error, by_time)
       call checks%is_close(error(1), merge(0.1_rk, 0.0_rk, is_known), 1.0e-15_rk, &
                            "right after the jump")
       call checks%is_close(error(2), 0.0_rk, 0.0_rk, "the other tip")
@@ -62,7 +63,7 @@ contains
       type(jumps_t) :: jumps
       type(summary_t) :: summary
       type(tip_t) :: tip(2)
-      real(rk) :: error(2)
+      real(rk) :: by_time(2), error(2)
       integer :: second
 
       summary%growth_jumps = 0
@@ -70,7 +71,7 @@ contains
       call jumps%begin(2)
       do second = 1, 9
          call set(tip, 0.1_rk*second, 0.05_rk, 0.0_rk)
-         call jumps%follow(tip, toughness, position_error, 1.0_rk, real(second, rk), error)
+         call jumps%follow(tip, toughness, position_error, 1.0_rk, real(second, rk), error, by_time)
          call checks%is_close(maxval(error), 0.0_rk, 0.0_rk, "no jump so far")
       end do
       call jump(jumps, tip, .true., chronicle, summary)
@@ -80,9 +81,9 @@ contains
       call checks%is_true(summary%growth_jumps == 1, "one jump")
       call checks%is_close(summary%longest_jump, 0.1_rk, 0.0_rk, "longest jump")
       call set(tip, 0.8_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, position_error, 0.45_rk, 10.45_rk, error)
+      call jumps%follow(tip, toughness, position_error, 0.45_rk, 10.45_rk, error, by_time)
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "0.45 s later")
-      call jumps%follow(tip, toughness, position_error, 0.15_rk, 10.6_rk, error)
+      call jumps%follow(tip, toughness, position_error, 0.15_rk, 10.6_rk, error, by_time)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "0.6 s later")
    end subroutine test_rest
 
@@ -92,19 +93,41 @@ contains
       type(jumps_t) :: jumps
       type(summary_t) :: summary
       type(tip_t) :: tip(2)
-      real(rk) :: error(2)
+      real(rk) :: by_time(2), error(2)
 
       call chronicle%clear()
       call jumps%begin(2)
       call set(tip, 1.0_rk, 0.01_rk, 2.0e-3_rk)
-      call jumps%follow(tip, toughness, position_error, 2.0_rk, 2.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 2.0_rk, 2.0_rk, error, by_time)
       call jump(jumps, tip, .true., chronicle, summary)
       call set(tip, 0.8_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, position_error, 2.9_rk, 12.9_rk, error)
+      call jumps%follow(tip, toughness, position_error, 2.9_rk, 12.9_rk, error, by_time)
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "2.9 s later")
-      call jumps%follow(tip, toughness, position_error, 0.2_rk, 13.1_rk, error)
+      call jumps%follow(tip, toughness, position_error, 0.2_rk, 13.1_rk, error, by_time)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "3.1 s later")
    end subroutine test_speed
+
+   !> A tip that grows by 2 mm in each of eleven steps of a second, and rests in the next one, in which
+   !! K_eq rises by a hundredth of the toughness: its error of 0.02 and the tolerance of growth,
+   !! 0.005, are worth 2.5 s. In the half of it there was a quarter of a second of growth.
+   subroutine test_time()
+      type(jumps_t) :: jumps
+      type(tip_t) :: tip(2)
+      real(rk) :: by_time(2), error(2)
+      integer :: second
+
+      call jumps%begin(2)
+      do second = 1, 11
+         call set(tip, 0.99_rk, 0.02_rk, 2.0e-3_rk)
+         tip(2)%advance = 0.0_rk
+         call jumps%follow(tip, toughness, position_error, 1.0_rk, real(second, rk), error, by_time)
+         call checks%is_close(maxval(by_time), 0.0_rk, 0.0_rk, "no rate is known")
+      end do
+      call set(tip, 1.0_rk, 0.02_rk, 0.0_rk)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 12.0_rk, error, by_time)
+      call checks%is_close(by_time(1), 0.5e-3_rk, 1.0e-12_rk, "at rest")
+      call checks%is_close(by_time(2), 0.0_rk, 0.0_rk, "the other tip has not grown")
+   end subroutine test_time
 
    !> As soon as K_eq equals K_IC within its error again, the next jump may have happened.
    subroutine test_next()
@@ -112,18 +135,18 @@ contains
       type(jumps_t) :: jumps
       type(summary_t) :: summary
       type(tip_t) :: tip(2)
-      real(rk) :: error(2)
+      real(rk) :: by_time(2), error(2)
 
       call chronicle%clear()
       call jumps%begin(2)
       call set(tip, 0.5_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, position_error, 1.0_rk, 1.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 1.0_rk, error, by_time)
       call jump(jumps, tip, .false., chronicle, summary)
       call set(tip, 0.94_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, position_error, 1.0_rk, 11.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 11.0_rk, error, by_time)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "below K_IC")
       call set(tip, 0.96_rk, 0.05_rk, 0.0_rk)
-      call jumps%follow(tip, toughness, position_error, 1.0_rk, 12.0_rk, error)
+      call jumps%follow(tip, toughness, position_error, 1.0_rk, 12.0_rk, error, by_time)
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "K_IC within the error")
       call checks%is_close(error(2), 0.0_rk, 0.0_rk, "the other tip has not jumped")
    end subroutine test_next

@@ -1,0 +1,119 @@
+!> Estimated errors in space of slip and opening of the fracture cells: those by the sizes of the
+!! cells (report_jump_errors), apart for the zones that slip and those that open, and what errors of
+!! the pressure change: by 4/E' times sqrt(d1 d2) of opening per pressure, d1 and d2 the distances
+!! from the ends of the zone, and of slip per pressure times friction.
+!!
+!! Faces that slide past a kink open there, in a length that cells do not resolve. A closed joint has
+!! its largest differences of closure where it ends.
+module twolevel_jump_errors
+   use base_kinds, only: ik, rk
+   use coarse_state, only: state_t
+   use contact_law, only: state_open, state_slip
+   use mesh_types, only: fracture_mesh_t
+   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors, unevenness
+   use scene_types, only: material_t
+   use twolevel_problem, only: coarse_problem_t
+   use twolevel_results, only: cell_states
+   implicit none(type, external)
+   private
+
+   public :: jump_facts_t, jumps_in_space_t
+
+   !> opening of faces that slide past a kink, over slip times sine, in the cells there and in the
+   !! mean of them [-]
+   real(rk), parameter :: past_kink = 0.35_rk, mean_past_kink = 0.06_rk
+
+   !> What the errors need besides the state.
+   type :: jump_facts_t
+      real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
+      real(rk) :: less = 0.0_rk  !< relative error of openings that is none at a given volume [-]
+      !> error in space of the pressure in fractures: its part by leak-off, which acts on the
+      !! opening, and all of it [Pa]
+      real(rk) :: of_pressure(2) = 0.0_rk
+   end type jump_facts_t
+
+   !> (fracture cells)
+   type :: jumps_in_space_t
+      type(jump_errors_t) :: slip, opening  !< of their zones
+      real(rk), allocatable :: n(:), t(:)  !< mean opening, magnitude of the mean slip [m]
+      real(rk), allocatable :: error_n(:), error_t(:)  !< their errors [m]
+      real(rk) :: volume = 0.0_rk  !< error of the sum of openings [m2]
+      real(rk) :: slipped = 0.0_rk  !< error of the sum of slip [m2]
+   contains
+      procedure :: find
+   end type jumps_in_space_t
+
+contains
+
+   !> Errors of a state.
+   subroutine find(self, material, problem, state, facts)
+      class(jumps_in_space_t), intent(out) :: self
+      type(material_t), intent(in) :: material
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(jump_facts_t), intent(in) :: facts
+      real(rk), dimension(size(state%pressure)) :: length, moved, n, opened, slid
+      real(rk) :: compliance
+      logical :: is_open(size(state%pressure))
+
+      self%n = 0.5_rk*sum(state%jump(1, :, :), dim=1)
+      self%t = abs(0.5_rk*sum(state%jump(2, :, :), dim=1))
+      n = max(0.0_rk, self%n)
+      is_open = cell_states(state) == state_open
+      moved = merge(hypot(n, self%t), n, is_open)
+      compliance = 4.0_rk/material%young
+      if (.not. material%plane_stress) compliance = compliance*(1.0_rk - material%poisson**2)
+      associate (fracture => problem%mesh%fracture)
+         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
+         self%slip = relative_jump_errors(fracture, moves(self%t), finite_volumes)
+         self%opening = relative_jump_errors(fracture, moves(n), finite_volumes)
+         opened = compliance*self%opening%reach*facts%of_pressure(1)
+         where (.not. is_open) opened = 0.0_rk
+         slid = compliance*self%slip%reach*facts%of_pressure(2)*problem%model%cells%law%friction
+         where (cell_states(state) /= state_slip) slid = 0.0_rk
+         self%error_t = (self%slip%of_slip + facts%of_length)*merge(moved, self%t, is_open) + slid &
+                        + at_ends(fracture, moves(self%t), self%t)
+         self%error_n = (self%opening%share + facts%of_length - facts%less)*moved + opened &
+                        + at_ends(fracture, moves(n), n) + past_kink*self%slip%kink*self%t
+         opened = (self%opening%of_sum + facts%of_length)*n + opened &
+                  + mean_past_kink*self%slip%kink*self%t
+         where (self%n < 0.0_rk)
+            self%error_n = self%error_n + unevenness(fracture, self%n) + finite_volumes%rest &
+                           *abs(self%n)
+            opened = opened + self%error_n
+         end where
+         self%volume = sum(length*opened)
+         self%slipped = sum(length*((self%slip%of_slip_sum + facts%of_length)*self%t + slid))
+      end associate
+   end subroutine find
+
+   !> Faces of each cell have moved.
+   pure function moves(jump)
+      real(rk), intent(in) :: jump(:)  !< [m]
+      logical :: moves(size(jump))
+      real(rk), parameter :: rounding = 1.0e-9_rk
+
+      moves = jump > rounding*maxval(jump)
+   end function moves
+
+   !> Half of the jump next to a cell whose faces have not moved: the zone may end in it [m].
+   pure function at_ends(fracture, moved, jump) result(error)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: moved(:)
+      real(rk), intent(in) :: jump(:)  !< [m]
+      real(rk) :: error(size(jump))
+      integer(ik) :: i, k, next
+
+      error = 0.0_rk
+      do i = 1, fracture%n_cells
+         if (moved(i)) cycle
+         do k = -1, 1, 2
+            next = i + k
+            if (next < 1 .or. next > fracture%n_cells) cycle
+            if (fracture%cell_fracture(next) /= fracture%cell_fracture(i)) cycle
+            error(i) = max(error(i), 0.5_rk*abs(jump(next)))
+         end do
+      end do
+   end function at_ends
+
+end module twolevel_jump_errors
