@@ -92,7 +92,7 @@ def test_a_run_goes_on_as_if_it_had_not_been_ended(
     wall = json.loads((whole / "run.json").read_text())["wall_s"]
     (tmp_path / "scene.nml").write_text(SCENES[name] + EVERY_STATE)
     out = tmp_path / "out"
-    words = [SOLVER, "run", tmp_path / "scene.nml", "--out", out, "--quiet"]
+    words = [str(SOLVER), "run", str(tmp_path / "scene.nml"), "--out", str(out), "--quiet"]
     with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as process:
         deadline = time.monotonic() + 60
         while not (out / "checkpoint.bin").exists():

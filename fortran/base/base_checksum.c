@@ -23,13 +23,15 @@ static void make_table(void) {
 }
 
 // Checksum of bytes that follow those with the checksum `before`; 0 at the beginning.
-int64_t base_checksum(int64_t before, const unsigned char *bytes, size_t n_bytes) {
+int64_t base_checksum(int64_t before, const unsigned char* bytes, size_t n_bytes) {
     pthread_once(&is_made, make_table);
     uint32_t rest = ~(uint32_t)before;
     for (; n_bytes >= 8; bytes += 8, n_bytes -= 8) {
-        rest ^= (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 | (uint32_t)bytes[3] << 24;
-        rest = table[7][rest & 0xff] ^ table[6][rest >> 8 & 0xff] ^ table[5][rest >> 16 & 0xff] ^ table[4][rest >> 24] ^
-               table[3][bytes[4]] ^ table[2][bytes[5]] ^ table[1][bytes[6]] ^ table[0][bytes[7]];
+        rest ^= (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+                (uint32_t)bytes[3] << 24;
+        rest = table[7][rest & 0xff] ^ table[6][rest >> 8 & 0xff] ^ table[5][rest >> 16 & 0xff] ^
+               table[4][rest >> 24] ^ table[3][bytes[4]] ^ table[2][bytes[5]] ^ table[1][bytes[6]] ^
+               table[0][bytes[7]];
     }
     for (; n_bytes > 0; ++bytes, --n_bytes) {
         rest = table[0][(rest ^ *bytes) & 0xff] ^ (rest >> 8);

@@ -149,6 +149,9 @@ def run_task(
     begin = time.perf_counter()
     status, late = _call(command, output, task.time_limit_s, started, ended)
     wall_s = time.perf_counter() - begin
+    if status == 0:  # of a run that is done nobody takes the state
+        for checkpoint in output.glob("checkpoint*.bin"):
+            checkpoint.unlink()
     outcome = judge_end(task.folder, status, late, task.time_limit_s, wall_s)
     if late or status in _ENDED:
         write_outcome(task.folder, outcome)
