@@ -266,7 +266,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: reason
 
-      if (size(scene%injections) == 0) then
+      if (scene%growth%enabled) then
+         reason = "the mesh is adapted to the fractures before they grow, and &growth is enabled"
+      else if (size(scene%injections) == 0) then
          reason = "the mesh is adapted to the response to wells, and there is no &injection"
       else if (any(scene%injections%fracture == 0)) then
          reason = "the pressure of a well in the rock depends on the size of its cell"

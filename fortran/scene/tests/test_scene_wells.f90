@@ -130,10 +130,11 @@ contains
       character(len=*), parameter :: here = ":10: &injection: "
 
       call refuse("&adaptive enabled=.true. /", ":10: &adaptive: enabled is .true., but with "// &
-                  "&fluid the mesh is adapted to the response to wells, and there is no &injection"//doc)
+                  "&fluid the mesh is adapted to the response to wells, and there is no "// &
+                  "&injection"//doc)
       call refuse("&injection x=0.3 y=0.2 radius=0.05 rate=-1e-7 / &adaptive enabled=.true. /", &
-                  ":10: &adaptive: enabled is .true., but with &fluid the pressure of a well in "// &
-                  "the rock depends on the size of its cell"//doc)
+                  ":10: &adaptive: enabled is .true., but with &fluid the pressure of a well "// &
+                  "in the rock depends on the size of its cell"//doc)
       call refuse("&injection fracture='f1' /", here//"rate is missing: a well needs a rate, a "// &
                   "pressure, or both"//doc)
       call refuse("&injection rate=1e-7 /", here//"fracture is missing: a well needs a "// &
