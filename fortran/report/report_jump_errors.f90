@@ -194,7 +194,7 @@ contains
    pure real(rk) function error_of_largest(fracture, values, errors) result(error)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: values(:), errors(:)  !< (cells)
-      real(rk), parameter :: to_peak = 0.25_rk  ! of the height over the neighbours
+      real(rk), parameter :: to_peak = 0.07_rk  ! of the height over the neighbours
       real(rk) :: height(size(values))
       integer(ik) :: at
 
