@@ -378,7 +378,13 @@ def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[dict[str, str
         for row in own[:: max(1, len(own) // 6)]:
             place = float(row["s_m"])
 
-            def at(column: str, other: Rows = other, s: list[float] = s, x: float = place, length: float = length) -> float:
+            def at(
+                column: str,
+                other: Rows = other,
+                s: list[float] = s,
+                x: float = place,
+                length: float = length,
+            ) -> float:
                 values = np.array([float(r[column] or "nan") for r in other])
                 # Jumps fall with the root of the distance from an end.
                 root = np.sqrt(np.abs(np.array(s) * (length - np.array(s))))
