@@ -220,8 +220,9 @@ contains
 
    !> What K of joints that close may be off because elements are larger than the part of the joint
    !! next to the tip that bears its pressure at rest: a share of what the variation of the traction
-   !! within elements has in K, and more where that is not small compared with K. By random joints against series (verification/normal_closure)
-   !! and finer elements (verification/stated_errors_unseen).
+   !! within elements has in K, and more where that is not small compared with K. By random joints
+   !! against series (verification/normal_closure) and finer elements
+   !! (verification/stated_errors_unseen).
    pure subroutine doubt_joints(model, loads, displacement, probe, intensity)
       type(fine_model_t), intent(in) :: model
       type(fine_loads_t), intent(in) :: loads
@@ -239,13 +240,12 @@ contains
       intensity%k2_error = intensity%k2_error + k(2, 1)
    end subroutine doubt_joints
 
-   !> What the elements along a fracture add to the errors of K of its tips: of closed ones that slide
-   !! a share that falls with the number of elements, and what kinks do. Elements of the length h at a
-   !! kink miss a share of the jump there, in proportion to the sine of its angle: K of a jump [u]
-   !! over l at the distance d from the tip is E' [u] l/(4 sqrt(2 pi) d**1.5); l is in proportion to
-   !! sqrt(h d). The factor is that of
-   !! winged cracks (verification/winged_crack) and bent fractures drawn at random
-   !! (verification/stated_errors_unseen).
+   !> What the elements along a fracture add to the errors of K of its tips: of closed ones that
+   !! slide a share that falls with the number of elements, and what kinks do. Elements of the
+   !! length h at a kink miss a share of the jump there, in proportion to the sine of its angle: K
+   !! of a jump [u] over l at the distance d from the tip is E' [u] l/(4 sqrt(2 pi) d**1.5); l is in
+   !! proportion to sqrt(h d). The factor is that of winged cracks (verification/winged_crack) and
+   !! bent fractures drawn at random (verification/stated_errors_unseen).
    pure subroutine add_element_error(mesh, displacement, frame, intensity)
       type(fine_mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]

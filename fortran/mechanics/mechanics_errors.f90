@@ -19,11 +19,11 @@ module mechanics_errors
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
    !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
-   real(rk), parameter :: of_largest = 0.0004_rk, of_joints = 0.005_rk
+   real(rk), parameter :: of_largest = 0.0002_rk, of_joints = 0.005_rk
    !> relative errors of displacement and stress at a point [-]
-   real(rk), parameter :: least_at_point(2) = [2.5e-5_rk, 1.0e-4_rk]
+   real(rk), parameter :: least_at_point(2) = [1.5e-5_rk, 1.0e-4_rk]
    !> shares of the difference from the neighbours at a point [-]
-   real(rk), parameter :: of_neighbours(2) = [0.15_rk, 0.35_rk]
+   real(rk), parameter :: of_neighbours(2) = [0.12_rk, 0.35_rk]
 
 contains
 

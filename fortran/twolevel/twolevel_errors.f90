@@ -2,14 +2,15 @@
 !!
 !! The length of a crack in equilibrium follows from K_eq = K_IC at the fluid volume in the crack.
 !! If K_eq has an error e K_IC, the error of the tip position is e divided by the slope of K_eq/K_IC
-!! along the path, or that of the time times the speed (twolevel_jumps). The pressure error follows from the derivative of the pressure with respect to
-!! the length. Both slopes come from the tries of a step, at the fluid volume of the step. These
-!! errors do not accumulate, since each state is in equilibrium. Before growth the time errors of
-!! the steps accumulate with their signs. Where fluid leaks off, each of them decays like the
-!! pressure of a pulse that diffuses from the fracture, with the root of the time since the wells
-!! were switched; what has accumulated before a switch counts by magnitude after it. With layers a
-!! step counts by 0.3 of its error as far as fluid leaks off: the layers divide it (coarse_chain),
-!! which leaves a fourth of the error in closed forms.
+!! along the path, or that of the time times the speed (twolevel_jumps). The pressure error follows
+!! from the derivative of the pressure with respect to the length. Both slopes come from the tries
+!! of a step, at the fluid volume of the step. These errors do not accumulate, since each state is
+!! in equilibrium. Before growth the time errors of the steps accumulate with their signs. Where
+!! fluid leaks off, each of them decays like the pressure of a pulse that diffuses from the
+!! fracture, with the root of the time since the wells were switched; what has accumulated before a
+!! switch counts by magnitude after it. With layers a step counts by 0.3 of its error as far as
+!! fluid leaks off: the layers divide it (coarse_chain), which leaves a fourth of the error in
+!! closed forms.
 !!
 !! The error of the coarse cells is added: at each tip a crack opens, slips and leaks as if it were
 !! longer or shorter by at most a tenth of the coarse cell at the tip (coarse_tips: 0.05 in each). A
@@ -72,7 +73,7 @@ module twolevel_errors
       real(rk) :: cell = 0.0_rk  !< length of the coarse cell at the tip [m]
       real(rk) :: wing = 0.0_rk  !< distance of the tip from where it began to grow [m]
       real(rk) :: bend = 0.0_rk  !< sine of the angle of this wing with its fracture [-]
-      real(rk) :: by_time = 0.0_rk  !< error of the position by that of its time (twolevel_jumps) [m]
+      real(rk) :: by_time = 0.0_rk  !< error of the position by that of the time [m]
       !> length of a jump (twolevel_jumps), or growth since the onset, that is uncertain in time [m]
       real(rk) :: jump = 0.0_rk
    end type tip_excess_t

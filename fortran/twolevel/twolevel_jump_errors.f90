@@ -3,8 +3,8 @@
 !! the pressure change: by 4/E' times sqrt(d1 d2) of opening per pressure, d1 and d2 the distances
 !! from the ends of the zone, and of slip per pressure times friction.
 !!
-!! Faces that slide past a kink open there, in a length that cells do not resolve. A closed joint has
-!! its largest differences of closure where it ends.
+!! Faces that slide past a kink open there, in a length that cells do not resolve. A closed joint
+!! has its largest differences of closure where it ends.
 module twolevel_jump_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t

@@ -8,10 +8,10 @@
 !!
 !! A tip that grows in equilibrium rests now and then, as K_eq falls along a path segment and rises
 !! with the next one by some per cent of K_IC. The slope within a segment is steeper than that over
-!! many, by which an error of K_eq changes the position. The rate of K_eq at rest shows the latter: the
-!! error of K_eq over that rate is one of the time, and what the tip has grown within half of it one
-!! of the position. Near the end of stable growth the tips grow faster, and so does this error: then a
-!! jump may be ahead.
+!! many, by which an error of K_eq changes the position. The rate of K_eq at rest shows the latter:
+!! the error of K_eq over that rate is one of the time, and what the tip has grown within half of it
+!! one of the position. Near the end of stable growth the tips grow faster, and so does this error:
+!! then a jump may be ahead.
 module twolevel_jumps
    use, intrinsic :: iso_c_binding, only: c_loc
    use base_archive, only: archive_t
@@ -99,8 +99,8 @@ contains
       end do
    end subroutine note
 
-   !> Take an accepted state at the end of a step of length dt; the errors of the positions by jumps,
-   !! and by that of the time [m].
+   !> Take an accepted state at the end of a step of length dt; the errors of the positions by
+   !! jumps, and by that of the time [m].
    pure subroutine follow(self, tips, toughness, position_error, dt, time, error, by_time)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)

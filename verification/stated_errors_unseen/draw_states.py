@@ -180,7 +180,7 @@ def body(draw: Draw) -> Scene:
 def injected(draw: Draw) -> Scene:
     """With a fluid and without growth: wells and stages; slip of a part; joints."""
     length = draw.among(0.3, 1.0, 5.0, 20.0, 50.0)
-    scene, (most, least) = base(draw, length)
+    scene, (_, least) = base(draw, length)
     kind = draw.among("slide", "slide", "joint")
     n = draw.among(1, 1, 2, 3)
     add_fractures(draw, scene, network(draw, n, length, 1), kind)
@@ -235,7 +235,7 @@ def cells(draw: Draw, scene: Scene, length: float) -> None:
 def growing(draw: Draw) -> Scene:
     """Wings that grow by a fraction of their fracture."""
     length = draw.among(0.3, 1.0, 5.0, 20.0)
-    scene, (most, least) = base(draw, length)
+    scene, (_, least) = base(draw, length)
     add_fractures(draw, scene, network(draw, draw.among(1, 1, 2), length, 1), "slide")
     aperture = draw.decades(5e-5, 1e-3)
     for fracture in scene["fracture"]:
@@ -378,7 +378,13 @@ def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[dict[str, str
         for row in own[:: max(1, len(own) // 6)]:
             place = float(row["s_m"])
 
-            def at(column: str, other: Rows = other, s: list[float] = s, x: float = place, length: float = length) -> float:
+            def at(
+                column: str,
+                other: Rows = other,
+                s: list[float] = s,
+                x: float = place,
+                length: float = length,
+            ) -> float:
                 values = np.array([float(r[column] or "nan") for r in other])
                 # Jumps fall with the root of the distance from an end.
                 root = np.sqrt(np.abs(np.array(s) * (length - np.array(s))))

@@ -107,9 +107,9 @@ contains
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "3.1 s later")
    end subroutine test_speed
 
-   !> A tip that grows by 2 mm in each of eleven steps of a second, and rests in the next one, in which
-   !! K_eq rises by a hundredth of the toughness: its error of 0.02 and the tolerance of growth,
-   !! 0.005, are worth 2.5 s. In the half of it there was a quarter of a second of growth.
+   !> A tip that grows by 2 mm in each of eleven steps of a second, and rests in the next one, in
+   !! which K_eq rises by a hundredth of the toughness: its error of 0.02 and the tolerance of
+   !! growth, 0.005, are worth 2.5 s. In the half of it there was a quarter of a second of growth.
    subroutine test_time()
       type(jumps_t) :: jumps
       type(tip_t) :: tip(2)
