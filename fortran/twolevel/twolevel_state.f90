@@ -270,11 +270,10 @@ contains
       type(step_report_t), intent(inout) :: report
 
       if (report%converged) return
-      associate (wells => self%scene%injections)
-         report%reason = why_unsolved(report, self%now%coarse_network, &
-                                      self%problem%mesh%fracture, wells, self%problem%share, &
-                                      rate(wells, self%now%coarse%time, dt))
-      end associate
+      report%reason = why_unsolved(report, self%now%coarse_network, &
+                                   self%problem%mesh%fracture, self%problem%entries, &
+                                   self%problem%share, rate(self%problem%entries, &
+                                                            self%now%coarse%time, dt))
    end subroutine explain
 
    !> Relative time error of a step of length dt to the present state [-].
@@ -291,9 +290,9 @@ contains
          end do
          error = trend%step_error(self%before, self%now%coarse, dt, area, model%condensed%length)
          if (model%wells%n_all > 0 .and. trend%is_known()) then
-            error = max(error, trend%volume_error(self%before%well_flow, &
-                                                  self%now%coarse%well_flow, self%now%given, dt, &
-                                                  least_volume(self, dt)))
+            error = max(error, trend%volume_error(self%before%well_flow(:model%wells%n_all), &
+                                                  self%now%coarse%well_flow(:model%wells%n_all), &
+                                                  self%now%given, dt, least_volume(self, dt)))
          end if
          ! Rates jump where a well is switched: the length of the step before does not count.
          if (self%step%is_after_switch .and. trend%dt > dt) then
@@ -313,7 +312,7 @@ contains
 
       associate (state => self%now%coarse, model => self%problem%model, since => &
                  self%before%time + dt - last_switch(self%scene, self%before%time))
-         most = maxval([self%now%given + dt*abs(state%well_flow), &
+         most = maxval([self%now%given + dt*abs(state%well_flow(:model%wells%n_all)), &
                         since*abs(rate(self%scene%injections, self%before%time, dt))])
          fluid = sum(model%condensed%length*state%aperture) &
                  + self%now%trend%least_pressure*sum(model%matrix%storage)
@@ -341,8 +340,8 @@ contains
          ! The sources of the model are not used: they are those of its last try.
          flow = rate(self%scene%injections, self%before%time, dt)
          if (model%wells%n_all > 0) then
-            flow(model%wells%number) = state%well_flow
-            self%now%given = self%now%given + dt*abs(state%well_flow)
+            flow(model%wells%number) = state%well_flow(:model%wells%n_all)
+            self%now%given = self%now%given + dt*abs(state%well_flow(:model%wells%n_all))
          end if
          fluid%injected = fluid%injected + dt*sum(flow)
          fluid%produced = fluid%produced - dt*sum(min(flow, 0.0_rk))

@@ -198,7 +198,8 @@ contains
       if (wells%storage(w) > 0.0_rk) return
       call wells%lost(w, before%well_flow(w), lost_then, slope)
       call wells%lost(w, wells%rate(w), lost_now, slope)
-      head = head - lost_then + lost_now
+      head = head - lost_then + lost_now + wells%entries_loss(w) &
+             *(abs(wells%rate(w))*wells%rate(w) - abs(before%well_flow(w))*before%well_flow(w))
    end function head_at_rate
 
    !> Share of a change from one value to another at which a bound is passed [-].

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from wingcrack.figures.equilibrium import EquilibriumPath
     from wingcrack.figures.read import Run as Files
 
-_TABLES = ("history", "tips", "fractures", "probes", "wells", "events", "slip_events")
+_TABLES = ("history", "tips", "fractures", "probes", "wells", "entries", "events", "slip_events")
 
 
 class Results:
