@@ -55,6 +55,7 @@ module coarse_wells
    contains
       procedure :: lost
       procedure :: at_places
+      procedure :: flow_number
       procedure :: first_entry
       procedure :: last_entry
       procedure :: entries_loss
@@ -111,6 +112,15 @@ contains
 
       flow = [well_flow(:self%n), well_flow(self%n_all + 1:)]
    end function at_places
+
+   !> The well of each flow of a state, among all wells of the scene.
+   pure function flow_number(self) result(number)
+      class(wells_t), intent(in) :: self
+      integer(ik) :: number(self%n_all + self%n_entries)
+
+      number(:self%n_all) = self%number
+      if (self%n_entries > 0) number(self%n_all + 1:) = self%number(self%of_entry)
+   end function flow_number
 
    !> Place of the first entry of a well; without entries that of the well itself.
    pure integer(ik) function first_entry(self, well)

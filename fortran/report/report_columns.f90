@@ -315,7 +315,8 @@ module report_columns
       column_t("entry", "-", with_entries, "Number of the entry in its well, from 1", label), &
       column_t("fracture", "-", with_entries, "Number of the fracture", label), &
       column_t("flow_m2_s", "m2/s", with_entries, &
-         "Flow from the well into the fracture; negative: out of it", "flow_error_m2_s"), &
+         "Flow from the well into the fracture, mean over the step; negative: out of it", &
+         "flow_error_m2_s"), &
       column_t("share", "-", with_entries, &
          "flow_m2_s over that of the well; 0 where the well has none", "share_error"), &
       column_t("pressure_pa", "Pa", with_entries, &

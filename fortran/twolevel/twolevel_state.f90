@@ -213,9 +213,9 @@ contains
    subroutine rest_wells(self)
       class(two_levels_t), intent(inout) :: self
 
-      associate (n => int(self%problem%model%wells%n_all))
-         self%now%at_limit = spread(.false., 1, n)
-         self%now%given = spread(0.0_rk, 1, n)
+      associate (wells => self%problem%model%wells)
+         self%now%at_limit = spread(.false., 1, int(wells%n_all))
+         self%now%given = spread(0.0_rk, 1, int(wells%n_all + wells%n_entries))
       end associate
       call self%problem%rest_wells(self%now%coarse)
    end subroutine rest_wells
@@ -290,9 +290,9 @@ contains
          end do
          error = trend%step_error(self%before, self%now%coarse, dt, area, model%condensed%length)
          if (model%wells%n_all > 0 .and. trend%is_known()) then
-            error = max(error, trend%volume_error(self%before%well_flow(:model%wells%n_all), &
-                                                  self%now%coarse%well_flow(:model%wells%n_all), &
-                                                  self%now%given, dt, least_volume(self, dt)))
+            error = max(error, trend%volume_error(self%before%well_flow, &
+                                                  self%now%coarse%well_flow, self%now%given, dt, &
+                                                  least_volume(self, dt)))
          end if
          ! Rates jump where a well is switched: the length of the step before does not count.
          if (self%step%is_after_switch .and. trend%dt > dt) then
@@ -312,7 +312,7 @@ contains
 
       associate (state => self%now%coarse, model => self%problem%model, since => &
                  self%before%time + dt - last_switch(self%scene, self%before%time))
-         most = maxval([self%now%given + dt*abs(state%well_flow(:model%wells%n_all)), &
+         most = maxval([self%now%given + dt*abs(state%well_flow), &
                         since*abs(rate(self%scene%injections, self%before%time, dt))])
          fluid = sum(model%condensed%length*state%aperture) &
                  + self%now%trend%least_pressure*sum(model%matrix%storage)
@@ -341,7 +341,7 @@ contains
          flow = rate(self%scene%injections, self%before%time, dt)
          if (model%wells%n_all > 0) then
             flow(model%wells%number) = state%well_flow(:model%wells%n_all)
-            self%now%given = self%now%given + dt*abs(state%well_flow(:model%wells%n_all))
+            self%now%given = self%now%given + dt*abs(state%well_flow)
          end if
          fluid%injected = fluid%injected + dt*sum(flow)
          fluid%produced = fluid%produced - dt*sum(min(flow, 0.0_rk))

@@ -104,10 +104,8 @@ contains
                call self%chronicle%add_event(before, event_well, what_begins(well, stage))
             end associate
             if (self%problem%model%wells%n_all == 0) cycle
-            where (self%problem%model%wells%number == w)
-               self%now%at_limit = .false.
-               self%now%given = 0.0_rk
-            end where
+            where (self%problem%model%wells%number == w) self%now%at_limit = .false.
+            where (self%problem%model%wells%flow_number() == w) self%now%given = 0.0_rk
          end associate
       end do
       any_changed = .false.
@@ -116,7 +114,9 @@ contains
       do w = 1, size(at_limit, kind=ik)
          if (at_limit(w) .eqv. self%now%at_limit(w)) cycle
          any_changed = .true.
-         self%now%given(w) = 0.0_rk
+         associate (wells => self%problem%model%wells)
+            where (wells%flow_number() == wells%number(w)) self%now%given = 0.0_rk
+         end associate
          words = " has returned to its rate"
          if (at_limit(w)) words = " has reached its pressure limit"
          associate (well => self%scene%injections(self%problem%model%wells%number(w)))
