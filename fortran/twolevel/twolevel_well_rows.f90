@@ -189,9 +189,10 @@ contains
    pure function entry_rows(problem, state) result(rows)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      type(entry_row_t) :: rows(problem%model%wells%n_entries)
+      type(entry_row_t), allocatable :: rows(:)
       integer(ik) :: e, entry, w
 
+      allocate (rows(problem%model%wells%n_entries))
       associate (wells => problem%model%wells)
          do e = 1, wells%n_entries
             w = wells%of_entry(e)
