@@ -34,6 +34,7 @@ FLUID = ANY_FLUID | {"with a fluid and one well", "with a fluid and at most one 
 GROWING = FLUID | {"with a fluid and growth", "with a fluid, wells and growth"}
 SEVERAL = ANY_FLUID | {"with a fluid and several wells"}
 JOINTS = FLUID | {"with a fluid and joints"}
+ENTRIES = JOINTS | {"with a fluid and wells with entries"}
 MECHANICS = {
     "always",
     "with tips and a toughness",
@@ -43,6 +44,7 @@ MECHANICS = {
 }
 SLIP, WELLS = "slip_events.csv", "wells.csv"  # with a fluid only
 TABLES = ("history.csv", "tips.csv", "fractures.csv", "probes.csv", "events.csv", SLIP, WELLS)
+OF_ENTRIES = "entries.csv"
 
 # An edge crack that grows once on meshes that follow the error: all that mechanics can write.
 EDGE_CRACK = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
@@ -67,6 +69,9 @@ CROSSING = varied(
     )
 )
 
+
+# One well with an entry into each of both.
+TWO_ENTRIES = CROSSING.replace("fracture = 'f1'", "fracture = 'f1', 'f2'", 1)
 
 # Two wells in one fracture.
 SEVERAL_WELLS = varied(("&time", "&injection fracture = 'f1', rate = -1.0e-9 /\n&time"))
@@ -100,7 +105,7 @@ def test_the_table_of_names_is_that_of_the_solver(program: None) -> None:
     assert done.stdout == NAMES.read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module", params=["fluid", "joints", "wells", "mechanics"])
+@pytest.fixture(scope="module", params=["fluid", "joints", "wells", "entries", "mechanics"])
 def out_and_runs(
     program: None, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, set[str]]:
@@ -111,6 +116,7 @@ def out_and_runs(
     scene, words = {
         "joints": (CROSSING, JOINTS),
         "wells": (SEVERAL_WELLS, SEVERAL),
+        "entries": (TWO_ENTRIES, ENTRIES),
         "mechanics": (EDGE_CRACK, MECHANICS),
     }[which]
     return run(tmp_path_factory.mktemp(which), scene), words
@@ -140,13 +146,14 @@ def keys(content: object, above: str = "") -> list[str]:
 
 def test_every_run_that_the_table_names_is_tested(described: dict[str, list[Entry]]) -> None:
     assert {entry.runs for entries in described.values() for entry in entries} == (
-        GROWING | JOINTS | SEVERAL | MECHANICS
+        GROWING | ENTRIES | SEVERAL | MECHANICS
     )
 
 
 def test_tables(described: dict[str, list[Entry]], out_and_runs: tuple[Path, set[str]]) -> None:
     out, runs = out_and_runs
     tables = [file for file in TABLES if file not in (SLIP, WELLS) or runs != MECHANICS]
+    tables += [OF_ENTRIES] if runs == ENTRIES else []
     assert {path.name for path in out.glob("*.csv")} == set(tables)
     for file in tables:
         expected = names(described[file], runs)

@@ -397,6 +397,9 @@ contains
          do i = 1, size(chronicle%wells, kind=ik)
             call self%files%tables%well_row(chronicle%wells(i))
          end do
+         do i = 1, size(chronicle%entries, kind=ik)
+            call self%files%tables%entry_row(chronicle%entries(i))
+         end do
          do i = 1, size(chronicle%slip_events, kind=ik)
             call self%files%tables%slip_event_row(chronicle%slip_events(i))
          end do

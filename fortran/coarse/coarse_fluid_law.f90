@@ -164,7 +164,7 @@ contains
       into_joints = paths%joints%injection
       if (paths%wells%n > 0) then
          into_joints = into_joints + matmul(paths%wells%joint_share, &
-                                            after%well_flow(:paths%wells%n))
+                                            paths%wells%at_places(after%well_flow))
       end if
       balance = balance - dt*sum(into_joints) + dt*paths%joints%outflow(after%branch_flow)
    end subroutine add_fracture_balance

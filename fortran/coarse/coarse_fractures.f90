@@ -121,7 +121,8 @@ contains
       eq%layout = fracture_layout_t(n_cells=n, per_cell=7_ik, &
                                     n_flows=size(paths%connections, 2, kind=ik), &
                                     n_branches=paths%joints%branch_count(), &
-                                    n_wells=paths%wells%n, n_joints=paths%joints%n)
+                                    n_wells=paths%wells%n + paths%wells%n_entries, &
+                                    n_joints=paths%joints%n)
       eq%dt = dt
       eq%stiffness = paths%settings%young/reference
       eq%unit = reference**2/paths%settings%young

@@ -11,7 +11,7 @@
 !!   [u]_n, [u]_tau at its start, p+, [u]_n, [u]_tau at its end, p-
 !! All unknowns on the fractures, x: per fracture cell the same and p_F; after the last cell the
 !! flows along the fractures, one per pair of cells that exchange fluid; then those into joints, one
-!! per branch, and those of wells; then the pressures of the joints.
+!! per branch, and those of wells and of their entries; then the pressures of the joints.
 module coarse_layout
    use base_kinds, only: ik
    use mesh_types, only: mesh_t
@@ -36,7 +36,7 @@ module coarse_layout
    type, extends(condensed_layout_t) :: fracture_layout_t
       integer(ik) :: n_flows = 0  !< pairs of cells that exchange fluid
       integer(ik) :: n_branches = 0  !< cells that reach a joint, by joint
-      integer(ik) :: n_wells = 0  !< whose flow is an unknown
+      integer(ik) :: n_wells = 0  !< and their entries, whose flow is an unknown
       integer(ik) :: n_joints = 0
    contains
       procedure :: count => fracture_count
@@ -114,7 +114,7 @@ contains
       at_branch = self%at_flow(self%n_flows) + branch
    end function at_branch
 
-   !> Flow of a well into what it feeds.
+   !> Flow of a well into what it feeds, or of an entry; a number of wells_t.
    elemental integer(ik) function at_well(self, well)
       class(fracture_layout_t), intent(in) :: self
       integer(ik), intent(in) :: well

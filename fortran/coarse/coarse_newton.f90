@@ -16,7 +16,7 @@ module coarse_newton
    use coarse_pivoting, only: pivot_fractures
    use coarse_sparse_step, only: sparse_step_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
-   use coarse_well_flow, only: fill_well, find_well
+   use coarse_well_flow, only: fill_well, find_entry_flows, find_well
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged, &
                              outcome_not_a_number, outcome_singular, step_quality_t
    use contact_point, only: contact_equations, contact_equations_t, contact_residual
@@ -150,9 +150,8 @@ contains
          end do
          x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(i, state%pressure(i), state%void(i))
       end do
-      do i = 1, eq%layout%n_wells
-         x(eq%layout%at_well(i)) = state%well_flow(i)*eq%dt/eq%unit
-      end do
+      if (eq%layout%n_wells > 0) x(eq%layout%at_well(1_ik):eq%layout%at_well(eq%layout%n_wells)) &
+         & = eq%paths%wells%at_places(state%well_flow)*eq%dt/eq%unit
       do i = 1, eq%layout%n_joints
          x(eq%layout%at_joint(i)) = eq%paths%joints%mean_pressure(i, state%pressure)
       end do
@@ -185,9 +184,10 @@ contains
       associate (layout => eq%layout, to_flow => eq%unit/eq%dt)
          state%flow = x(layout%at_flow([(i, i=1, layout%n_flows)]))*to_flow
          state%branch_flow = x(layout%at_branch([(i, i=1, layout%n_branches)]))*to_flow
-         do i = 1, layout%n_wells
+         do i = 1, eq%paths%wells%n
             call find_well(i, x, eq, state%well_flow(i), head, state%well_rate(i))
             state%well_head(i) = head
+            call find_entry_flows(i, x, eq, state%well_flow)
          end do
          state%joint_pressure = x(layout%at_joint([(i, i=1, layout%n_joints)]))
       end associate
@@ -346,7 +346,7 @@ contains
       do k = 1, self%layout%n_branches
          call fill_branch(k, x, self)
       end do
-      do k = 1, self%layout%n_wells
+      do k = 1, self%paths%wells%n
          call fill_well(k, x, self)
       end do
       if (allocated(self%paths%settings%fluid_law) .and. .not. self%paths%settings%equilibrate) then

@@ -75,7 +75,8 @@ module coarse_state
       real(rk), allocatable :: branch_flow(:)  !< (branches) into the joints [m2/s]
       real(rk), allocatable :: joint_pressure(:)  !< (joints) [Pa]
       ! Wells whose flow is an unknown; unallocated: there are none.
-      real(rk), allocatable :: well_flow(:)  !< into the fracture [m2/s]
+      !> Into the fracture, of all entries together; then those of the entries [m2/s]
+      real(rk), allocatable :: well_flow(:)
       real(rk), allocatable :: well_head(:)  !< pressure at the head [Pa]
       real(rk), allocatable :: well_rate(:)  !< into the well at its head, mean of the step [m2/s]
       integer(ik), allocatable :: rock_well_control(:)  !< of coarse_wells: of those in rock

@@ -60,7 +60,8 @@ contains
       if (allocated(error) .or. .not. report%converged) return
       if (.not. allocated(state%rings)) return
       if (self%rock_wells%n > 0) then
-         call self%rock_wells%update_rings(dt, state%well_flow(self%wells%n + 1:), state%rings)
+         call self%rock_wells%update_rings(dt, state%well_flow(self%wells%n + 1: &
+                                                               self%wells%n_all), state%rings)
       else
          call self%rock_wells%update_rings(dt, [real(rk) ::], state%rings)
       end if
@@ -230,7 +231,7 @@ contains
          state%injection = self%cells%injection
          if (paths%wells%n > 0) then
             state%injection = state%injection + matmul(paths%wells%share, &
-                                                       state%well_flow(:paths%wells%n))
+                                                       paths%wells%at_places(state%well_flow))
          end if
       end if
       call timers%start(phase_solve)

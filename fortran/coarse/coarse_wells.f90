@@ -34,9 +34,14 @@ module coarse_wells
       integer(ik) :: n = 0  !< in fractures
       integer(ik) :: n_all = 0  !< these first, then those in the rock
       integer(ik), allocatable :: number(:)  !< (n_all) among all wells of the scene
-      real(rk), allocatable :: share(:, :)  !< (fracture cells, n) of its flow, into each [-]
-      real(rk), allocatable :: joint_share(:, :)  !< (joints, n) [-]
-      !> (n) it stands between two cells, half a cell away from the middles of both
+      ! Places with a flow: those of the n wells, of which none counts whose well has entries, then
+      ! the entries.
+      integer(ik) :: n_entries = 0
+      integer(ik), allocatable :: of_entry(:)  !< (n_entries) the well of each, among the n
+      real(rk), allocatable :: entry_loss(:)  !< (n_entries) R in the loss R |q| q [Pa s2/m4]
+      real(rk), allocatable :: share(:, :)  !< (fracture cells, places) of its flow, into each [-]
+      real(rk), allocatable :: joint_share(:, :)  !< (joints, places) [-]
+      !> (places) it lies between two cells, half a cell away from the middles of both
       logical, allocatable :: is_between(:)
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
@@ -49,6 +54,11 @@ module coarse_wells
       real(rk), allocatable :: pressure(:)  !< (n_all) prescribed, or the limit [Pa]
    contains
       procedure :: lost
+      procedure :: at_places
+      procedure :: flow_number
+      procedure :: first_entry
+      procedure :: last_entry
+      procedure :: entries_loss
       procedure :: is_at_limit
    end type wells_t
 
@@ -93,6 +103,58 @@ contains
       pressure = (self%friction(well) + self%turbulence(well)*abs(flow))*flow
       slope = self%friction(well) + 2.0_rk*self%turbulence(well)*abs(flow)
    end subroutine lost
+
+   !> The flows of the places among those of a state, whose wells in the rock stand before the
+   !! entries.
+   pure function at_places(self, well_flow) result(flow)
+      class(wells_t), intent(in) :: self
+      real(rk), intent(in) :: well_flow(:)  !< of state_t [m2/s]
+      real(rk) :: flow(self%n + self%n_entries)  !< [m2/s]
+
+      flow = [well_flow(:self%n), well_flow(self%n_all + 1:)]
+   end function at_places
+
+   !> The well of each flow of a state, among all wells of the scene.
+   pure function flow_number(self) result(number)
+      class(wells_t), intent(in) :: self
+      integer(ik) :: number(self%n_all + self%n_entries)
+
+      number(:self%n_all) = self%number
+      if (self%n_entries > 0) number(self%n_all + 1:) = self%number(self%of_entry)
+   end function flow_number
+
+   !> Place of the first entry of a well; without entries that of the well itself.
+   pure integer(ik) function first_entry(self, well)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well  !< among the n in fractures
+
+      first_entry = well
+      if (self%n_entries == 0) return
+      if (any(self%of_entry == well)) first_entry = self%n + findloc(self%of_entry, well, dim=1, &
+                                                                     kind=ik)
+   end function first_entry
+
+   !> Place of its last entry.
+   pure integer(ik) function last_entry(self, well)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well  !< among the n in fractures
+
+      last_entry = self%first_entry(well)
+      if (last_entry > self%n) last_entry = last_entry + count(self%of_entry == well, kind=ik) - 1
+   end function last_entry
+
+   !> R of all entries of a well together, where the fractures have the same pressure: the flows are
+   !! as 1/sqrt(R) [Pa s2/m4].
+   pure real(rk) function entries_loss(self, well) result(loss)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well
+
+      loss = 0.0_rk
+      if (self%n_entries == 0) return
+      if (.not. any(self%of_entry == well)) return
+      if (any(self%of_entry == well .and. .not. self%entry_loss > 0.0_rk)) return
+      loss = 1.0_rk/sum(1.0_rk/sqrt(self%entry_loss), mask=self%of_entry == well)**2
+   end function entries_loss
 
    !> Whether a limited well is at its pressure limit, with less than its rate.
    pure logical function is_at_limit(self, well, rate, head)

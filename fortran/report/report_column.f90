@@ -7,7 +7,7 @@ module report_column
 
    public :: applies, column_t, well_count
    public :: always, with_fluid, with_fractures, without_fluid, with_growth
-   public :: with_toughness, with_joints, with_wells, with_fluid_and_growth
+   public :: with_toughness, with_joints, with_wells, with_entries, with_fluid_and_growth
    public :: with_wells_and_growth, with_one_well, at_most_one, with_several, with_error
    public :: an_error, chosen, counted, label, measured, of_step, placed, states
 
@@ -20,6 +20,7 @@ module report_column
    character(len=*), parameter :: with_toughness = "with tips and a toughness"
    character(len=*), parameter :: with_joints = "with a fluid and joints"
    character(len=*), parameter :: with_wells = "with a fluid and wells"
+   character(len=*), parameter :: with_entries = "with a fluid and wells with entries"
    character(len=*), parameter :: with_fluid_and_growth = "with a fluid and growth"
    character(len=*), parameter :: with_wells_and_growth = "with a fluid, wells and growth"
    character(len=*), parameter :: with_one_well = "with a fluid and one well"
@@ -64,6 +65,8 @@ contains
          applies = scene%has_fluid() .and. scene%has_fractures()
       case (with_wells)
          applies = scene%has_fluid() .and. scene%has_wells()
+      case (with_entries)
+         applies = scene%has_fluid() .and. scene%has_entries()
       case (with_fluid_and_growth)
          applies = scene%has_fluid() .and. scene%growth%enabled
       case (with_wells_and_growth)

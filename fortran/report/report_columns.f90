@@ -5,14 +5,14 @@
 !! or the reason why there is none, and one line in report_tables, the source of its value.
 module report_columns
    use report_column, only: always, an_error, at_most_one, chosen, column_t, counted, label, &
-                            of_step, placed, states, with_fluid, with_fluid_and_growth, &
-                            with_fractures, with_one_well, with_several, with_wells, &
-                            with_wells_and_growth, without_fluid
+                            of_step, placed, states, with_entries, with_fluid, &
+                            with_fluid_and_growth, with_fractures, with_one_well, with_several, &
+                            with_wells, with_wells_and_growth, without_fluid
    implicit none(type, external)
    private
 
    public :: event_columns, fracture_columns, history_columns, probe_columns
-   public :: slip_event_columns, tip_columns, well_columns
+   public :: entry_columns, slip_event_columns, tip_columns, well_columns
 
    ! The tables keep their own layout.
    !&<
@@ -284,7 +284,8 @@ module report_columns
          "Flow from the well into fracture or rock: rate_m2_s less wellbore storage", &
          "flow_error_m2_s"), &
       column_t("pressure_pa", "Pa", with_wells, &
-         "Fluid pressure at the well in fracture or rock; mean over the cells it supplies", &
+         "Fluid pressure at the well in fracture or rock; mean over the cells it supplies. "// &
+         "With entries that in the well, before their losses", &
          "pressure_error_pa"), &
       column_t("head_pressure_pa", "Pa", with_wells, &
          "Pressure at the well head, with pressure losses; without the weight of the fluid", &
@@ -307,6 +308,25 @@ module report_columns
          "Estimated error of injected_m2; 0 where the rate is prescribed", an_error), &
       column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_wells, &
          "Estimated error of injectivity_m2_s_pa", an_error)]
+
+   type(column_t), parameter :: entry_columns(*) = [ &
+      column_t("time_s", "s", with_entries, "Time", chosen), &
+      column_t("well", "-", with_entries, "Name of the well", label), &
+      column_t("entry", "-", with_entries, "Number of the entry in its well, from 1", label), &
+      column_t("fracture", "-", with_entries, "Number of the fracture", label), &
+      column_t("flow_m2_s", "m2/s", with_entries, &
+         "Flow from the well into the fracture, mean over the step; negative: out of it", &
+         "flow_error_m2_s"), &
+      column_t("share", "-", with_entries, &
+         "flow_m2_s over that of the well; 0 where the well has none", "share_error"), &
+      column_t("pressure_pa", "Pa", with_entries, &
+         "Fluid pressure at the entry in the fracture, behind its loss; mean over the cells "// &
+         "it supplies", "pressure_error_pa"), &
+      column_t("flow_error_m2_s", "m2/s", with_entries, "Estimated error of flow_m2_s", an_error), &
+      column_t("share_error", "-", with_entries, "Estimated error of share", an_error), &
+      column_t("pressure_error_pa", "Pa", with_entries, &
+         "Estimated error of pressure_pa in time and space, with that by the length of "// &
+         "growing fractures", an_error)]
 
    type(column_t), parameter :: slip_event_columns(*) = [ &
       column_t("event", "-", with_fluid, &

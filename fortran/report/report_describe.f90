@@ -4,8 +4,8 @@
 module report_describe
    use base_kinds, only: rk
    use report_column, only: column_t
-   use report_columns, only: event_columns, fracture_columns, history_columns, probe_columns, &
-                             slip_event_columns, tip_columns, well_columns
+   use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
+                             probe_columns, slip_event_columns, tip_columns, well_columns
    use report_keys, only: fracture_fields, intersection_fields, matrix_fields, network_keys, &
                           record_keys
    use report_limits, only: limits
@@ -75,11 +75,12 @@ module report_describe
       "(meshio)."
    !&>
 
-   !> Names of the kinds of parameters, kind_real to kind_wholes.
-   character(len=*), parameter :: kind_words(8) = [character(len=21) :: "number", &
+   !> Names of the kinds of parameters, kind_real to kind_names.
+   character(len=*), parameter :: kind_words(9) = [character(len=21) :: "number", &
                                                      "list of numbers", "whole number", "logical", &
                                                                          "text", "name", "choice", &
-                                                                            "list of whole numbers"]
+                                                                            "list of whole numbers", &
+                                                                                  "list of names"]
 
    !> Scenes in which a name without a default is required, need_never to need_choice.
    character(len=*), parameter :: need_words(0:4) = [character(len=15) :: "", "always", &
@@ -205,6 +206,9 @@ contains
       call put_file(json, "slip_events.csv", about_slip_events, slip_event_columns)
       call put_file(json, "wells.csv", &
                     "With wells: a row per well and row of history.csv.", well_columns)
+      call put_file(json, "entries.csv", &
+                    "With wells that have several entries, or a loss at one: a row per entry "// &
+                    "and row of history.csv.", entry_columns)
       call put_file(json, "run.json", &
                     "Summary of the run. A dot in a name denotes an object.", record_keys)
       call put_file(json, "network.json", &

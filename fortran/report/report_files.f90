@@ -98,9 +98,9 @@ module report_files
       end function c_remove
    end interface
 
-   character(len=*), parameter :: top_files(14) = [character(len=18) :: "scene.nml", "run.json", &
+   character(len=*), parameter :: top_files(15) = [character(len=18) :: "scene.nml", "run.json", &
       & "history.csv", "tips.csv", "fractures.csv", "probes.csv", "network.json", "events.csv", &
-      & "slip_events.csv", "wells.csv", "run.log", &
+      & "slip_events.csv", "wells.csv", "entries.csv", "run.log", &
       & "checkpoint.bin", "checkpoint_new.bin", "checkpoint_old.bin"]
 
    integer(c_int), parameter :: is_held = -1  !< by another run; as in report_files.c

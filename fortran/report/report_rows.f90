@@ -13,7 +13,7 @@ module report_rows
    public :: event_step_cut, event_unstable, event_well, event_window, fracture_fields_t
    public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
    public :: matrix_fields_t, probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
-   public :: well_errors_t, well_row_t
+   public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
    type :: fluid_totals_t
@@ -127,6 +127,23 @@ module report_rows
       real(rk) :: asked = 0.0_rk  !< prescribed rate of the stage; 0 without one [m2/s]
       type(well_errors_t) :: error
    end type well_row_t
+
+   !> Estimated errors of an entry after a step, in the units of its row.
+   type :: entry_errors_t
+      real(rk) :: flow = 0.0_rk, share = 0.0_rk, pressure = 0.0_rk
+   end type entry_errors_t
+
+   !> An entry of a well after a step, a row of entries.csv.
+   type :: entry_row_t
+      real(rk) :: time = 0.0_rk  !< [s]
+      character(len=:), allocatable :: name  !< of the well
+      integer(ik) :: entry = 0  !< its number in the well
+      integer(ik) :: fracture = 0
+      real(rk) :: flow = 0.0_rk  !< flow into the fracture [m2/s]
+      real(rk) :: share = 0.0_rk  !< of the flow of the well; 0 where that is none [-]
+      real(rk) :: pressure = 0.0_rk  !< in the fracture [Pa]
+      type(entry_errors_t) :: error
+   end type entry_row_t
 
    !> A state at the probes, a row of probes.csv.
    type :: probe_row_t
@@ -289,6 +306,7 @@ module report_rows
       type(event_t), allocatable :: events(:)
       type(tip_row_t), allocatable :: tips(:)
       type(well_row_t), allocatable :: wells(:)
+      type(entry_row_t), allocatable :: entries(:)
       type(slip_event_t), allocatable :: slip_events(:)  !< slip events that have ended
       type(text_t), allocatable :: remarks(:)  !< lines of run.log
       logical :: has_new_network = .false.  !< the mesh was updated after growth
@@ -395,6 +413,7 @@ contains
       self%events = [event_t ::]
       self%tips = [tip_row_t ::]
       self%wells = [well_row_t ::]
+      self%entries = [entry_row_t ::]
       self%slip_events = [slip_event_t ::]
       self%remarks = [text_t ::]
       self%has_new_network = .false.

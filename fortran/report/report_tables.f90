@@ -8,10 +8,10 @@ module report_tables
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
    use report_column, only: applies, column_t, well_count
-   use report_columns, only: event_columns, fracture_columns, history_columns, probe_columns, &
-                             slip_event_columns, tip_columns, well_columns
-   use report_rows, only: fracture_fields_t, history_errors_t, history_row_t, probe_row_t, &
-                          slip_event_t, tip_row_t, well_row_t
+   use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
+                             probe_columns, slip_event_columns, tip_columns, well_columns
+   use report_rows, only: entry_row_t, fracture_fields_t, history_errors_t, history_row_t, &
+                          probe_row_t, slip_event_t, tip_row_t, well_row_t
    use report_series, only: series_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
@@ -30,6 +30,7 @@ module report_tables
       type(series_t) :: events
       type(series_t) :: slip_events
       type(series_t) :: wells
+      type(series_t) :: entries
       type(text_t), allocatable, private :: probe_names(:)
       type(text_t), allocatable, private :: pressure_names(:)  !< columns of the wells' pressures
    contains
@@ -41,6 +42,7 @@ module report_tables
       procedure :: event_row
       procedure :: slip_event_row
       procedure :: well_row
+      procedure :: entry_row
       procedure :: flush => flush_tables
       procedure :: visit
       procedure :: visit_text
@@ -65,6 +67,8 @@ contains
             & directory//"/slip_events.csv", slip_event_columns, scene)
       end if
     if (scene%has_wells()) call open_table(self%wells, directory//"/wells.csv", well_columns, scene)
+      if (scene%has_entries()) call open_table(self%entries, directory//"/entries.csv", &
+                                               entry_columns, scene)
       if (allocated(scene%probes)) then
          if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene)
       end if
@@ -368,6 +372,26 @@ contains
       end associate
    end subroutine well_row
 
+   !> Add an entry of a well after a step.
+   subroutine entry_row(self, row)
+      class(tables_t), intent(inout) :: self
+      type(entry_row_t), intent(in) :: row
+
+      associate (table => self%entries)
+         call table%put("time_s", row%time)
+         call table%put("well", row%name)
+         call table%put("entry", row%entry)
+         call table%put("fracture", row%fracture)
+         call table%put("flow_m2_s", row%flow)
+         call table%put("share", row%share)
+         call table%put("pressure_pa", row%pressure)
+         call table%put("flow_error_m2_s", row%error%flow)
+         call table%put("share_error", row%error%share)
+         call table%put("pressure_error_pa", row%error%pressure)
+         call table%end_row()
+      end associate
+   end subroutine entry_row
+
    !> Write all tables that have changed, also after a failure of one; the error is the first.
    subroutine flush_tables(self, error)
       class(tables_t), intent(inout) :: self
@@ -380,6 +404,7 @@ contains
       call flush_one(self%events)
       call flush_one(self%slip_events)
       call flush_one(self%wells)
+      call flush_one(self%entries)
 
    contains
 

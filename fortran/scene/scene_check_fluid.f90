@@ -3,11 +3,12 @@ module scene_check_fluid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: integer_text
+   use base_tolerances, only: same_place
    use scene_check_geometry, only: contains_point, distance_to, point_text
    use scene_fluid_law, only: fluid_law_t, has_law, new_fluid_law
    use scene_parameters, only: groups
    use scene_sheet, only: group_index, parameter_index, record_t, refuse, sheet_t
-   use scene_types, only: fluid_t, injection_t, name_length, scene_t
+   use scene_types, only: entry_t, fluid_t, injection_t, name_length, scene_t
    use scene_values, only: value_t
    use scene_words, only: nearest_word, real_text, rounded_text
    implicit none(type, external)
@@ -184,6 +185,7 @@ contains
             if (groups(record%group)%name /= "injection") cycle
             if (record%is_given("fracture")) then
                call check_target(sheet, i, error)
+               if (.not. allocated(error)) call check_entries(sheet, i, error)
                if (allocated(error)) return
                if (record%is_given("radius")) then
                  call refuse(error, sheet, i, "radius", "is given, but only a well in the rock "// &
@@ -192,6 +194,8 @@ contains
             else if (.not. record%is_given("x")) then
              call refuse(error, sheet, i, "fracture", "is missing: a well needs a fracture, or "// &
                            "x and y in the rock")
+            else
+               call check_entries(sheet, i, error)
             end if
             if (allocated(error)) return
             if (.not. (record%is_set("rate") .or. record%is_set("pressure"))) then
@@ -206,15 +210,53 @@ contains
       end do
    end subroutine check_given_wells
 
-   !> The fracture of a well is one of the scene.
+   !> Each entry of a well is in another fracture and has one value of each list; a well in the
+   !! rock has no entries.
+   pure subroutine check_entries(sheet, well, error)
+      type(sheet_t), intent(in) :: sheet
+      integer, intent(in) :: well  !< index into sheet%records
+      type(error_t), allocatable, intent(out) :: error
+      character(len=10), parameter :: lists(3) = [character(len=10) :: "x", "y", "entry_loss"]
+      type(value_t) :: fracture, list
+      character(len=:), allocatable :: right
+      integer :: i, n
+
+      n = 1
+      fracture = sheet%records(well)%value("fracture")
+      if (fracture%is_set) then
+         n = size(fracture%names)
+         do i = 2, n
+            if (all(fracture%names(:i - 1) /= fracture%names(i))) cycle
+            call refuse(error, sheet, well, "fracture", "names '"//trim(fracture%names(i))// &
+                        "' twice, but the entries of a well must be in different fractures")
+            return
+         end do
+      else if (sheet%records(well)%is_set("entry_loss")) then
+         call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has no "// &
+                     "entries; use friction")
+         return
+      end if
+      do i = 1, size(lists)
+         list = sheet%records(well)%value(trim(lists(i)))
+         if (.not. list%is_set) cycle
+         if (size(list%reals) == n .or. (i == 3 .and. size(list%reals) == 1)) cycle
+         right = "one"
+         if (n > 1) right = "as many as fracture, "//integer_text(int(n, ik))
+         call refuse(error, sheet, well, trim(lists(i)), "has "// &
+                     integer_text(size(list%reals, kind=ik))//" values but must have "//right)
+         return
+      end do
+   end subroutine check_entries
+
+   !> The fractures of a well are some of the scene.
    pure subroutine check_target(sheet, well, error)
       type(sheet_t), intent(in) :: sheet
       integer, intent(in) :: well  !< index into sheet%records
       type(error_t), allocatable, intent(out) :: error
       type(value_t) :: wanted
       character(len=name_length), allocatable :: names(:)
-      character(len=:), allocatable :: reason, likely
-      integer :: group, i, item, n
+      character(len=:), allocatable :: likely, name, reason
+      integer :: e, group, i, item, n
 
       group = group_index("fracture")
       item = parameter_index(group, "name")
@@ -226,15 +268,16 @@ contains
          names(n) = sheet%records(i)%values(item)%text
       end do
       wanted = sheet%records(well)%value("fracture")
-      if (size(names) == 0) then
-         call refuse(error, sheet, well, "fracture", "is '"//wanted%text// &
-                     "', but the scene has no fracture")
-      else if (.not. any(names == wanted%text)) then
-         reason = "is '"//wanted%text//"', which is no fracture of the scene"
-         likely = nearest_word(wanted%text, names)
+      do e = 1, size(wanted%names)
+         if (any(names == wanted%names(e))) cycle
+         name = trim(wanted%names(e))
+         reason = "is '"//name//"', which is no fracture of the scene"
+         if (size(names) == 0) reason = "is '"//name//"', but the scene has no fracture"
+         likely = nearest_word(name, names)
          if (likely /= "") reason = reason//"; the nearest is '"//likely//"'"
          call refuse(error, sheet, well, "fracture", reason)
-      end if
+         return
+      end do
    end subroutine check_target
 
    !> Stages, pressures, positions and names of the wells.
@@ -349,7 +392,9 @@ contains
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: i  !< well
       type(error_t), allocatable, intent(out) :: error
+      type(entry_t), allocatable :: entries(:)
       real(rk) :: distance
+      integer :: e
 
       associate (well => scene%injections(i))
          if (.not. well%at_point) return
@@ -362,14 +407,26 @@ contains
             end if
             return
          end if
-         distance = distance_to(scene%fractures(well%fracture), well%x, well%y)
-         if (distance <= scene%cell_size_of(well%fracture)) return
-         call refuse(error, sheet, record, "x", "and y are "// &
-                     point_text(well%x, well%y)//", "//rounded_text(distance)// &
-                     " m away from fracture '"//trim(scene%fractures(well%fracture)%name)// &
-                     "', but must be within size_fracture, "// &
-                     real_text(scene%cell_size_of(well%fracture))//" m")
+         entries = [entry_t(well%fracture, well%x, well%y)]
+         if (allocated(well%entries)) entries = well%entries
       end associate
+      do e = 1, size(entries)
+         associate (entry => entries(e), size => scene%cell_size_of(entries(e)%fracture))
+            if (any(abs(entries(:e - 1)%x - entry%x) + abs(entries(:e - 1)%y - entry%y) &
+                    <= same_place*size)) then
+               call refuse(error, sheet, record, "x", "and y are "//point_text(entry%x, &
+                           entry%y)//" for two entries, which must be at different points")
+               return
+            end if
+            distance = distance_to(scene%fractures(entry%fracture), entry%x, entry%y)
+            if (distance <= size) cycle
+            call refuse(error, sheet, record, "x", "and y are "// &
+                        point_text(entry%x, entry%y)//", "//rounded_text(distance)// &
+                        " m away from fracture '"//trim(scene%fractures(entry%fracture)%name)// &
+                        "', but must be within size_fracture, "//real_text(size)//" m")
+            return
+         end associate
+      end do
    end subroutine check_place
 
    !> A well in the rock with pressure control is thin compared with its cell, and its pressure loss

@@ -5,12 +5,13 @@ module scene_exchange
    use base_kinds, only: ik, radians, rk
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
-                                    exchange_side, exchange_word, set_text, to_degrees
+                                    exchange_side, exchange_word, set_names, set_text, &
+                                    to_degrees
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
    use scene_types, only: discretization_t, domain_t, fluid_t, fracture_t, growth_t, injection_t, &
-                          scene_t
+                          name_length, scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
@@ -27,7 +28,7 @@ contains
       type(scene_t), intent(out) :: scene
       type(record_t) :: record
       type(value_t) :: value
-      integer :: f, i, n(size(groups))
+      integer :: e, f, i, n(size(groups))
 
       allocate (scene%fractures(count_of(sheet, "fracture")))
       allocate (scene%injections(count_of(sheet, "injection")))
@@ -47,8 +48,14 @@ contains
       do i = 1, size(scene%injections)  ! fractures may follow the wells in the file
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          if (.not. value%is_set) cycle
-         do f = 1, size(scene%fractures)
-            if (scene%fractures(f)%name == value%text) scene%injections(i)%fracture = int(f, ik)
+         do e = size(value%names), 1, -1
+            do f = 1, size(scene%fractures)
+               if (scene%fractures(f)%name /= value%names(e)) cycle
+               scene%injections(i)%fracture = int(f, ik)
+               if (allocated(scene%injections(i)%entries)) then
+                  scene%injections(i)%entries(e)%fracture = int(f, ik)
+               end if
+            end do
          end do
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
@@ -111,6 +118,7 @@ contains
       type(scene_t), intent(inout) :: scene
       integer, intent(in) :: i
       type(value_t) :: name
+      character(len=name_length), allocatable :: names(:)
       integer :: side
 
       select case (groups(record%group)%name)
@@ -136,8 +144,11 @@ contains
       case ("injection")
          associate (well => scene%injections(i))
             if (record%reading) well%at_point = record%is_set("x")
-            if (.not. record%reading .and. well%fracture > 0) call set_text(record, "fracture", &
-               & trim(scene%fractures(well%fracture)%name))
+            if (.not. record%reading .and. well%fracture > 0) then
+               names = [scene%fractures(well%fracture)%name]
+               if (allocated(well%entries)) names = scene%fractures(well%entries%fracture)%name
+               call set_names(record, "fracture", names)
+            end if
             call exchange_injection(record, well)
          end associate
       case ("probe")
@@ -328,12 +339,49 @@ contains
       call exchange(record, "storage", injection%storage)
       call exchange(record, "friction", injection%friction)
       call exchange(record, "turbulence", injection%turbulence)
-      if (injection%at_point) then
-         call exchange(record, "x", injection%x)
-         call exchange(record, "y", injection%y)
-      end if
+      call exchange_entries(record, injection)
       if (injection%fracture == 0) call exchange(record, "radius", injection%radius)
    end subroutine exchange_injection
+
+   !> Points and losses of the entries of a well, without their fractures.
+   pure subroutine exchange_entries(record, injection)
+      type(record_t), intent(inout) :: record
+      type(injection_t), intent(inout) :: injection
+      real(rk), allocatable :: loss(:), x(:), y(:)
+      type(value_t) :: fracture
+      integer :: n
+
+      if (.not. record%reading) then
+         x = [injection%x]
+         y = [injection%y]
+         if (allocated(injection%entries)) then
+            x = injection%entries%x
+            y = injection%entries%y
+            if (any(injection%entries%loss > 0.0_rk)) loss = injection%entries%loss
+         end if
+      end if
+      if (injection%at_point) then
+         call exchange(record, "x", x)
+         call exchange(record, "y", y)
+      end if
+      call exchange(record, "entry_loss", loss)
+      if (.not. record%reading) return
+      if (injection%at_point) then
+         injection%x = x(1)
+         injection%y = y(1)
+      end if
+      fracture = record%value("fracture")
+      n = 1
+      if (fracture%is_set) n = size(fracture%names)
+      if (.not. allocated(loss)) loss = [0.0_rk]
+      if (n == 1 .and. .not. loss(1) > 0.0_rk) return
+      allocate (injection%entries(n))
+      injection%entries%loss = loss(1)
+      if (size(loss) == n) injection%entries%loss = loss
+      if (.not. injection%at_point) return
+      injection%entries%x = x
+      injection%entries%y = y
+   end subroutine exchange_entries
 
    !> Groups &coarse, &fe and &fine.
    pure subroutine exchange_discretization(record, discretization)

@@ -13,7 +13,8 @@ module scene_exchange_values
    private
 
    public :: exchange, exchange_material, exchange_part, exchange_point_load, exchange_region
-   public :: exchange_restraint, exchange_side, exchange_word, not_given, set_text, to_degrees
+   public :: exchange_restraint, exchange_side, exchange_word, not_given, set_names, set_text
+   public :: to_degrees
 
    !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's
    !! component; else from the component into the sheet. A component that equals `nothing`, or a
@@ -149,6 +150,16 @@ contains
          value%text = text
       end associate
    end subroutine set_text
+
+   !> Set a list of names in a sheet.
+   pure subroutine set_names(record, name, names)
+      type(record_t), intent(inout) :: record
+      character(len=*), intent(in) :: name
+      character(len=name_length), intent(in) :: names(:)
+
+      call set_text(record, name, trim(names(size(names))))
+      record%values(parameter_index(record%group, name))%names = names
+   end subroutine set_names
 
    !> The simplest angle in degrees from which the same bits in radians follow.
    pure real(rk) function to_degrees(angle) result(degrees)

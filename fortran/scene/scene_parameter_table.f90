@@ -2,8 +2,8 @@
 !! name is one entry here and one line in scene_exchange.
 module scene_parameter_table
    use scene_parameters, only: in_fluid, in_mechanics, kind_choice, kind_integer, kind_logical, &
-                               kind_name, kind_reals, kind_text, kind_wholes, need_always, &
-                               need_choice, need_fluid, need_growth, parameter_t
+                               kind_name, kind_names, kind_reals, kind_text, kind_wholes, &
+                               need_always, need_choice, need_fluid, need_growth, parameter_t
    use scene_words, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
                           exponent_range, newton_range, passes_range, poisson_range, &
                           porosity_range, positive, rosette_range, share, steps_range, &
@@ -292,8 +292,9 @@ module scene_parameter_table
    type(parameter_t), parameter :: process_parameters(*) = [ &
       parameter_t("injection", "name", kind_name, absent="well_ and its number", derived=.true., &
          meaning="Name, different from that of every other well"), &
-      parameter_t("injection", "fracture", kind_name, absent="in the rock, at x and y", &
-         meaning="Name of the fracture"), &
+      parameter_t("injection", "fracture", kind_names, absent="in the rock, at x and y", &
+         meaning="Name of the fracture; several names: a well with an entry into each, see "// &
+                 "entry_loss"), &
       parameter_t("injection", "rate", kind_reals, "m2/s", absent="follows from pressure", &
          meaning="Volume per time and metre of thickness, of the whole well; negative: "// &
                  "extraction. One value, or one per stage"), &
@@ -312,10 +313,10 @@ module scene_parameter_table
          meaning="Start time; with stages that of the first"), &
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
          meaning="Time of shut-in, after start and after the start of the last stage"), &
-      parameter_t("injection", "x", unit="m", absent="over the whole fracture", with="y", &
-         meaning="x of the point of injection"), &
-      parameter_t("injection", "y", unit="m", absent="over the whole fracture", with="x", &
-         meaning="y of the point of injection"), &
+      parameter_t("injection", "x", kind_reals, "m", absent="over the whole fracture", with="y", &
+         per_entry=.true., meaning="x of the point of injection, one value per entry"), &
+      parameter_t("injection", "y", kind_reals, "m", absent="over the whole fracture", with="x", &
+         per_entry=.true., meaning="y of the same"), &
       parameter_t("injection", "storage", unit="m2/Pa", default="0.0", range=at_least_zero, &
          meaning="Wellbore storage: stored volume per metre of thickness and per pressure at "// &
                  "the head"), &
@@ -323,6 +324,10 @@ module scene_parameter_table
          meaning="Pressure loss between well head and fracture, per rate"), &
       parameter_t("injection", "turbulence", unit="Pa s2/m4", default="0.0", range=at_least_zero, &
          meaning="Pressure loss per rate squared"), &
+      parameter_t("injection", "entry_loss", kind_reals, "Pa s2/m4", range=at_least_zero, &
+         absent="no loss", per_entry=.true., &
+         meaning="Pressure loss at an entry per square of its flow, as of perforations; one "// &
+                 "value, or one per entry"), &
       parameter_t("injection", "radius", unit="m", default="0.1", range=positive, &
          meaning="Radius of a well in the rock, for its pressure; not for a well in a fracture"), &
       parameter_t("initial", "fracture_pressure", kind_choice, default="'equilibrated'", &

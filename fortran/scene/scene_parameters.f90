@@ -8,8 +8,8 @@ module scene_parameters
 
    public :: group_t, parameter_t
    public :: groups, side_names, text_length
-   public :: kind_choice, kind_integer, kind_logical, kind_name, kind_real, kind_reals, kind_text
-   public :: kind_wholes
+   public :: kind_choice, kind_integer, kind_logical, kind_name, kind_names, kind_real, kind_reals
+   public :: kind_text, kind_wholes
    public :: need_always, need_choice, need_fluid, need_growth, need_never
    public :: applies, choice_name, choice_value, in_fluid, in_mechanics
 
@@ -21,6 +21,8 @@ module scene_parameters
    integer, parameter :: kind_name = 6  !< a text that is safe as a file name
    integer, parameter :: kind_choice = 7  !< one of `choices`
    integer, parameter :: kind_wholes = 8  !< a list of whole numbers, stored as reals
+
+   integer, parameter :: kind_names = 9  !< a list of names
 
    integer, parameter :: need_never = 0
    integer, parameter :: need_always = 1  !< in every group of this name
@@ -59,6 +61,7 @@ module scene_parameters
       !> choices, separated by `|`; for a single number: words allowed instead of it
       character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
+      logical :: per_entry = .false.  !< a list by entries of a well, and so not by its stages
       ! Relations to other names of its group:
       character(len=28) :: of = ""  !< choice of the name, as `law=slip`; empty: every choice
       character(len=20) :: with = ""  !< name that must be given with this one

@@ -92,7 +92,7 @@ contains
                  allocated(scene%injections))) return
       do i = 1, size(scene%injections)
          if (scene%injections(i)%fracture == 0 .or. .not. allocated(scene%injections(i)%rate)) cycle
-         rate = maxval(scene%injections(i)%rate)
+         rate = maxval(scene%injections(i)%rate)/scene%injections(i)%entry_count()
          if (.not. rate > 0.0_rk) cycle
          value = dimensionless_toughness(scene, min(scene%material%toughness, &
                                                     scene%fractures(scene%injections(i)%fracture) &

@@ -441,7 +441,8 @@ contains
       type(parameter_t), intent(in) :: parameter
       integer, intent(in) :: group
 
-      is_column = parameter%group == groups(group)%name .and. parameter%kind == kind_reals
+      is_column = parameter%group == groups(group)%name .and. parameter%kind == kind_reals &
+                  .and. .not. parameter%per_entry
    end function is_column
 
    !> Column name of a parameter with its unit: `rate` [m2/s] is `rate_m2_s`.

@@ -6,7 +6,7 @@ module scene_types
    implicit none(type, external)
    private
 
-   public :: adaptive_t, boundary_part_t, discretization_t, domain_t, fluid_t
+   public :: adaptive_t, boundary_part_t, discretization_t, domain_t, entry_t, fluid_t
    public :: fracture_t, growth_t, in_situ_t
    public :: initial_t
    public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, region_t, restraint_t
@@ -150,9 +150,19 @@ module scene_types
       character(len=name_length) :: control = ""
    end type load_t
 
-   !> A well: injection into a fracture or into the rock, or production, in stages.
+   !> An entry of a well: where it meets a fracture.
+   type :: entry_t
+      integer(ik) :: fracture = 0  !< index into scene%fractures
+      real(rk) :: x = 0.0_rk, y = 0.0_rk  !< point of injection [m]
+      real(rk) :: loss = 0.0_rk  !< pressure loss per flow squared [Pa s2/m4]
+   end type entry_t
+
+   !> A well: injection into fractures or into the rock, or production, in stages.
    type :: injection_t
       character(len=name_length) :: name = ""
+      !> Several entries, or one with a loss; unallocated: one without. Fracture and point of the
+      !! well are those of the first.
+      type(entry_t), allocatable :: entries(:)
       integer(ik) :: fracture = 0  !< index into scene%fractures; 0: in the rock
       !> in the cell nearest to (x, y), and not the whole initial fracture
       logical :: at_point = .false.
@@ -174,6 +184,8 @@ module scene_types
       procedure :: stage_at
       procedure :: stage_start
       procedure :: is_controlled
+      procedure :: has_given_flow
+      procedure :: entry_count
    end type injection_t
 
    !> State before the first step.
@@ -281,6 +293,7 @@ module scene_types
       procedure :: has_fluid
       procedure :: has_fractures
       procedure :: has_wells
+      procedure :: has_entries
       procedure :: has_points
       procedure :: n_parts
       procedure :: cell_size_of
@@ -328,6 +341,16 @@ contains
       has_wells = allocated(self%injections)
       if (has_wells) has_wells = size(self%injections) > 0
    end function has_wells
+
+   !> Wells of the scene have entries.
+   pure logical function has_entries(self)
+      class(scene_t), intent(in) :: self
+      integer :: w
+
+      has_entries = self%has_wells()
+      if (has_entries) has_entries = any([(allocated(self%injections(w)%entries), &
+                                           w=1, size(self%injections))])
+   end function has_entries
 
    !> The scene has restraints or point loads.
    pure logical function has_points(self)
@@ -427,12 +450,27 @@ contains
       end do
    end function stage_at
 
-   !> The flow depends on pressures, rather than being the rate of the scene.
+   !> The flow into a fracture depends on pressures, rather than being the rate of the scene.
    elemental logical function is_controlled(self)
       class(injection_t), intent(in) :: self
 
-      is_controlled = allocated(self%pressure) .or. self%storage > 0.0_rk
+      is_controlled = allocated(self%entries) .or. .not. self%has_given_flow()
    end function is_controlled
+
+   !> The flow out of the whole well is the rate of the scene.
+   elemental logical function has_given_flow(self)
+      class(injection_t), intent(in) :: self
+
+      has_given_flow = .not. (allocated(self%pressure) .or. self%storage > 0.0_rk)
+   end function has_given_flow
+
+   !> Number of entries, at least 1.
+   elemental integer(ik) function entry_count(self)
+      class(injection_t), intent(in) :: self
+
+      entry_count = 1
+      if (allocated(self%entries)) entry_count = size(self%entries, kind=ik)
+   end function entry_count
 
    !> Length of the polyline, as far as both lists of coordinates reach [m].
    pure real(rk) function fracture_length(self) result(length)

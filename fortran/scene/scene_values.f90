@@ -5,8 +5,8 @@ module scene_values
    use base_texts, only: is_printable
    use scene_expression, only: token_comma, token_list_t, token_t, token_text, token_word, &
                                tokenize, unquoted
-   use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, kind_real, &
-                               kind_reals, kind_text, kind_wholes, parameter_t, text_length
+   use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, &
+                               kind_names, kind_real, kind_reals, kind_text, kind_wholes, parameter_t, text_length
    use scene_types, only: name_length
    use scene_words, only: holds, in_words, is_identifier, lower_case
    implicit none(type, external)
@@ -23,7 +23,8 @@ module scene_values
       logical :: per_thickness = .false.  !< reals must still be divided by the thickness
       integer(ik) :: whole = 0
       logical :: flag = .false.
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text  !< with several names the last
+      character(len=name_length), allocatable :: names(:)
    end type value_t
 
    integer, parameter :: most_values = 100000  !< values of one name, also by repeat counts
@@ -38,11 +39,13 @@ contains
       type(value_t), intent(inout) :: value  !< its line does not change
       character(len=:), allocatable, intent(out) :: reason  !< why not; unallocated: good
       real(rk), allocatable :: numbers(:)
+      character(len=name_length), allocatable :: names(:)
       character(len=:), allocatable :: word
       real(rk) :: number
       integer :: i, count, n
 
       value%is_set = .true.
+      allocate (names(0))
       call check_commas(tokens, reason)
       if (allocated(reason)) return
 
@@ -62,11 +65,15 @@ contains
                numbers = [numbers, numbers]
             end do
             numbers(n + 1:n + count) = number
+         else if (parameter%kind == kind_names) then
+            names = [character(len=name_length) :: names, value%text]
          end if
          n = n + count
       end do
       if (any(parameter%kind == [kind_reals, kind_wholes])) then
          value%reals = numbers(1:n)
+      else if (parameter%kind == kind_names) then
+         value%names = names
       else if (n > 1) then
          reason = "has "//integer_text(int(n, ik))//" values but must be one "//noun(parameter)
       end if
@@ -233,7 +240,7 @@ contains
       select case (parameter%kind)
       case (kind_choice)
          good = is_choice(parameter, text)
-      case (kind_name)
+      case (kind_name, kind_names)
          good = len(text) <= name_length .and. is_identifier(text)
       case default
          good = len(text) <= text_length .and. is_printable(text)
@@ -262,7 +269,7 @@ contains
          words = "a whole number "//in_words(parameter%range, whole=.true.)
       case (kind_logical)
          words = ".true. or .false."
-      case (kind_name)
+      case (kind_name, kind_names)
          words = "a text in quotes of at most "//integer_text(int(name_length, ik))// &
                  " letters, digits, '_', '-' and '.', beginning with a letter or a digit"
       case (kind_text)

@@ -4,8 +4,8 @@ module scene_write
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
    use scene_parameter_table, only: parameters
-   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_real, kind_reals, &
-                               kind_wholes, parameter_t
+   use scene_parameters, only: applies, groups, kind_integer, kind_logical, kind_names, kind_real, &
+                               kind_reals, kind_wholes, parameter_t
    use scene_sheet, only: sheet_t
    use scene_types, only: scene_t
    use scene_values, only: value_t
@@ -85,7 +85,7 @@ contains
 
       unit = ""
       if (parameter%unit /= "-") unit = "  ! ["//trim(parameter%unit)//"]"
-      if (all(parameter%kind /= [kind_reals, kind_wholes])) then
+      if (all(parameter%kind /= [kind_reals, kind_wholes]) .or. is_single(parameter, value)) then
          call lines%put("  "//trim(parameter%name)//" = "//value_text(parameter, value)//unit)
          return
       end if
@@ -109,9 +109,10 @@ contains
       type(parameter_t), intent(in) :: parameter
       type(value_t), intent(in) :: value
       character(len=:), allocatable :: text
+      integer :: k
 
       select case (parameter%kind)
-      case (kind_real)
+      case (kind_real, kind_reals)
          if (allocated(value%text)) then  ! a word in its place
             text = quoted(value%text)
          else
@@ -121,10 +122,24 @@ contains
          text = integer_text(value%whole)
       case (kind_logical)
          text = trim(merge(".true. ", ".false.", value%flag))
+      case (kind_names)
+         text = quoted(trim(value%names(1)))
+         do k = 2, size(value%names)
+            text = text//", "//quoted(trim(value%names(k)))
+         end do
       case default
          text = quoted(value%text)
       end select
    end function value_text
+
+   !> A list by entries of a well that has one.
+   pure logical function is_single(parameter, value)
+      type(parameter_t), intent(in) :: parameter
+      type(value_t), intent(in) :: value
+
+      is_single = parameter%per_entry
+      if (is_single) is_single = size(value%reals) == 1
+   end function is_single
 
    !> A text in single quotes; quotes within it are doubled.
    pure function quoted(text) result(with_quotes)

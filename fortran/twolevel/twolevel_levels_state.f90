@@ -45,7 +45,8 @@ module twolevel_levels_state
       type(trend_t) :: trend  !< rates of the last accepted step
       type(stated_errors_t) :: stated_errors  !< estimated errors of lengths and pressures
       type(fluid_totals_t) :: fluid
-      real(rk), allocatable :: given(:)  !< (controlled wells) volumes since the last switch [m2]
+      !> (controlled wells, then their entries) volumes since the last switch [m2]
+      real(rk), allocatable :: given(:)
       !> (controlled wells) wells whose rate is reduced by a limit
       logical, allocatable :: at_limit(:)
    end type levels_state_t

@@ -240,7 +240,7 @@ contains
             call find_wing(scene%fractures(tip(i)%fracture), tip(i), tips(i)%wing, tips(i)%bend)
          end do
          now%stated_errors%has_layers = problem%model%layers%n > 0
-         call now%stated_errors%accept(dt, problem%well_pressure(scene, now%coarse), tips, &
+         call now%stated_errors%accept(dt, problem%well_pressure(now%coarse), tips, &
                                        total_length(front%network), now%trend%pressure_rise(), &
                                        leaked, now%coarse%time &
                                        - last_switch(scene, now%coarse%time - 0.5_rk*dt))

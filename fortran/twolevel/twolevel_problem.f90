@@ -16,11 +16,11 @@ module twolevel_problem
    use coarse_state, only: state_t, step_report_t
    use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t
-   use scene_types, only: scene_t
+   use scene_types, only: injection_t, scene_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
-   use twolevel_wells, only: ask_wells, between_cells, control_wells, feed_joints, mean_pressure, &
-                             rate
+   use twolevel_wells, only: ask_wells, between_cells, control_wells, entries_of, feed_joints, &
+                             mean_pressure, rate, wells_of_entries
    implicit none(type, external)
    private
 
@@ -31,8 +31,10 @@ module twolevel_problem
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      real(rk), allocatable :: share(:, :)  !< (fracture cells, wells) of each well's rate [-]
-      real(rk), allocatable :: joint_share(:, :)  !< (joints, wells) of each well's rate [-]
+      type(injection_t), allocatable :: entries(:)  !< of all wells, as wells of one entry
+      integer(ik), allocatable :: well_of(:)  !< (entries) number of the well
+      real(rk), allocatable :: share(:, :)  !< (fracture cells, entries) of each entry's flow [-]
+      real(rk), allocatable :: joint_share(:, :)  !< (joints, entries) of each entry's flow [-]
       !> (wells) cells of the wells in the rock; 0: other wells
       integer(ik), allocatable :: rock_cell(:)
       type(coarse_values_t) :: values  !< values of the state in which tips were evaluated last
@@ -44,6 +46,7 @@ module twolevel_problem
       procedure :: find_values
       procedure :: well_pressure
       procedure :: well_in_situ
+      procedure :: entry_in_situ
       procedure :: rock_pressure
       procedure :: fracture_pressure
       procedure :: fracture_volume
@@ -70,13 +73,15 @@ contains
       integer(ik) :: cell(1), w
 
       associate (wells => scene%injections)
-         call feed_joints(wells, self%mesh%fracture, self%model%joints, self%share, &
+         self%entries = entries_of(wells)
+         self%well_of = wells_of_entries(wells)
+         call feed_joints(self%entries, self%mesh%fracture, self%model%joints, self%share, &
                           self%joint_share)
          call control_wells(wells, self%share, self%joint_share, self%model%wells)
          call part_twins(self, scene)
          if (allocated(self%model%in_situ)) then
             self%model%wells%pressure_in_situ = &
-               [(self%well_in_situ(scene, self%model%wells%number(w)), w=1, self%model%wells%n_all)]
+               [(self%well_in_situ(self%model%wells%number(w)), w=1, self%model%wells%n_all)]
          end if
          self%rock_cell = spread(0_ik, 1, size(wells))
          if (.not. any(wells%fracture == 0)) return
@@ -108,6 +113,7 @@ contains
          is_twin = .false.
          do w = 1, wells%n
             if (wells%is_between(w) .or. wells%friction(w) + wells%turbulence(w) > 0.0_rk) cycle
+            if (wells%first_entry(w) /= w) cycle
             do k = 1, wells%n
                if (k == w) cycle
                if (.not. all([allocated(scene%injections(wells%number(w))%pressure), &
@@ -180,6 +186,8 @@ contains
    pure subroutine rest_wells(self, state)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(inout) :: state
+      real(rk), allocatable :: at_places(:)  ! [Pa]
+      integer(ik) :: w
 
       if (allocated(self%model%rock_wells%rings)) then
          if (allocated(state%rings)) deallocate (state%rings)
@@ -187,10 +195,11 @@ contains
       end if
       associate (wells => self%model%wells)
          if (wells%n_all == 0) return
-         state%well_flow = spread(0.0_rk, 1, int(wells%n_all))
-         state%well_rate = state%well_flow
-         state%well_head = [matmul(state%pressure, wells%share) &
-                            + matmul(state%joint_pressure, wells%joint_share), &
+         state%well_flow = spread(0.0_rk, 1, int(wells%n_all + wells%n_entries))
+         state%well_rate = state%well_flow(:wells%n_all)
+         at_places = matmul(state%pressure, wells%share) + matmul(state%joint_pressure, &
+                                                                  wells%joint_share)
+         state%well_head = [(at_places(wells%first_entry(w)), w=1, wells%n), &
                             state%unknowns(3, self%rock_cell(wells%number(wells%n + 1:)))]
       end associate
    end subroutine rest_wells
@@ -202,9 +211,9 @@ contains
       real(rk), intent(in) :: time, dt  !< [s]
 
       associate (rates => rate(scene%injections, time, dt))
-         self%model%cells%injection = matmul(self%share, rates)
+         self%model%cells%injection = matmul(self%share, rates(self%well_of))
          if (self%model%joints%n > 0) then
-            self%model%joints%injection = matmul(self%joint_share, rates)
+            self%model%joints%injection = matmul(self%joint_share, rates(self%well_of))
          end if
          if (allocated(self%model%source)) call feed_rock(self, rates)
       end associate
@@ -291,16 +300,15 @@ contains
    !> Mean pressure at the wells; 0 without any [Pa]. The pressure of a cell is that at its middle;
    !! a well between two cells is half a cell away, and the pressure loss of the flow over this
    !! distance is added.
-   pure real(rk) function well_pressure(self, scene, state)
+   pure real(rk) function well_pressure(self, state)
       class(coarse_problem_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state
       real(rk) :: pressure(size(state%pressure))
       logical :: between(size(self%share, 2))
       integer(ik) :: w
 
       pressure = self%fracture_pressure(state)
-      between = between_cells(scene%injections, self%share)
+      between = between_cells(self%entries, self%share)
       do w = 1, size(between, kind=ik)
          ! Before the first step nothing flows.
          if (.not. (between(w) .and. allocated(self%model%condensed%length))) cycle
@@ -316,22 +324,30 @@ contains
                                     self%joint_pressure(state))
    end function well_pressure
 
-   !> Pressure in situ at a well: at its point, or the mean over the fracture that it supplies [Pa].
-   pure real(rk) function well_in_situ(self, scene, well) result(pressure)
+   !> Pressure in situ at a well, at its first entry [Pa].
+   pure real(rk) function well_in_situ(self, well) result(pressure)
       class(coarse_problem_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
       integer(ik), intent(in) :: well  !< number of the well in the scene
+
+      pressure = self%entry_in_situ(findloc(self%well_of, well, dim=1, kind=ik))
+   end function well_in_situ
+
+   !> Pressure in situ at an entry: at its point, or the mean over the fracture that it supplies
+   !! [Pa].
+   pure real(rk) function entry_in_situ(self, entry) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      integer(ik), intent(in) :: entry  !< number among those of all wells
 
       pressure = 0.0_rk
       if (.not. allocated(self%model%in_situ)) return
-      associate (given => scene%injections(well))
+      associate (given => self%entries(entry))
          if (given%at_point .or. given%fracture == 0) then
             pressure = self%model%in_situ%pressure_at(given%y)
          else
-            pressure = dot_product(self%share(:, well), self%model%cells%pressure_in_situ)
+            pressure = dot_product(self%share(:, entry), self%model%cells%pressure_in_situ)
          end if
       end associate
-   end function well_in_situ
+   end function entry_in_situ
 
    !> Total pressure in the cells; that of the state is relative to the state in situ [Pa].
    pure function rock_pressure(self, state) result(pressure)

@@ -17,7 +17,7 @@ submodule(twolevel_state) twolevel_simulation
    use twolevel_schedule, only: follow_sides
    use twolevel_setup, only: choose_first_step, coarse_spec, first_cells, keep_above_zero, &
                              pressure_scale, rest_joints, rules_of_scene
-   use twolevel_wells, only: share_wells
+   use twolevel_wells, only: entries_of, share_wells
    implicit none(type, external)
 
 contains
@@ -114,7 +114,7 @@ contains
 
       associate (problem => self%problem, mesh => self%problem%mesh, now => self%now)
          call first_cells(self%scene, mesh%fracture, problem%model%cells)
-         call share_wells(self%scene%injections, mesh%fracture, problem%share)
+         call share_wells(entries_of(self%scene%injections), mesh%fracture, problem%share)
          call choose_first_step(self%scene, problem%model%first_step)
          call problem%model%set_mesh(mesh, self%scene, timers, error)
          if (allocated(error)) return

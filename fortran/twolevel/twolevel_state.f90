@@ -246,9 +246,9 @@ contains
    subroutine rest_wells(self)
       class(two_levels_t), intent(inout) :: self
 
-      associate (n => int(self%problem%model%wells%n_all))
-         self%now%at_limit = spread(.false., 1, n)
-         self%now%given = spread(0.0_rk, 1, n)
+      associate (wells => self%problem%model%wells)
+         self%now%at_limit = spread(.false., 1, int(wells%n_all))
+         self%now%given = spread(0.0_rk, 1, int(wells%n_all + wells%n_entries))
       end associate
       call self%problem%rest_wells(self%now%coarse)
    end subroutine rest_wells
@@ -303,11 +303,10 @@ contains
       type(step_report_t), intent(inout) :: report
 
       if (report%converged) return
-      associate (wells => self%scene%injections)
-         report%reason = why_unsolved(report, self%now%coarse_network, &
-                                      self%problem%mesh%fracture, wells, self%problem%share, &
-                                      rate(wells, self%now%coarse%time, dt))
-      end associate
+      report%reason = why_unsolved(report, self%now%coarse_network, &
+                                   self%problem%mesh%fracture, self%problem%entries, &
+                                   self%problem%share, rate(self%problem%entries, &
+                                                            self%now%coarse%time, dt))
    end subroutine explain
 
    !> Relative time error of a step of length dt to the present state [-].
@@ -374,7 +373,7 @@ contains
          ! The sources of the model are not used: they are those of its last try.
          flow = rate(self%scene%injections, self%before%time, dt)
          if (model%wells%n_all > 0) then
-            flow(model%wells%number) = state%well_flow
+            flow(model%wells%number) = state%well_flow(:model%wells%n_all)
             self%now%given = self%now%given + dt*abs(state%well_flow)
          end if
          fluid%injected = fluid%injected + dt*sum(flow)

@@ -8,7 +8,7 @@ submodule(twolevel_state) twolevel_steps
    use base_tolerances, only: same_time
    use coarse_rock, only: shear_beside
    use mesh_types, only: fracture_mesh_t
-   use report_rows, only: event_step_cut, event_unstable, history_row_t, well_row_t
+   use report_rows, only: entry_row_t, event_step_cut, event_unstable, history_row_t, well_row_t
    use report_limits, only: limit_depth, limit_time_error, limit_well_error
    use report_slip, only: slip_step_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
@@ -21,6 +21,7 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_refinement, only: refine_windows
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
+   use twolevel_well_rows, only: entry_rows
    use twolevel_schedule, only: last_switch, next_switch
    use twolevel_value_errors, only: step_facts_t
    use twolevel_window_total, only: limit_windows
@@ -342,8 +343,8 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       do i = 1, size(self%tip)
          from(:, i) = self%last%front%tip(i)%xy
       end do
-      pressure = [self%problem%well_pressure(self%scene, self%before), &
-                  self%problem%well_pressure(self%scene, self%now%coarse)]
+      pressure = [self%problem%well_pressure(self%before), &
+                  self%problem%well_pressure(self%now%coarse)]
       call self%notes%jumps%note(self%tip, from, self%rules%toughness, pressure, &
                                  self%now%coarse%time, self%chronicle, self%summary)
    end subroutine note_jumps
@@ -405,6 +406,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
    !> Add the rows of the wells.
    subroutine note_well_rows(self)
       class(two_levels_t), intent(inout) :: self
+      type(entry_row_t), allocatable :: entries(:)
       type(well_row_t), allocatable :: rows(:)
 
       if (size(self%scene%injections) == 0) return
@@ -413,6 +415,10 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
       call self%value_errors%note_wells(self%scene, rows, self%now%stated_errors, facts_of(self))
       self%chronicle%wells = [self%chronicle%wells, rows]
+      if (.not. self%scene%has_entries()) return
+      entries = entry_rows(self%problem, self%now%coarse)
+      call self%value_errors%note_entries(entries, self%now%stated_errors, facts_of(self))
+      self%chronicle%entries = [self%chronicle%entries, entries]
    end subroutine note_well_rows
 
    !> Update contact events and the extreme values of the run with an accepted state.

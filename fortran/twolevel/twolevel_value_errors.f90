@@ -14,7 +14,8 @@ module twolevel_value_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
    use report_jump_errors, only: error_of_largest, finite_volumes
-   use report_rows, only: history_errors_t, history_row_t, probe_row_t, well_row_t
+   use report_rows, only: entry_row_t, history_errors_t, history_row_t, probe_row_t, &
+                          well_row_t
    use scene_types, only: scene_t
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
@@ -64,11 +65,13 @@ module twolevel_value_errors
       type(followed_step_t) :: step  !< last step
       type(followed_t) :: quantities
       type(followed_t) :: wells  !< pressure, flow, volume of each
+      type(followed_t) :: entries  !< pressure, flow of each
       type(followed_t) :: probes  !< pressure, displacement, stress of each
    contains
       procedure :: begin
       procedure :: note_state
       procedure :: note_wells
+      procedure :: note_entries
       procedure :: note_probes
       procedure :: in_space
       procedure :: jumps_of
@@ -232,7 +235,7 @@ contains
                 + self%of_pressure*abs(row%fracture_fluid) + lost
          error%leakoff = leak
          error%fracture_fluid = held
-         if (any(scene%injections%is_controlled())) then
+         if (.not. all(scene%injections%has_given_flow())) then
             error%injected = time(injected) + self%of_flow*abs(row%injected) + lost
             error%produced = time(produced) + self%of_flow*abs(row%produced) + lost
          else
@@ -331,8 +334,7 @@ contains
 
       if (size(rows) == 0) return
       call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
-      by_length = 0.0_rk
-      if (facts%has_estimate) by_length = abs(stated%slope)*max(0.0_rk, stated%length)
+      by_length = effect_of_length(stated, facts)
       do w = 1, size(rows)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
@@ -340,7 +342,7 @@ contains
             if (well%fracture == 0) share = self%of_rock
             error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
                              + of_solution*abs(row%pressure)
-            if (well%is_controlled()) then
+            if (.not. well%has_given_flow()) then
                error%injected = time(2*n + w) + max(share, self%of_flow)*abs(row%injected)
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)
@@ -371,6 +373,34 @@ contains
       self%row%injection_rate = sum(rows%error%flow)
       if (size(rows) == 1) self%row%injectivity = rows(1)%error%injectivity
    end subroutine note_wells
+
+   !> Error of pressures by that of the length of growing fractures [Pa].
+   pure real(rk) function effect_of_length(stated, facts) result(error)
+      type(stated_errors_t), intent(in) :: stated
+      type(step_facts_t), intent(in) :: facts
+
+      error = 0.0_rk
+      if (facts%has_estimate) error = abs(stated%slope)*max(0.0_rk, stated%length)
+   end function effect_of_length
+
+   !> Errors of the entries of wells after a step.
+   subroutine note_entries(self, rows, stated, facts)
+      class(value_errors_t), intent(inout) :: self
+      type(entry_row_t), intent(inout) :: rows(:)
+      type(stated_errors_t), intent(in) :: stated
+      type(step_facts_t), intent(in) :: facts
+      integer :: e
+
+      call self%entries%follow(self%step, [rows%pressure, rows%flow])
+      do e = 1, size(rows)
+         associate (row => rows(e), error => rows(e)%error, time => self%entries%error)
+            error%pressure = time(e) + self%of_pressure*abs(row%pressure - self%entries%first(e)) &
+                             + effect_of_length(stated, facts) + of_solution*abs(row%pressure)
+            error%flow = time(size(rows) + e) + max(self%of_pressure, self%of_flow)*abs(row%flow)
+            if (abs(row%share) > 0.0_rk) error%share = error%flow*abs(row%share/row%flow)
+         end associate
+      end do
+   end subroutine note_entries
 
    !> Errors of the probes: add those in time, and of the fractures' effect, to those of the cells.
    subroutine note_probes(self, time, rise, row)

@@ -104,10 +104,8 @@ contains
                call self%chronicle%add_event(before, event_well, what_begins(well, stage))
             end associate
             if (self%problem%model%wells%n_all == 0) cycle
-            where (self%problem%model%wells%number == w)
-               self%now%at_limit = .false.
-               self%now%given = 0.0_rk
-            end where
+            where (self%problem%model%wells%number == w) self%now%at_limit = .false.
+            where (self%problem%model%wells%flow_number() == w) self%now%given = 0.0_rk
          end associate
       end do
       any_changed = .false.
@@ -116,7 +114,9 @@ contains
       do w = 1, size(at_limit, kind=ik)
          if (at_limit(w) .eqv. self%now%at_limit(w)) cycle
          any_changed = .true.
-         self%now%given(w) = 0.0_rk
+         associate (wells => self%problem%model%wells)
+            where (wells%flow_number() == wells%number(w)) self%now%given = 0.0_rk
+         end associate
          words = " has returned to its rate"
          if (at_limit(w)) words = " has reached its pressure limit"
          associate (well => self%scene%injections(self%problem%model%wells%number(w)))
@@ -198,7 +198,8 @@ contains
       if (wells%storage(w) > 0.0_rk) return
       call wells%lost(w, before%well_flow(w), lost_then, slope)
       call wells%lost(w, wells%rate(w), lost_now, slope)
-      head = head - lost_then + lost_now
+      head = head - lost_then + lost_now + wells%entries_loss(w) &
+             *(abs(wells%rate(w))*wells%rate(w) - abs(before%well_flow(w))*before%well_flow(w))
    end function head_at_rate
 
    !> Share of a change from one value to another at which a bound is passed [-].

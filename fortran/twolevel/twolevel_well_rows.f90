@@ -1,16 +1,16 @@
-!> Results of the wells, one row of wells.csv per well.
+!> Results of the wells, one row of wells.csv per well, and of their entries.
 module twolevel_well_rows
    use base_archive, only: archive_t
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
-   use report_rows, only: well_row_t
+   use report_rows, only: entry_row_t, well_row_t
    use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_wells, only: between_cells, rate
    implicit none(type, external)
    private
 
-   public :: well_results_t, well_flows, well_pressures
+   public :: entry_rows, well_results_t, well_flows, well_pressures
 
    !> (wells) Sums, and values of the first state.
    type :: well_results_t
@@ -34,7 +34,7 @@ contains
 
       associate (n => size(scene%injections, kind=ik))
          allocate (self%injected(n), source=0.0_rk)
-         self%first_pressure = [(pressure_at(scene, problem, state, w, 0.0_rk), w=1, n)]
+         self%first_pressure = [(pressure_at(problem, state, w, 0.0_rk), w=1, n)]
       end associate
    end subroutine begin
 
@@ -67,7 +67,7 @@ contains
                row%control = "rate"
                call set_controlled(scene, problem, state, at_limit, w, row)
                if (row%stage == 0) row%control = "shut"
-               row%pressure = pressure_at(scene, problem, state, w, row%flow)
+               row%pressure = pressure_at(problem, state, w, row%flow)
                if (.not. wells(w)%is_controlled()) row%head_pressure = row%pressure &
                   & + (wells(w)%friction + wells(w)%turbulence*abs(row%flow))*row%flow
                self%injected(w) = self%injected(w) + dt*row%rate
@@ -92,7 +92,9 @@ contains
       flow = 0.0_rk
       if (.not. state%time > since) return
       flow = rate(scene%injections, since, state%time - since)
-      if (problem%model%wells%n_all > 0) flow(problem%model%wells%number) = state%well_flow
+      associate (wells => problem%model%wells)
+         if (wells%n_all > 0) flow(wells%number) = state%well_flow(:wells%n_all)
+      end associate
    end function well_flows
 
    !> Pressure where each well meets fracture or rock; for a well that supplies all cells of a
@@ -106,11 +108,12 @@ contains
       real(rk) :: flow(size(pressure))
       integer(ik) :: w
 
-      if (size(pressure) == 1 .and. all(scene%injections%fracture > 0)) then
-         pressure = problem%well_pressure(scene, state)
+      if (size(pressure) == 1 .and. all(scene%injections%fracture > 0) .and. &
+          .not. scene%has_entries()) then
+         pressure = problem%well_pressure(state)
       else
          flow = well_flows(scene, problem, since, state)
-         pressure = [(pressure_at(scene, problem, state, w, flow(w)), w=1, size(flow, kind=ik))]
+         pressure = [(pressure_at(problem, state, w, flow(w)), w=1, size(flow, kind=ik))]
       end if
    end function well_pressures
 
@@ -129,7 +132,7 @@ contains
       if (k == 0) return
       row%flow = state%well_flow(k)
       row%rate = state%well_rate(k)
-      row%head_pressure = state%well_head(k) + problem%well_in_situ(scene, w)
+      row%head_pressure = state%well_head(k) + problem%well_in_situ(w)
       associate (well => scene%injections(w))
          if (allocated(well%pressure)) row%control = "pressure"
          if (allocated(well%pressure) .and. allocated(well%rate)) row%control = &
@@ -137,33 +140,77 @@ contains
       end associate
    end subroutine set_controlled
 
-   !> Pressure where a well meets fracture or rock: that of the cells or the joint that it supplies,
-   !! weighted by its shares, plus the loss of the flow up to the middle of the cell [Pa].
-   pure real(rk) function pressure_at(scene, problem, state, w, flow) result(pressure)
-      type(scene_t), intent(in) :: scene
+   !> Pressure where a well meets fracture or rock; with entries that in the well before their
+   !! losses, at the depth of the first [Pa].
+   pure real(rk) function pressure_at(problem, state, w, flow) result(pressure)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: w
       real(rk), intent(in) :: flow  !< [m2/s]
-      logical :: between(size(scene%injections))
+      real(rk) :: lost, slope
+      integer(ik) :: entry, k
 
-      pressure = problem%well_in_situ(scene, w)
-      associate (well => scene%injections(w), cell => problem%rock_cell(w), &
-                 share => problem%share(:, w), s => problem%mesh%fracture%cell_s)
-         if (well%fracture == 0) then
-            pressure = pressure + state%unknowns(3, cell) &
+      entry = findloc(problem%well_of, w, dim=1, kind=ik)
+      if (allocated(problem%entries(entry)%entries)) then
+         k = findloc(problem%model%wells%number, w, dim=1, kind=ik)
+         call problem%model%wells%lost(k, flow, lost, slope)
+         pressure = problem%well_in_situ(w) + state%well_head(k) - lost
+      else
+         pressure = pressure_at_entry(problem, state, entry, flow)
+      end if
+   end function pressure_at
+
+   !> Pressure where an entry meets fracture or rock: that of the cells or the joint that it
+   !! supplies, weighted by its shares, plus the loss of the flow up to the middle of the cell [Pa].
+   pure real(rk) function pressure_at_entry(problem, state, entry, flow) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: entry  !< number among those of all wells
+      real(rk), intent(in) :: flow  !< [m2/s]
+      logical :: between(size(problem%entries))
+
+      pressure = problem%entry_in_situ(entry)
+      associate (w => problem%well_of(entry), share => problem%share(:, entry), &
+                 s => problem%mesh%fracture%cell_s)
+         if (problem%entries(entry)%fracture == 0) then
+            pressure = pressure + state%unknowns(3, problem%rock_cell(w)) &
                        + problem%model%rock_wells%beyond_cell(w, flow, state%rings)
             return
          end if
          pressure = pressure + dot_product(share, state%pressure) &
-                    + dot_product(problem%joint_share(:, w), state%joint_pressure)
-         between = between_cells(scene%injections, problem%share)
-         if (.not. between(w)) return
+                    + dot_product(problem%joint_share(:, entry), state%joint_pressure)
+         between = between_cells(problem%entries, problem%share)
+         if (.not. between(entry)) return
          ! The lengths of the condensed matrix may not exist before the first step.
          pressure = pressure + flow*6.0_rk*problem%model%settings%viscosity &
                     *sum(share**2*(s(2, :) - s(1, :))/state%aperture**3*problem%thickness(state))
       end associate
-   end function pressure_at
+   end function pressure_at_entry
+
+   !> Rows of the entries of a state, without their errors.
+   pure function entry_rows(problem, state) result(rows)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(entry_row_t), allocatable :: rows(:)
+      integer(ik) :: e, entry, w
+
+      allocate (rows(problem%model%wells%n_entries))
+      associate (wells => problem%model%wells)
+         do e = 1, wells%n_entries
+            w = wells%of_entry(e)
+            rows(e)%entry = count(wells%of_entry(:e) == w, kind=ik)
+            entry = findloc(problem%well_of, wells%number(w), dim=1, kind=ik) + rows(e)%entry - 1
+            associate (row => rows(e))
+               row%time = state%time
+               row%name = trim(problem%entries(entry)%name)
+               row%fracture = problem%entries(entry)%fracture
+               row%flow = state%well_flow(wells%n_all + e)
+               if (abs(state%well_flow(w)) > 0.0_rk) row%share = row%flow/state%well_flow(w)
+               row%pressure = pressure_at_entry(problem, state, entry, row%flow)
+            end associate
+         end do
+      end associate
+   end function entry_rows
 
    !> Store or load all components.
    subroutine visit(self, archive)

@@ -13,10 +13,39 @@ module twolevel_wells
    implicit none(type, external)
    private
 
-   public :: ask_wells, between_cells, control_wells, feed_joints, mean_pressure
-   public :: rate, share_wells, transfer_shares
+   public :: ask_wells, between_cells, control_wells, entries_of, feed_joints, mean_pressure
+   public :: rate, share_wells, transfer_shares, wells_of_entries
 
 contains
+
+   !> A list of wells with one entry each, of all entries of all wells.
+   pure function entries_of(wells) result(entries)
+      type(injection_t), intent(in) :: wells(:)
+      type(injection_t), allocatable :: entries(:)
+      integer(ik), allocatable :: of(:)
+      integer(ik) :: e, k
+
+      of = wells_of_entries(wells)
+      entries = wells(of)
+      do k = 1, size(of, kind=ik)
+         if (.not. allocated(wells(of(k))%entries)) cycle
+         e = count(of(:k) == of(k), kind=ik)
+         associate (entry => wells(of(k))%entries(e))
+            entries(k)%fracture = entry%fracture
+            entries(k)%x = entry%x
+            entries(k)%y = entry%y
+         end associate
+      end do
+   end function entries_of
+
+   !> The well of each entry.
+   pure function wells_of_entries(wells) result(of)
+      type(injection_t), intent(in) :: wells(:)
+      integer(ik), allocatable :: of(:)
+      integer(ik) :: e, w
+
+      of = [((w, e=1, wells(w)%entry_count()), w=1, size(wells, kind=ik))]
+   end function wells_of_entries
 
    !> Share of each well's rate in each fracture cell: 1 in the cell nearest to the well's point, or
    !! one half in each of two cells at the same distance, or in every cell of the fracture by its
@@ -138,11 +167,11 @@ contains
    !> Data of the wells whose rate depends on pressures.
    pure subroutine control_wells(given, share, joint_share, wells)
       type(injection_t), intent(in) :: given(:)
-      real(rk), intent(in) :: share(:, :)  !< (fracture cells, given) [-]
-      real(rk), intent(in) :: joint_share(:, :)  !< (joints, given) [-]
+      real(rk), intent(in) :: share(:, :)  !< (fracture cells, entries) [-]
+      real(rk), intent(in) :: joint_share(:, :)  !< (joints, entries) [-]
       type(wells_t), intent(out) :: wells
-      logical :: between(size(given))
-      integer(ik), allocatable :: number(:)
+      logical :: between(size(share, 2))
+      integer(ik), allocatable :: at(:), number(:)
       integer(ik) :: w
 
       number = [(w, w=1, size(given, kind=ik))]
@@ -151,11 +180,19 @@ contains
       wells%n = count(given%is_controlled() .and. given%fracture > 0)
       wells%n_all = size(number, kind=ik)
       if (wells%n_all == 0) return
-      between = between_cells(given, share)
+      between = between_cells(entries_of(given), share)
+      at = [(findloc(wells_of_entries(given), number(w), dim=1, kind=ik), w=1, wells%n)]
+      call add_entries(given, number(:wells%n), wells, at)
       wells%number = number
-      wells%share = share(:, number(:wells%n))
-      wells%joint_share = joint_share(:, number(:wells%n))
-      wells%is_between = between(number(:wells%n))
+      wells%share = share(:, at)
+      wells%joint_share = joint_share(:, at)
+      wells%is_between = between(at)
+      do w = 1, merge(wells%n, 0_ik, wells%n_entries > 0)
+         if (wells%first_entry(w) == w) cycle
+         wells%share(:, w) = 0.0_rk
+         wells%joint_share(:, w) = 0.0_rk
+         wells%is_between(w) = .false.
+      end do
       wells%storage = given(number)%storage
       wells%friction = given(number)%friction
       wells%turbulence = given(number)%turbulence
@@ -163,6 +200,26 @@ contains
       wells%rate = spread(0.0_rk, 1, int(wells%n_all))
       wells%pressure = wells%rate
    end subroutine control_wells
+
+   !> Add the entries of the wells that have them, and their numbers among all entries.
+   pure subroutine add_entries(given, number, wells, at)
+      type(injection_t), intent(in) :: given(:)
+      integer(ik), intent(in) :: number(:)  !< of the wells in fractures among those given
+      type(wells_t), intent(inout) :: wells
+      integer(ik), allocatable, intent(inout) :: at(:)  !< (places)
+      integer(ik) :: e, w
+
+      allocate (wells%of_entry(0), wells%entry_loss(0))
+      do w = 1, size(number, kind=ik)
+         associate (well => given(number(w)), first => at(w))
+            if (.not. allocated(well%entries)) cycle
+            wells%of_entry = [wells%of_entry, [(w, e=1, well%entry_count())]]
+            wells%entry_loss = [wells%entry_loss, well%entries%loss]
+            at = [at, [(first + e - 1, e=1, well%entry_count())]]
+         end associate
+      end do
+      wells%n_entries = size(wells%of_entry, kind=ik)
+   end subroutine add_entries
 
    !> Set the prescribed rates and pressures of these wells in the step that begins at a time.
    pure subroutine ask_wells(given, time, dt, wells)

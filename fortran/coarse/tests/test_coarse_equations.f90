@@ -94,21 +94,30 @@ contains
       call add_wells()
    end subroutine start
 
-   !> Wells of all kinds, with storage and losses, fed in by one cell, by all, and between two.
+   !> Wells of all kinds, with storage and losses, fed in by one cell, by all, and between two; the
+   !! second and the third have entries of all these.
    subroutine add_wells()
       integer(ik), parameter :: n_wells = 5
       integer(ik) :: w
 
       associate (wells => model%wells, n => mesh%fracture%n_cells)
          wells%n = n_wells
-         allocate (wells%share(n, n_wells), source=0.0_rk)
-         allocate (wells%joint_share(0, n_wells))
+         wells%n_all = n_wells
+         wells%n_entries = 5
+         wells%of_entry = [2_ik, 2_ik, 3_ik, 3_ik, 3_ik]
+         wells%entry_loss = 1.0e16_rk*[0.0_rk, 1.0_rk, 2.0_rk, 0.0_rk, 3.0_rk]
+         allocate (wells%share(n, n_wells + 5), source=0.0_rk)
+         allocate (wells%joint_share(0, n_wells + 5))
          wells%share(1, 1) = 1.0_rk
-         wells%share(2:3, 2) = 0.5_rk
-         wells%share(:, 3) = 1.0_rk/n
+         wells%share(2:3, 6) = 0.5_rk
+         wells%share(:, 7) = 1.0_rk/n
+         wells%share(4, 8) = 1.0_rk
+         wells%share(5, 9) = 1.0_rk
+         wells%share(1:2, 10) = 0.5_rk
          wells%share(3:4, 4) = 0.5_rk
          wells%share(5, 5) = 1.0_rk
-         wells%is_between = [.false., .true., .false., .true., .false.]
+         wells%is_between = [.false., .false., .false., .true., .false., .true., .false., &
+                             .false., .false., .true.]
          wells%control = [control_rate, control_pressure, control_limited, control_limited, &
                           control_shut]
          wells%rate = 1.0e-6_rk*[1.0_rk, 0.0_rk, 2.0_rk, -1.0_rk, 0.0_rk]
@@ -117,7 +126,7 @@ contains
          wells%storage = 1.0e-13_rk*[1.0_rk, 2.0_rk, 3.0_rk, 4.0_rk, 5.0_rk]
          wells%friction = 1.0e11_rk*[(real(w, rk), w=1, n_wells)]
          wells%turbulence = 1.0e16_rk*[(real(w, rk), w=1, n_wells)]
-         state%well_flow = spread(0.0_rk, 1, int(n_wells))
+         state%well_flow = spread(0.0_rk, 1, int(n_wells + 5))
          state%well_head = spread(6.0e6_rk, 1, int(n_wells))
       end associate
    end subroutine add_wells
@@ -150,8 +159,8 @@ contains
    type(fracture_layout_t) function layout_of_model()
       layout_of_model = fracture_layout_t(mesh%fracture%n_cells, 7_ik, &
                                           size(model%connections, 2, kind=ik), &
-                                          model%joints%branch_count(), model%wells%n, &
-                                          model%joints%n)
+                                          model%joints%branch_count(), &
+                                          model%wells%n + model%wells%n_entries, model%joints%n)
    end function layout_of_model
 
    !> A load such that about as many cells stick, slip and are open: f_n about -6 MPa, and the trial

@@ -276,6 +276,12 @@ contains
                        same([a%x, a%y, a%start, a%end, a%storage, a%friction, a%turbulence], &
                             [b%x, b%y, b%start, b%end, b%storage, b%friction, b%turbulence])
       if (a%fracture == 0) same_injection = same_injection .and. same([a%radius], [b%radius])
+      same_injection = same_injection .and. (allocated(a%entries) .eqv. allocated(b%entries)) &
+                       .and. a%entry_count() == b%entry_count()
+      if (.not. (same_injection .and. allocated(a%entries))) return
+      same_injection = all(a%entries%fracture == b%entries%fracture) .and. &
+                       same([a%entries%x, a%entries%y, a%entries%loss], &
+                            [b%entries%x, b%entries%y, b%entries%loss])
    end function same_injection
 
    !> Both are absent, or alike.

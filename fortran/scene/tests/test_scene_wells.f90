@@ -23,12 +23,15 @@ program test_scene_wells
       "&side name='bottom' y_displacement=0.0 /", &  ! 7
       "&time end=3600.0 /", &  ! 8
       "&coarse size_fracture=0.01 size_boundary=0.1 /"]  ! 9
+   character(len=*), parameter :: second = &
+                              " &fracture name='f2' x=0.9, 1.1 y=2*0.3 friction=0.5 aperture=1e-3 /"
    !&>
    type(checks_t) :: checks
    type(scene_t) :: scene
    type(error_t), allocatable :: error
 
    call check_lists()
+   call check_entries()
    call check_table()
    call check_spreadsheets()
    call check_faults()
@@ -68,6 +71,53 @@ contains
       call checks%is_true(scene%injections(1)%is_controlled(), "storage makes it one too")
       call expect_same()
    end subroutine check_lists
+
+   !> Several fractures of one well, a loss at a single one, and a list of one name.
+   subroutine check_entries()
+      character(len=*), parameter :: here = ":10: &injection: "
+
+      call read_with("&injection fracture='f1','f2' rate=1e-7 x=1,1.05 y=0.55,0.3 "// &
+                     "entry_loss=1e12 /"//second)
+      call checks%no_error(error, "two entries")
+      associate (well => scene%injections(1))
+         call checks%is_true(well%is_controlled() .and. well%has_given_flow(), &
+                             "the flows are unknowns, their sum is given")
+         call checks%is_true(all(well%entries%fracture == [1_ik, 2_ik]) .and. &
+                             well%fracture == 1, "the fractures")
+         call checks%is_close(maxval(abs(well%entries%loss - 1.0e12_rk)), 0.0_rk, 0.0_rk, &
+                              "one loss for all")
+         call checks%is_close(maxval(abs(well%entries%x - [1.0_rk, 1.05_rk])), 0.0_rk, 0.0_rk, &
+                              "the points")
+      end associate
+      call expect_same()
+      call read_with("&injection fracture='f2','f1' rate=1e-7 /"//second)
+      call checks%no_error(error, "entries along fractures")
+      call expect_same()
+      call read_with("&injection fracture='f1' rate=1e-7 entry_loss=1e12 /"//second)
+      call checks%is_true(scene%injections(1)%entry_count() == 1 .and. &
+                          allocated(scene%injections(1)%entries), "one entry with a loss")
+      call expect_same()
+      call read_with("&injection fracture='f1', rate=1e-7 entry_loss=0 /"//second)
+      call checks%is_true(.not. allocated(scene%injections(1)%entries), "a well as before")
+      call refuse("&injection fracture='f1','f1' rate=1e-7 /"//second, here// &
+                  "fracture names 'f1' twice, but the entries of a well must be "// &
+                  "in different fractures"//doc)
+      call refuse("&injection fracture='f1','f3' rate=1e-7 /"//second, here// &
+                  "fracture is 'f3', which is no fracture of the scene; the "// &
+                  "nearest is 'f1'"//doc)
+      call refuse("&injection fracture='f1','f2' rate=1e-7 x=1 y=0.55 /"//second, here// &
+                  "x has 1 values but must have as many as fracture, 2"//doc)
+      call refuse("&injection fracture='f1','f2' rate=1e-7 entry_loss=1,2,3 /"//second, here// &
+                  "entry_loss has 3 values but must have as many as fracture, 2"//doc)
+      call refuse("&injection fracture='f1' rate=1e-7 x=1,1 y=0.55,0.5 /"//second, here// &
+                  "x has 2 values but must have one"//doc)
+      call refuse("&injection x=0.3 y=0.2 rate=1e-7 entry_loss=1 /"//second, here// &
+                  "entry_loss is given, but a well in the rock has no entries; "// &
+                  "use friction"//doc)
+      call refuse("&injection fracture='f1' rate=1e-7 entry_loss=-1 /"//second, here// &
+                  "entry_loss is -1 but must be a finite number at least 0.0 [Pa "// &
+                  "s2/m4]"//doc)
+   end subroutine check_entries
 
    !> A table with comments, an empty line, blanks, columns in another order.
    subroutine check_table()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -30,7 +30,7 @@ class FractureLaw:
 
 @dataclass(frozen=True)
 class Well:
-    """When one injection starts and, unless it lasts to the end of the run, when it stops [s].
+    """When a well, or an entry of one, starts and, unless at the end of the run, stops [s].
 
     `place_m` is where it feeds its fracture [m]; None: along all of it.
     """
@@ -130,16 +130,7 @@ def read_scene(path: Path) -> Scene | None:
         for group, values in groups
         if group == "fracture"
     ]
-    wells = [
-        Well(
-            _number(path, group, values, "start") or 0.0,
-            _number(path, group, values, "end"),
-            _text(values, "fracture"),
-            _place(path, values),
-        )
-        for group, values in groups
-        if group == "injection"
-    ]
+    wells = [well for group, values in groups if group == "injection" for well in _wells(path, values)]
     load, load_name = _load(path, groups)
     outline = _outline(path, first["domain"]) if "domain" in first else None
     along_x, along_y = (
@@ -164,6 +155,18 @@ def read_scene(path: Path) -> Scene | None:
         control=control_of(groups),
         drive=drive_of(groups),
     )
+
+
+def _wells(path: Path, values: dict[str, list[str]]) -> Iterator[Well]:
+    """A well, or one per entry."""
+    for entry in range(max(1, len(values.get("fracture", ())))):
+        own = {key: values.get(key, [])[entry : entry + 1] for key in ("fracture", "x", "y")}
+        yield Well(
+            _number(path, "injection", values, "start") or 0.0,
+            _number(path, "injection", values, "end"),
+            _text(own, "fracture"),
+            _place(path, own),
+        )
 
 
 def _place(path: Path, values: dict[str, list[str]]) -> tuple[float, float] | None:

@@ -106,7 +106,7 @@ def _allowed(row: dict[str, Any]) -> str:
         return choices
     if row["kind"] == "logical":
         return "`.true.`, `.false.`"
-    if row["kind"] == "name":
+    if row["kind"] in ("name", "list of names"):
         return "at most 64 letters, digits, `_`, `-`, `.`"
     if row["kind"] == "text":
         return "at most 256 bytes of UTF-8"

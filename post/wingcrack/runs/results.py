@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from wingcrack.figures.equilibrium import EquilibriumPath
     from wingcrack.figures.read import Run as Files
 
-_TABLES = ("history", "tips", "fractures", "probes", "wells", "events", "slip_events")
+_TABLES = ("history", "tips", "fractures", "probes", "wells", "entries", "events", "slip_events")
 
 
 class Results:
@@ -106,6 +106,11 @@ class Results:
         return self._frame("wells")
 
     @cached_property
+    def entries(self) -> pandas.DataFrame:
+        """Flow, share and pressure of each entry of the wells that have several, or a loss."""
+        return self._frame("entries")
+
+    @cached_property
     def events(self) -> pandas.DataFrame:
         """Slip, opening, growth, joints, with their moments and places."""
         return self._frame("events")
@@ -123,7 +128,7 @@ class Results:
         name : str
             With its unit, as ``well_pressure_pa``.
         table : str
-            history, tips, fractures, probes, wells, events or slip_events.
+            history, tips, fractures, probes, wells, entries, events or slip_events.
 
         Raises
         ------
