@@ -65,7 +65,7 @@ contains
             at_centre = unknowns(3, cell)
             if (mesh%n_layers > 0) then  ! the gradient is that of the rest of the cell
                if (mesh%cell_layer(cell) > 0) at_centre = unknowns(3, layer_block(mesh, &
-                                                                      mesh%cell_layer(cell)))
+                                                                             mesh%cell_layer(cell)))
             end if
             associate (v => mesh%cell_nodes(k, cell))
                number(v) = number(v) + 1.0_rk

@@ -37,7 +37,7 @@ module report_jump_errors
                         jump_law_t(0.005_rk, 0.003_rk, 0.25_rk, 0.075_rk, 0.15_rk, 0.5_rk, 0.2_rk, &
                                              0.03_rk, 0.075_rk, 1.0_rk)
    type(jump_law_t), parameter :: finite_elements = &
-                     jump_law_t(4.0e-4_rk, 0.0_rk, 0.0_rk, 8.0e-3_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
+                        jump_law_t(4.0e-4_rk, 0.0_rk, 0.0_rk, 8.0e-3_rk, 0.05_rk, 0.25_rk, 0.2_rk, &
                                              0.05_rk, 0.35_rk, 1.5_rk)
 
    !> (fracture cells)
@@ -108,7 +108,7 @@ contains
                               + max(share_at(first, 1)*size_of(1)/(middle - ends(1)), &
                                     share_at(last, 2)*size_of(2)/(ends(2) - middle))
             if (any(kink > 0.0_rk)) errors%share(i) = errors%share(i) + law%at_kink &
-               & *maxval(kink/abs(fracture%cell_s(2, first:last) - middle))
+                                        & *maxval(kink/abs(fracture%cell_s(2, first:last) - middle))
          end associate
       end do
       errors%of_sum(first:last) = law%rest + law%of_kink*maxval(kink)/half &

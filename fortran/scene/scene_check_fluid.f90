@@ -232,7 +232,7 @@ contains
             return
          end do
       else if (sheet%records(well)%is_set("entry_loss")) then
-         call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has no "// &
+        call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has no "// &
                      "entries; use friction")
          return
       end if
@@ -415,7 +415,7 @@ contains
             if (any(abs(entries(:e - 1)%x - entry%x) + abs(entries(:e - 1)%y - entry%y) &
                     <= same_place*size)) then
                call refuse(error, sheet, record, "x", "and y are "//point_text(entry%x, &
-                           entry%y)//" for two entries, which must be at different points")
+                                    entry%y)//" for two entries, which must be at different points")
                return
             end if
             distance = distance_to(scene%fractures(entry%fracture), entry%x, entry%y)

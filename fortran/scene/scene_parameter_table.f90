@@ -400,7 +400,7 @@ module scene_parameter_table
          meaning="Adaptive meshes"), &
       parameter_t("adaptive", "tolerance", range=share, derived=.true., &
          absent="0.01, or 0.5 with &fluid", &
-         meaning="Target relative error in the energy norm: of the stresses; with &fluid of the "// &
+        meaning="Target relative error in the energy norm: of the stresses; with &fluid of the "// &
                  "response to the wells"), &
       parameter_t("adaptive", "passes", kind_integer, default="4", range=passes_range, &
          meaning="Maximum number of adapted meshes"), &

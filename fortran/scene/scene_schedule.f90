@@ -392,7 +392,7 @@ contains
       do k = 1, size(headers)
          if (columns(k)%item == 0) then
             if (named(headers(k)%text, renamed) /= "") then
-              reason = "the column '"//shortened(headers(k)%text)//"' must be one of "//known
+               reason = "the column '"//shortened(headers(k)%text)//"' must be one of "//known
             end if
          else if (any(columns(:k - 1)%item == columns(k)%item)) then
             reason = "the column '"//column_name(parameters(columns(k)%item))//"' is given twice"
@@ -400,7 +400,7 @@ contains
          if (allocated(reason)) return
       end do
       if (.not. any(parameters(pack(columns%item, columns%item > 0))%name == "time")) then
-        reason = "the column time_s is missing"
+         reason = "the column time_s is missing"
       end if
    end subroutine find_columns
 

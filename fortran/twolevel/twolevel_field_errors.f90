@@ -35,7 +35,7 @@ contains
 
       do f = 1, maxval([0_ik, fracture%cell_fracture])
          where (fracture%cell_fracture == f) largest = maxval(values, &
-                                                             mask=fracture%cell_fracture == f)
+                                                              mask=fracture%cell_fracture == f)
       end do
    end function largest_of
 
