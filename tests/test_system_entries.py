@@ -69,9 +69,7 @@ def test_flows_add_up_and_pressures_agree(well: str, tmp_path: Path) -> None:
     held = float(history["fracture_fluid_m2"])
     stored = sum(
         float(row["flow_m2_s"]) * (float(row["time_s"]) - before)
-        for row, before in zip(
-            wells, [0.0, *(float(row["time_s"]) for row in wells)], strict=False
-        )
+        for row, before in zip(wells, [0.0, *(float(row["time_s"]) for row in wells)], strict=False)
     )
     assert held == pytest.approx(stored, rel=1e-6)
     losses = {"1": 0.0, "2": 0.0, "3": 0.0}

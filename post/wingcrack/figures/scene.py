@@ -130,7 +130,9 @@ def read_scene(path: Path) -> Scene | None:
         for group, values in groups
         if group == "fracture"
     ]
-    wells = [well for group, values in groups if group == "injection" for well in _wells(path, values)]
+    wells = [
+        well for group, values in groups if group == "injection" for well in _wells(path, values)
+    ]
     load, load_name = _load(path, groups)
     outline = _outline(path, first["domain"]) if "domain" in first else None
     along_x, along_y = (
