@@ -121,7 +121,8 @@ def test_fluid_flows_between_fractures_after_shut_in(tmp_path: Path) -> None:
     """Losses hold pressures apart while the well flows; afterwards they become equal."""
     out = run(
         tmp_path,
-        f"{BODY}&time end = 2000 /\n&injection {LIST}, rate = 1e-5, entry_loss = 1e17, end = 10 /\n",
+        f"{BODY}&time end = 2000 /\n&injection {LIST}, rate = 1e-5, entry_loss = 1e17, "
+        "end = 10 /\n",
     )
     table = rows(out / "entries.csv")
     after = [row for row in table if float(row["time_s"]) > 10.0]

@@ -232,8 +232,8 @@ contains
             return
          end do
       else if (sheet%records(well)%is_set("entry_loss")) then
-         call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has no "// &
-                     "entries; use friction")
+         call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has "// &
+                     "no entries; use friction")
          return
       end if
       do i = 1, size(lists)
