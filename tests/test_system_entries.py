@@ -60,7 +60,7 @@ def test_flows_add_up_and_pressures_agree(well: str, tmp_path: Path) -> None:
         f"{BODY}&time end = 20 /\n&injection {LIST}, {well}, end = 10 /\n",
     )
     wells = rows(out / "wells.csv")[1:]
-    sums = sum(flows(out).values())[1:]
+    sums = np.sum(list(flows(out).values()), axis=0)[1:]
     expected = np.array([float(row["flow_m2_s"]) for row in wells])
     largest = np.max(np.abs(list(flows(out).values())))
     assert sums == pytest.approx(expected, rel=1e-12, abs=1e-12 * largest)
@@ -121,7 +121,8 @@ def test_fluid_flows_between_fractures_after_shut_in(tmp_path: Path) -> None:
     """Losses hold pressures apart while the well flows; afterwards they become equal."""
     out = run(
         tmp_path,
-        f"{BODY}&time end = 2000 /\n&injection {LIST}, rate = 1e-5, entry_loss = 1e17, end = 10 /\n",
+        f"{BODY}&time end = 2000 /\n&injection {LIST}, rate = 1e-5, entry_loss = 1e17, "
+        "end = 10 /\n",
     )
     table = rows(out / "entries.csv")
     after = [row for row in table if float(row["time_s"]) > 10.0]

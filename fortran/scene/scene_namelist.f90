@@ -317,8 +317,8 @@ contains
       if (own < not_given) value = own
    end subroutine take
 
-   !> Set the defaults of the tolerances, the smallest step and the interval of written fields, which
-   !! without a step is a hundredth of the run.
+   !> Set the defaults of the tolerances, the smallest step and the interval of written fields,
+   !! which without a step is a hundredth of the run.
    pure subroutine choose_steps(scene)
       type(scene_t), intent(inout) :: scene
       real(rk), parameter :: usual_tolerance = 0.01_rk

@@ -89,7 +89,8 @@ def path(draw: Draw, centre: Sequence[float], length: float, bends: int) -> np.n
         angle += math.radians(draw.random.uniform(10.0, 60.0)) * draw.among(-1, 1)
     all_points = np.array(points)
     middle = 0.5 * (all_points.min(axis=0) + all_points.max(axis=0))
-    return np.round((all_points - middle + centre) / length, 4) * length
+    placed: np.ndarray = np.round((all_points - middle + centre) / length, 4) * length
+    return placed
 
 
 def nearest(a: np.ndarray, b: np.ndarray) -> float:
