@@ -260,7 +260,7 @@ FAMILIES = {"body": body, "injected": injected, "growing": growing}
 
 def finer(scene: Scene) -> Scene:
     """The scene with four times the resolution."""
-    fine = json.loads(json.dumps(scene))
+    fine: Scene = json.loads(json.dumps(scene))
     for group in ("fe", "coarse"):
         if group in fine:
             for size in ("size_fracture", "size_boundary"):
