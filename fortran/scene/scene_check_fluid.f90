@@ -394,7 +394,7 @@ contains
             if (any(abs(entries(:e - 1)%x - entry%x) + abs(entries(:e - 1)%y - entry%y) &
                     <= same_place*size)) then
                call refuse(error, sheet, record, "x", "and y are "//point_text(entry%x, &
-                           entry%y)//" for two entries, which must be at different points")
+                                    entry%y)//" for two entries, which must be at different points")
                return
             end if
             distance = distance_to(scene%fractures(entry%fracture), entry%x, entry%y)
