@@ -79,8 +79,8 @@ module report_describe
    character(len=*), parameter :: kind_words(9) = [character(len=21) :: "number", &
                                                      "list of numbers", "whole number", "logical", &
                                                                          "text", "name", "choice", &
-                              "list of whole numbers", &
-                                                                                  "list of names"]
+                                                                          "list of whole numbers", &
+                                                                                    "list of names"]
 
    !> Scenes in which a name without a default is required, need_never to need_choice.
    character(len=*), parameter :: need_words(0:4) = [character(len=15) :: "", "always", &

@@ -232,8 +232,8 @@ contains
             return
          end do
       else if (sheet%records(well)%is_set("entry_loss")) then
-         call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has "// &
-                     "no entries; use friction")
+        call refuse(error, sheet, well, "entry_loss", "is given, but a well in the rock has no "// &
+                     "entries; use friction")
          return
       end if
       do i = 1, size(lists)
@@ -299,7 +299,28 @@ contains
          end if
          if (allocated(error)) return
       end do
+      if (scene%adaptive%enabled .and. scene%has_fluid()) call check_adaptive(sheet, scene, error)
    end subroutine check_wells
+
+   !> With a fluid, the mesh is adapted before the first step, to wells in fractures.
+   pure subroutine check_adaptive(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: reason
+
+      if (scene%growth%enabled) then
+         reason = "the mesh is adapted to the fractures before they grow, and &growth is enabled"
+      else if (size(scene%injections) == 0) then
+         reason = "the mesh is adapted to the response to wells, and there is no &injection"
+      else if (any(scene%injections%fracture == 0)) then
+         reason = "the pressure of a well in the rock depends on the size of its cell"
+      else
+         return
+      end if
+      call refuse(error, sheet, sheet%find("adaptive"), "enabled", &
+                  "is .true., but with &fluid "//reason)
+   end subroutine check_adaptive
 
    !> Stages have as many rates and pressures as times, which increase, and end after the last
    !! start.

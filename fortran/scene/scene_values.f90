@@ -6,8 +6,7 @@ module scene_values
    use scene_expression, only: token_comma, token_list_t, token_t, token_text, token_word, &
                                tokenize, unquoted
    use scene_parameters, only: kind_choice, kind_integer, kind_logical, kind_name, &
-                               kind_names, kind_real, kind_reals, kind_text, kind_wholes, &
-                               parameter_t, text_length
+                 kind_names, kind_real, kind_reals, kind_text, kind_wholes, parameter_t, text_length
    use scene_types, only: name_length
    use scene_words, only: holds, in_words, is_identifier, lower_case
    implicit none(type, external)
@@ -21,6 +20,7 @@ module scene_values
       logical :: is_set = .false.  !< by the file or by a default
       integer(ik) :: line = 0  !< line of the file; 0: not in the file
       real(rk), allocatable :: reals(:)
+      logical :: per_thickness = .false.  !< reals must still be divided by the thickness
       integer(ik) :: whole = 0
       logical :: flag = .false.
       character(len=:), allocatable :: text  !< with several names the last
