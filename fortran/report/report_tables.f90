@@ -500,6 +500,7 @@ contains
       call self%events%visit(archive)
       call self%slip_events%visit(archive)
       call self%wells%visit(archive)
+      call self%entries%visit(archive)
    end subroutine visit
 
    !> Store or load their texts.
@@ -514,6 +515,7 @@ contains
       call self%events%visit_text(archive)
       call self%slip_events%visit_text(archive)
       call self%wells%visit_text(archive)
+      call self%entries%visit_text(archive)
    end subroutine visit_text
 
 end module report_tables

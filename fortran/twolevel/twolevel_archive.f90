@@ -148,6 +148,7 @@ contains
       call archive%plain("step", c_loc(errors%step), storage_size(errors%step)/8_lk)
       call visit_followed(archive, "quantities", errors%quantities)
       call visit_followed(archive, "wells", errors%wells)
+      call visit_followed(archive, "entries", errors%entries)
       call visit_followed(archive, "probes", errors%probes)
       call archive%leave()
    end subroutine visit_value_errors
