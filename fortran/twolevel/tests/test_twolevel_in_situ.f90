@@ -217,7 +217,7 @@ contains
       ! (a/W)^2: 0.1 %. Of the difference, 0.4, that is 2.5 %.
       call checks%is_close(0.5_rk*sum(k), 1.0_rk, 0.01_rk, "mean")
       call checks%is_close(k(2) - k(1), 0.4_rk, 0.01_rk, "difference")
-      call same(simulation%problem%well_pressure(simulation%scene, simulation%now%coarse), &
+      call same(simulation%problem%well_pressure(simulation%now%coarse), &
                 300.0e6_rk + net, 0.002_rk, "pressure")
    end subroutine check_gradient
 

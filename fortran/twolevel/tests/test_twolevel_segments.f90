@@ -100,7 +100,7 @@ contains
       call checks%is_close(simulation%tip(1)%advance, gap, 1.0e-3_rk*gap, "over the gap")
       s = scene%material%toughness/sqrt(pi*(half - gap))
       associate (problem => simulation%problem, state => simulation%now%coarse)
-         call checks%is_true(problem%well_pressure(simulation%scene, state) < 2.0e6_rk + s, &
+         call checks%is_true(problem%well_pressure(state) < 2.0e6_rk + s, &
                              "the pressure falls")
       end associate
    end subroutine test_two_bars
