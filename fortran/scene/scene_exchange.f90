@@ -232,6 +232,8 @@ contains
          call exchange(record, "interval", scene%output%interval, nothing=0.0_rk)
          call exchange(record, "growth_states", scene%output%growth_states)
          call exchange(record, "stimulated_jump", scene%output%stimulated_jump)
+         ! 0: that of the body, see resolve_defaults.
+         if (record%reading) scene%output%out_of_plane_length = 0.0_rk
          call exchange(record, "out_of_plane_length", scene%output%out_of_plane_length)
          call exchange(record, "seismic_slip_rate", scene%output%seismic_slip_rate)
          call exchange(record, "checkpoint", scene%output%checkpoint)

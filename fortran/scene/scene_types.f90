@@ -256,7 +256,7 @@ module scene_types
       integer(ik) :: growth_states = 200
       !> smallest slip or opening of stimulated faces, and mean slip of an event [m]
       real(rk) :: stimulated_jump = 1.0e-6_rk
-      real(rk) :: out_of_plane_length = -1.0_rk  !< out-of-plane length of slip events [m]
+      real(rk) :: out_of_plane_length = 1.0_rk  !< out-of-plane length of slip events [m]
       real(rk) :: seismic_slip_rate = 1.0e-3_rk  !< smallest slip rate of seismic events [m/s]
       real(rk) :: checkpoint = 600.0_rk  !< wall time between checkpoints; 0: none [s]
       !> accepted states between checkpoints; 0: the wall time decides
