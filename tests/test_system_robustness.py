@@ -120,7 +120,7 @@ def test_a_run_with_a_table_that_is_not_whole_has_failed(tmp_path: Path) -> None
     done = subprocess.run(
         [SOLVER, "run", "scene.nml", "--out", "out", "--quiet"],
         cwd=tmp_path,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (5300, 5300)),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (5600, 5600)),
         capture_output=True,
         text=True,
         check=False,

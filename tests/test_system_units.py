@@ -82,7 +82,13 @@ def test_growth_in_other_units(tmp_path: Path, given: Path, units: Units) -> Non
         assert max(row.get("fracture_length_m", 20.5) for row in wanted) > 20.3
         found = differences(wanted, table(out / name, units), ROUNDING)
         assert len(found) > 15
-        assert {column: error for column, error in found.items() if not error <= 1.0e-7} == {}
+        # a rate is a small difference of slips
+        apart = {
+            column: error
+            for column, error in found.items()
+            if not error <= (1.0e-6 if "rate" in column else 1.0e-7)
+        }
+        assert apart == {}
 
 
 @pytest.mark.parametrize("scene", ["crossing", "l_panel"])

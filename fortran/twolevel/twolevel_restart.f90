@@ -41,8 +41,10 @@ contains
       ! As the next step does at its beginning.
       if (.not. archive%is_loading) then
          call discard(self%kept_problem)
-         call self%windows%begin_step()
-         call self%reference%begin_step()
+         if (self%scene%growth%intensities) then
+            call self%windows%begin_step()
+            call self%reference%begin_step()
+         end if
       end if
       call visit_simulation(archive, self)
       call visit_levels(archive, "now", self%now)

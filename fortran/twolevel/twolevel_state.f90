@@ -411,6 +411,7 @@ contains
    !> Numbers of unknowns by block, for run.json.
    subroutine count_unknowns(self)
       class(two_levels_t), intent(inout) :: self
+      integer(ik) :: n_reference
 
       associate (mesh => self%problem%mesh, model => self%problem%model, summary => self%summary)
          call summary%count_dofs("displacement", 2*mesh%n_cells)
@@ -424,7 +425,9 @@ contains
          if (.not. self%scene%growth%intensities) return
          call summary%count_dofs("windows", self%windows%n_unknowns(self%tip))
          if (self%scene%discretization%window_is_body) return
-         call summary%count_dofs("windows_reference", self%reference%n_unknowns(self%tip))
+         ! Where no tip may grow, the body is not compared with.
+         n_reference = self%reference%n_unknowns(self%tip)
+         if (n_reference > 0) call summary%count_dofs("windows_reference", n_reference)
       end associate
    end subroutine count_unknowns
 

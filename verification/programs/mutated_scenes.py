@@ -183,7 +183,7 @@ def shortened(path: Path) -> str:
         changes["injection.1.end"] = 2.0 * step
     elif "load" in scene:
         changes["load.steps"] = min(3, scene["load"].get("steps", 1))
-    if scene["growth"].get("enabled", False):
+    if scene.get("growth", {}).get("enabled", False):
         changes["growth.stop_gain"] = 1.5 * size
     return scene_text(path, changes, [])
 
