@@ -131,7 +131,7 @@ contains
             error = growth_error(tip, segment, self%network, toughness, self%load_pressure)
             call self%watch%see(limit_growth_error, 100.0_rk*error%relative, &
                                 brief_text(time, 6)//" s, fracture "// &
-                                self%scene%fractures(tip%fracture)%name, tip%xy)
+                                trim(self%scene%fractures(tip%fracture)%name), tip%xy)
             if (is_noted(i)) cycle
             is_noted(i) = .true.
             consequences = "K known to "//brief_text(uncertainty(tip, toughness), 3)// &
