@@ -78,17 +78,14 @@ def test_growth_in_other_units(tmp_path: Path, given: Path, units: Units) -> Non
     """Factors that are powers of 4 change rounding alone: nothing absolute is in the results."""
     out = run(tmp_path, in_units(SCENE, units))
     for name in ("history.csv", "tips.csv"):
-        wanted = table(given / name)
+        wanted, found = table(given / name), table(out / name, units)
         assert max(row.get("fracture_length_m", 20.5) for row in wanted) > 20.3
-        found = differences(wanted, table(out / name, units), ROUNDING)
-        assert len(found) > 15
-        # a rate is a small difference of slips
-        apart = {
-            column: error
-            for column, error in found.items()
-            if not error <= (1.0e-6 if "rate" in column else 1.0e-7)
-        }
-        assert apart == {}
+        # K of the first steps is that of thin layers, a small difference: it has 5 digits
+        for since, most in ((0.0, 1.0e-5), (0.1, 1.0e-7)):
+            late = [[row for row in rows if row["time_s"] >= since] for rows in (wanted, found)]
+            apart = differences(late[0], late[1], ROUNDING)
+            assert len(apart) > 15
+            assert {column: error for column, error in apart.items() if not error <= most} == {}
 
 
 @pytest.mark.parametrize("scene", ["crossing", "l_panel"])
