@@ -37,7 +37,7 @@ private:
     }
 
     template <typename T> void visit(T& value) {
-        static_assert(std::is_trivially_copyable_v<T>, "this type needs a visit of its own");
+        static_assert(std::is_trivially_copyable_v<T>, "this type needs a separate visit");
         raw(&value, sizeof(T));
     }
 

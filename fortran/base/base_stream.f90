@@ -228,7 +228,7 @@ contains
       end if
    end subroutine move
 
-   !> Make room for more bytes.
+   !> Enlarge the buffer for more bytes.
    subroutine reserve(self, n_bytes)
       class(stream_t), intent(inout) :: self
       integer(lk), intent(in) :: n_bytes

@@ -19,7 +19,7 @@ module scene_columns
       type(unit_t) :: unit
    end type column_t
 
-   !> Column with a header of its own.
+   !> Column with another header than its name.
    type :: renamed_t
       character(len=:), allocatable :: header
       character(len=:), allocatable :: name  !< with the ending of its unit

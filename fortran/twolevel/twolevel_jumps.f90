@@ -160,7 +160,7 @@ contains
       call archive%list("grown", self%grown)
    end subroutine visit
 
-   !> Growth of each tip until a time of its own, as far as it is remembered [m].
+   !> Growth of each tip until its time, as far as it is remembered [m].
    pure function grown_before(self, time) result(grown)
       class(jumps_t), intent(in) :: self
       real(rk), intent(in) :: time(:)  !< (tips) [s]

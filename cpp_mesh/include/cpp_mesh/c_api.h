@@ -202,7 +202,7 @@ int cm_locate(const cm_mesh* mesh, int32_t n_points, const double* xy /* [n_poin
               int32_t* cells);
 
 /* The bytes of a mesh for a checkpoint, and the same mesh from them, in the same program. Those of
-   a mesh are written if there is room; `n_bytes` says how many there are. */
+   a mesh are written if the buffer is large enough; `n_bytes` says how many there are. */
 int cm_store(const cm_mesh* mesh, int64_t capacity, char* bytes /* [capacity] */, int64_t* n_bytes);
 int cm_load(int64_t n_bytes, const char* bytes /* [n_bytes] */, cm_mesh** mesh);
 

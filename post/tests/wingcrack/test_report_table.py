@@ -15,7 +15,7 @@ _HEAD = (
     "time_s,well,stage,control,rate_m2_s,pressure_pa,injected_m2,injectivity_m2_s_pa,"
     "pressure_error_pa,injectivity_error_m2_s_pa\n"
 )
-# an injector in two stages with a shut-in, and a producer beside it, in the order of the file
+# an injector in two stages with a shut-in, and a producer, in the order of the file
 _ROWS = """\
 0.0,a,0,shut,0.0,1e6,0.0,0.0,0.0,0.0
 0.0,b,0,shut,0.0,1e6,0.0,0.0,0.0,0.0
