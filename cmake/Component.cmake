@@ -6,6 +6,8 @@
 #   add_component(coarse THREADS USES mesh)      whose loops run on OMP_NUM_THREADS threads
 #   add_component_samples(coarse sample_bodies USES coarse)   tests/sample_bodies.f90, for several tests
 #   add_component_test(test_x USES coarse)       test_x.f90 of the component's tests/ folder, run by CTest
+#   add_component_test(test_x OPTIMIZED USES ..) in the release build too, where optimization, threads or
+#                                                speed can change what is tested
 function(add_component name)
   cmake_parse_arguments(ARG "THREADS" "" "USES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.f90)
@@ -36,7 +38,10 @@ function(add_component_samples name)
 endfunction()
 
 function(add_component_test name)
-  cmake_parse_arguments(ARG "" "" "USES" ${ARGN})
+  cmake_parse_arguments(ARG "OPTIMIZED" "" "USES" ${ARGN})
+  if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT ARG_OPTIMIZED)
+    return()
+  endif()
   add_executable(${name} ${CMAKE_CURRENT_SOURCE_DIR}/tests/${name}.f90)
   set_target_properties(
     ${name} PROPERTIES Fortran_MODULE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/mod_tests/${name}
