@@ -81,7 +81,7 @@ STORED = {
     "increment_t": ("mechanics_equilibrium:visit",),
     "tries_t": ("mechanics_tries:visit",),
     "programme_t": ("mechanics_programme:visit",),
-    "dead_load_t": ("mechanics_restart:visit_dead_load",),
+    "dead_load_t": ("mechanics_dead_load:visit",),
     "mesh_t": ("mesh_archive:visit_mesh",),
     "snapshot_t": ("report_fields_archive:visit_snapshot",),
     "matrix_fields_t": ("report_fields_archive:visit_matrix",),

@@ -42,7 +42,7 @@ contains
       call archive%item("accepted_factor", self%accepted_factor)
       call archive%item("has_increment", self%has_increment)
       call self%increment%visit(archive)
-      call visit_dead_load(archive, self%dead_load)
+      call self%dead_load%visit(archive)
       call archive%item("was_bifurcation", self%was_bifurcation)
       call visit_network(archive, "shown_network", self%shown_network)
       call visit_mesh(archive, "shown_mesh", self%shown_mesh)
@@ -51,21 +51,5 @@ contains
       if (archive%is_loading .and. n > 0_lk) allocate (self%good)
       if (n > 0_lk) call visit_snapshot(archive, "good", self%good)
    end subroutine visit
-
-   subroutine visit_dead_load(archive, load)
-      type(archive_t), intent(inout) :: archive
-      type(dead_load_t), intent(inout) :: load
-
-      call archive%enter("dead_load")
-      call archive%item("factor", load%factor)
-      call archive%item("borne", load%borne)
-      call archive%item("is_unstable", load%is_unstable)
-      call archive%item("length", load%length)
-      call archive%item("released", load%released)
-      call archive%list("end", load%end)
-      call archive%item("end_factor", load%end_factor)
-      call archive%list("energy", load%energy)
-      call archive%leave()
-   end subroutine visit_dead_load
 
 end submodule mechanics_restart
