@@ -13,9 +13,9 @@ module mechanics_simulation
    use mechanics_rise, only: go_to_peak, rise
    use mechanics_state, only: loaded_body_t, together
    use mesh_types, only: mesh_t, network_t
-   use report_rows, only: event_bifurcation, history_row_t, probe_row_t
+   use report_rows, only: event_bifurcation, event_growth_uncertain, history_row_t, probe_row_t
    use report_simulation, only: snapshot_t
-   use report_watch, only: doubtful, stop_on_doubt
+   use report_watch, only: doubtful, see_doubt, uncertainty
    use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
    implicit none(type, external)
@@ -32,6 +32,7 @@ module mechanics_simulation
       type(increment_t) :: increment
       type(dead_load_t) :: dead_load
       logical :: was_bifurcation = .false.  !< the last increment was a bifurcation
+      logical, allocatable :: was_uncertain(:)  !< (tips) at the last onset
       type(network_t) :: shown_network  !< network of the accepted state
       type(mesh_t) :: shown_mesh  !< mesh of the accepted state
       type(snapshot_t), allocatable :: good  !< fields of the last accepted state
@@ -222,7 +223,7 @@ contains
       self%shown_network = self%network
       self%shown_mesh = self%body%mesh
       if (.not. allocated(self%ending) .and. self%has_onset) then
-         call refuse_uncertain(self, error)
+         call note_uncertain(self, error)
          if (allocated(error)) return
          call self%dead_load%begin_increment(self)
          call find_limit(self, limit, timers, error)
@@ -268,22 +269,32 @@ contains
       if (.not. allocated(error)) call self%respond(begun, timers, error)
    end subroutine find_limit
 
-   !> Stop the run at tips whose intensities are too uncertain for growth.
-   subroutine refuse_uncertain(self, error)
+   !> Report tips that grow, or might grow within the error of their intensities: to the limits of
+   !! the run, which end it where K is not known at all, and as an event at the first such onset of
+   !! each tip.
+   subroutine note_uncertain(self, error)
       class(mechanics_simulation_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
+      logical :: is_uncertain(size(self%tip))
       integer(ik) :: i
 
+      is_uncertain = doubtful(self%tip, self%rules%toughness)
+      if (.not. allocated(self%was_uncertain)) self%was_uncertain = spread(.false., 1, size(self%tip))
       do i = 1, size(self%tip, kind=ik)
+         if (.not. is_uncertain(i)) cycle
          associate (tip => self%tip(i), toughness => self%rules%toughness)
-            if (.not. doubtful(tip, toughness)) cycle
-            call stop_on_doubt(self%watch, tip, toughness, &
-                               self%scene%fractures(tip%fracture)%name, self%last_state())
-            call self%heed_limits(error)
-            return
+            call see_doubt(self%watch, tip, toughness, self%scene%fractures(tip%fracture)%name, &
+                           self%last_state())
+            if (self%was_uncertain(i)) cycle
+            call self%chronicle%add_event(self%time(), event_growth_uncertain, "K known to "// &
+                                          brief_text(uncertainty(tip, toughness), 3)// &
+                                          " % of K_IC or K_eq: load factor of growth known to "// &
+                                          "as much", tip%fracture, tip%xy)
          end associate
       end do
-   end subroutine refuse_uncertain
+      self%was_uncertain = is_uncertain
+      call self%heed_limits(error)
+   end subroutine note_uncertain
 
    !> Log the increment of growth that led to the present state.
    subroutine note_increment(self)

@@ -86,11 +86,11 @@ module report_limits
          "growth in this state is uncertain: use smaller cells around the tip, or with a fluid "// &
          "a larger window"), &
       limit_t("error of K over K_IC where a tip would grow", "%", "without a fluid", 5.0_rk, &
-         5.0_rk, &
+         100.0_rk, &
          "Estimated error of K, over K_IC or K_eq if that is larger, of a tip whose K_eq "// &
          "equals K_IC within it, when tips may grow: the relative error of the load factor of "// &
          "growth; not with law = 'paris'", &
-         "growth cannot be decided: reduce size_fracture, or use &adaptive"), &
+         "reduce size_fracture, or use &adaptive"), &
       limit_t("K_eq over K_IC after growth", "-", "fluid and growth", 1.02_rk, 1.0e2_rk, &
          "Largest K_eq, over K_IC, of tips that may grow, after growth in the state", &
          "reduce the step: growth lags behind the load"), &

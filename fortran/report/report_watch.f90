@@ -15,7 +15,7 @@ module report_watch
    implicit none(type, external)
    private
 
-   public :: doubtful, error_of_k, stop_on_doubt, uncertainty, watch_t, worst_place
+   public :: doubtful, error_of_k, see_doubt, uncertainty, watch_t, worst_place
 
    integer, parameter :: digits = 4  !< digits of numbers in sentences
 
@@ -199,12 +199,12 @@ contains
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
 
       doubtful = .not. tip%arrested .and. &
-                 judge(limit_k_to_grow, uncertainty(tip, toughness)) == verdict_stop
+                 judge(limit_k_to_grow, uncertainty(tip, toughness)) /= verdict_fine
       if (doubtful) doubtful = .not. tip%drive%intensity + steepest*error_of_k(tip) < toughness
    end function doubtful
 
-   !> Exceed the limit of the run for a tip whose intensities are too uncertain for growth.
-   pure subroutine stop_on_doubt(watch, tip, toughness, fracture, when)
+   !> Report a tip whose intensities are uncertain where it grows to the limit of the run.
+   pure subroutine see_doubt(watch, tip, toughness, fracture, when)
       class(watch_t), intent(inout) :: watch
       type(tip_t), intent(in) :: tip
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
@@ -213,7 +213,7 @@ contains
 
       call watch%see(limit_k_to_grow, uncertainty(tip, toughness), when//", fracture "// &
                      trim(fracture)//", end "//integer_text(tip%end), tip%xy)
-   end subroutine stop_on_doubt
+   end subroutine see_doubt
 
    !> Store or load all components.
    subroutine visit(self, archive)

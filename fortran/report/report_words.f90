@@ -46,8 +46,8 @@ module report_words
          "the given position; `detail` has its length, the well pressure before and after, and "// &
          "the error of the time"), &
       word_t("growth_uncertain", &
-         "a tip grows or may grow, but the error of its K makes the pressure or the position "// &
-         "uncertain; see `detail`"), &
+         "a tip grows or may grow, but the error of its K makes the pressure, the load factor "// &
+         "or the position uncertain; see `detail`"), &
       word_t("window", &
          "stress intensity factors of a tip that would grow are too uncertain: its window is "// &
          "enlarged or refined; see `detail`")]

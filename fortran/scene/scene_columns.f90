@@ -102,7 +102,7 @@ contains
          if (is_column(parameters(m), group)) known = known//", "//column_name(parameters(m))
       end do
       known = known(3:)//"; or in place of _s _min, _h or _d, of _pa _kpa, _mpa, _bar or _psi, "// &
-              "of _m2_s _m3_s, _l_s, _l_min, _m3_h or _bbl_min"
+              "of _m2_s _m3_s, _l_s, _l_min, _m3_h or _bbl_min; `columns` takes other headers"
       allocate (columns(size(headers)))
       do k = 1, size(headers)
          name = named(headers(k)%text, renamed)
