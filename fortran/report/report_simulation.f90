@@ -6,6 +6,7 @@ module report_simulation
    use base_texts, only: text_t
    use base_timers, only: timers_t
    use contact_law, only: state_open, state_slip
+   use fine_tip_types, only: complete_errors
    use growth_front, only: front_t
    use growth_law, only: growth_drive, growth_drive_t
    use growth_network, only: end_gain
@@ -231,18 +232,23 @@ contains
 
    !> Add a row per free tip to the event log. If any tip has just grown at this time, the rows have
    !! the values before that growth, unless the growth belongs to the step that led to the state.
-   pure subroutine note_tips(self, grew_in_step)
+   pure subroutine note_tips(self, grew_in_step, load_errors)
       class(simulation_t), intent(inout) :: self
       logical, intent(in), optional :: grew_in_step  !< default: no
+      !> (2, tips) errors of K_I, K_II by those of the load of the faces; default: 0 [Pa m^1/2]
+      real(rk), intent(in), optional :: load_errors(:, :)
+      real(rk) :: added(2, size(self%tip))
       type(tip_row_t) :: row
       logical :: any_grew
       integer(ik) :: i
 
       any_grew = any(self%tip%advance > 0.0_rk)
       if (present(grew_in_step)) any_grew = any_grew .and. .not. grew_in_step
+      added = 0.0_rk
+      if (present(load_errors)) added = load_errors
       do i = 1, size(self%tip, kind=ik)
          if (.not. self%tip(i)%has_state(is_before=any_grew)) cycle
-         row = row_of_tip(self%time(), i, self%tip(i), any_grew)
+         row = row_of_tip(self%time(), i, self%tip(i), any_grew, added(:, i))
          row%apparent_toughness = self%tip(i)%viscous_rise*resistance_of(self%tip(i), any_grew) &
                                   *self%rules%toughness
          row%error%position = -1.0_rk
@@ -267,11 +273,12 @@ contains
    end function resistance_of
 
    !> The row of a tip, before the last increment or after it.
-   pure function row_of_tip(time, i, tip, is_before) result(row)
+   pure function row_of_tip(time, i, tip, is_before, added) result(row)
       real(rk), intent(in) :: time  !< [s]
       integer(ik), intent(in) :: i  !< number of the tip
       type(tip_t), intent(in) :: tip
       logical, intent(in) :: is_before
+      real(rk), intent(in) :: added(2)  !< to the errors of K_I, K_II [Pa m^1/2]
       type(tip_row_t) :: row
       type(tip_t) :: shown
 
@@ -293,6 +300,11 @@ contains
       row%keq = shown%drive%intensity*shown%drive%resistance
       row%g = shown%drive%energy
       associate (intensity => shown%intensity)
+         if (any(added > 0.0_rk)) then
+            intensity%k1_error = intensity%k1_error + added(1)
+            intensity%k2_error = intensity%k2_error + added(2)
+            call complete_errors(shown%drive%crack_modulus, intensity)
+         end if
          row%k1 = intensity%k1
          row%k2 = intensity%k2
          row%k1_dc = intensity%k1_dc

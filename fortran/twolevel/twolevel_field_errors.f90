@@ -1,10 +1,21 @@
 !> Estimated errors of the fields of a state with a fluid: those of its quantities
 !! (twolevel_value_errors), and in each cell the difference from what its neighbours give.
+!!
+!! The flow along a fracture is the sum of what leaks off beyond a cell: the relative error of
+!! leak-off acts on what leaks off in a cell. In the last cell before an end the flow falls to zero
+!! within the cell, anywhere: its error is as large as its value.
+!!
+!! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
+!! that has moved is one of K_I of sqrt(pi L/2) times it, and of K_II by friction; errors in time of
+!! slip and opening are relative errors of K. Faces at a tip that have slipped and now stick with
+!! less than the friction hold a rest of the slip before them. A cell does not resolve how this
+!! rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi) s.
 module twolevel_field_errors
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use coarse_fields, only: cell_stress
    use coarse_state, only: state_t
    use contact_law, only: state_open
+   use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: jump_errors_t, unevenness
    use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
@@ -17,7 +28,7 @@ module twolevel_field_errors
    implicit none(type, external)
    private
 
-   public :: add_rock_errors, find_fracture_errors, note_joint_errors
+   public :: add_rock_errors, find_fracture_errors, load_errors, note_joint_errors
 
    !> errors of flows, over the difference from the neighbours and the largest one of a fracture [-]
    real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
@@ -47,20 +58,31 @@ contains
       type(value_errors_t), intent(in) :: errors
       type(fracture_fields_t), intent(inout) :: fields
       type(jumps_in_space_t) :: jumps
-      real(rk) :: of_pressure
+      real(rk) :: length(problem%mesh%fracture%n_cells)
+      integer(ik) :: f
 
-      of_pressure = errors%pressure_error()
       call errors%jumps_of(scene, problem, state, jumps)
       associate (fracture => problem%mesh%fracture, e => fields%error)
+         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
          e%jump_n = jumps%error_n + errors%of_opening*abs(fields%jump_n)
          e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
-         e%pressure = of_pressure + 0.5_rk*unevenness(fracture, fields%pressure) &
+         e%pressure = errors%cell_pressure_errors(scene, problem) &
+                      + 0.5_rk*unevenness(fracture, fields%pressure) &
                       + of_solution*abs(fields%pressure) &
                       + of_drop*(largest_of(fracture, fields%pressure) &
                                  + largest_of(fracture, -fields%pressure))
          e%flow = of_neighbours*unevenness(fracture, fields%flow) &
                   + (errors%of_flow + errors%time_share())*abs(fields%flow) &
-                  + of_largest*largest_of(fracture, abs(fields%flow))
+                  + of_largest*largest_of(fracture, abs(fields%flow)) &
+                  + errors%of_flow*errors%leakoff_rate()*length/sum(length)
+         do f = 1, maxval(fracture%cell_fracture)
+            associate (first => findloc(fracture%cell_fracture, f, dim=1), &
+                       last => findloc(fracture%cell_fracture, f, dim=1, back=.true.))
+               if (first == 0) cycle
+               e%flow(first) = max(e%flow(first), abs(fields%flow(first)))
+               e%flow(last) = max(e%flow(last), abs(fields%flow(last)))
+            end associate
+         end do
       end associate
       call note_tractions(scene, problem, state, jumps%slip, fields)
    end subroutine find_fracture_errors
@@ -94,6 +116,56 @@ contains
          end where
       end associate
    end subroutine note_tractions
+
+   !> Errors of K_I and K_II of the tips by those of the load of the faces [Pa m^1/2].
+   function load_errors(scene, problem, state, errors, tips) result(of_k)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(value_errors_t), intent(in) :: errors
+      type(tip_t), intent(in) :: tips(:)
+      real(rk) :: of_k(2, size(tips))
+      type(jumps_in_space_t) :: jumps
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: of_pressure, rest
+      integer(ik) :: at, i
+
+      of_k = 0.0_rk
+      if (size(of_pressure) == 0) return
+      call errors%jumps_of(scene, problem, state, jumps)
+      of_pressure = errors%cell_pressure_errors(scene, problem)
+      associate (fracture => problem%mesh%fracture, friction => problem%model%cells%law%friction, &
+                 t => state%traction)
+         rest = max(0.0_rk, -friction*0.5_rk*sum(t(1, :, :), dim=1) &
+                    - 0.5_rk*abs(sum(t(2, :, :), dim=1)))
+         do i = 1, size(tips, kind=ik)
+            at = findloc(fracture%cell_fracture, tips(i)%fracture, dim=1, back=tips(i)%end == 2)
+            if (at == 0) cycle
+            associate (k => tips(i)%intensity, half => 0.5_rk*(fracture%cell_s(2, at) &
+                                                               - fracture%cell_s(1, at)))
+               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening, errors%of_slip]
+               if (k%k1 > 0.0_rk) of_k(1, i) = of_k(1, i) &
+                                     + of_pressure(at)*root(jumps%opening%reach(at), half)
+               of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
+                            *root(jumps%slip%reach(at), half)
+               if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then
+                  of_k(2, i) = of_k(2, i) + sqrt(4.0_rk*half/pi)*rest(at)
+               end if
+            end associate
+         end do
+      end associate
+
+   contains
+
+      !> sqrt(pi L/2) of a zone of length L, from the reach of its last cell [m^1/2].
+      elemental real(rk) function root(reach, half)
+         real(rk), intent(in) :: reach  !< [m]
+         real(rk), intent(in) :: half  !< half of the cell's length [m]
+
+         root = 0.0_rk
+         if (reach > 0.0_rk .and. half > 0.0_rk) root = sqrt(0.5_rk*pi*(reach**2/half + half))
+      end function root
+
+   end function load_errors
 
    !> Errors of the pressures of joints.
    pure subroutine note_joint_errors(errors, fields)

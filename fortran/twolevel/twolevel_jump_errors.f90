@@ -27,9 +27,9 @@ module twolevel_jump_errors
    type :: jump_facts_t
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: less = 0.0_rk  !< relative error of openings that is none at a given volume [-]
-      !> error in space of the pressure in fractures: its part by leak-off, which acts on the
-      !! opening, and all of it [Pa]
-      real(rk) :: of_pressure(2) = 0.0_rk
+      !> share of the fluid that has leaked off: its error acts on the opening [-]
+      real(rk) :: diffusing = 1.0_rk
+      real(rk), allocatable :: of_pressure(:)  !< (cells) error in space of the pressure [Pa]
    end type jump_facts_t
 
    !> (fracture cells)
@@ -67,9 +67,9 @@ contains
          length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
          self%slip = relative_jump_errors(fracture, moves(self%t), finite_volumes)
          self%opening = relative_jump_errors(fracture, moves(n), finite_volumes)
-         opened = compliance*self%opening%reach*facts%of_pressure(1)
+         opened = compliance*self%opening%reach*facts%diffusing*facts%of_pressure
          where (.not. is_open) opened = 0.0_rk
-         slid = compliance*self%slip%reach*facts%of_pressure(2)*problem%model%cells%law%friction
+         slid = compliance*self%slip%reach*facts%of_pressure*problem%model%cells%law%friction
          where (cell_states(state) /= state_slip) slid = 0.0_rk
          self%error_t = (self%slip%of_slip + facts%of_length)*merge(moved, self%t, is_open) + slid &
                         + at_ends(fracture, moves(self%t), self%t)

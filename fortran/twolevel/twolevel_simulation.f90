@@ -10,6 +10,7 @@ submodule(twolevel_state) twolevel_simulation
    use scene_sizes, only: sizes_text
    use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_field_errors, only: load_errors
    use twolevel_limits, only: watch_mesh, watch_windows
    use twolevel_notes, only: note_excess
    use twolevel_stepping, only: refinement_t
@@ -194,7 +195,7 @@ contains
                call follow_tips(self, timers, error)
             else
                self%tip%advance = 0.0_rk
-               call self%note_tips()
+               call self%note_tips(load_errors=load_errors_of(self))
             end if
          end if
          if (allocated(error)) return
@@ -240,12 +241,20 @@ contains
       end do
    end subroutine evaluate_tips
 
+   !> Errors of K_I and K_II of the tips by those of the load of the faces [Pa m^1/2].
+   function load_errors_of(self) result(of_k)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: of_k(2, size(self%tip))
+
+      of_k = load_errors(self%scene, self%problem, self%now%coarse, self%value_errors, self%tip)
+   end function load_errors_of
+
    !> Report the growth of the last step.
    subroutine note_equilibrium(self, error)
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
 
-      call self%note_tips(grew_in_step=.true.)
+      call self%note_tips(.true., load_errors_of(self))
       call self%note_growth()
       call self%end_at_gain()
       if (any(self%tip%advance > 0.0_rk)) self%chronicle%has_new_network = .true.
@@ -265,7 +274,7 @@ contains
       do
          call self%grow_tips(any_grew, timers, error)
          if (allocated(error)) return
-         call self%note_tips()
+         call self%note_tips(load_errors=load_errors_of(self))
          call self%note_growth()
          if (.not. any_grew) return
          call self%grow_coarse(coarse_grew, timers, error)

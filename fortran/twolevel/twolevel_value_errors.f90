@@ -7,8 +7,11 @@
 !!   layers next to the faces (twolevel_pressure_errors); where the fractures hold the fluid, the
 !!   error of their compliance, that of opening. Both are weighted by their share of the fluid.
 !! - The pressure of wells in the rock: twolevel_pressure_errors.
+!!   A fracture whose well has a given pressure has none of these errors.
 !! - Fluid volumes: the errors of leak-off and of what the fractures hold. Where all rates are
-!!   prescribed, their sum is exact, and each is at most the error of the other.
+!!   prescribed, their sum is exact, and each is at most the error of the other. The volume of the
+!!   fractures has that before the first step besides. What wells have produced in all may be
+!!   nothing where it is less than the error of the net volume.
 !! Growing fractures: the relative error of the length, of all these quantities.
 module twolevel_value_errors
    use base_kinds, only: ik, rk
@@ -55,6 +58,7 @@ module twolevel_value_errors
       real(rk) :: of_pressure = 0.0_rk  !< relative error in space of the pressure in fractures [-]
       real(rk) :: diffusing = 1.0_rk  !< share of the fluid that has leaked off [-]
       real(rk) :: of_flow = 0.0_rk  !< the same of a flow that is not prescribed [-]
+      real(rk) :: of_held = 0.0_rk  !< in space, of the volume of the fractures [m2]
       real(rk) :: rise = 0.0_rk  !< of the mean pressure in the fractures [Pa]
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
@@ -63,7 +67,9 @@ module twolevel_value_errors
       real(rk), allocatable :: risen(:)  !< largest changes of the wells' pressures so far [Pa]
       real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
       type(followed_step_t) :: step  !< last step
+      real(rk) :: of_start = 0.0_rk  !< of the fractures' volume before the first step [m2]
       type(followed_t) :: quantities
+      type(followed_t) :: fractures  !< mean pressure of each
       type(followed_t) :: wells  !< pressure, flow, volume of each
       type(followed_t) :: entries  !< pressure, flow of each
       type(followed_t) :: probes  !< pressure, displacement, stress of each
@@ -76,6 +82,8 @@ module twolevel_value_errors
       procedure :: in_space
       procedure :: jumps_of
       procedure :: given_volume
+      procedure :: cell_pressure_errors
+      procedure :: leakoff_rate
       procedure :: pressure_error
       procedure :: time_share
    end type value_errors_t
@@ -100,6 +108,7 @@ contains
          values(pressure) = mean_pressure(problem, state)
       end if
       call self%quantities%begin(state%time, values)
+      call self%fractures%begin(state%time, mean_pressures(scene, problem, state))
       call self%wells%begin(state%time, [well_pressures(scene, problem, state%time, state), &
                                          zero, zero])
    end subroutine begin
@@ -121,6 +130,28 @@ contains
       length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
       mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
    end function mean_pressure
+
+   !> Mean pressure of each fracture [Pa].
+   function mean_pressures(scene, problem, state) result(mean)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), allocatable :: mean(:)
+      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
+      integer(ik) :: f
+
+      associate (fracture => problem%mesh%fracture)
+         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
+         pressure = problem%fracture_pressure(state)
+         allocate (mean(maxval([size(scene%fractures, kind=ik), fracture%cell_fracture])), &
+                   source=0.0_rk)
+         do f = 1, size(mean, kind=ik)
+            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
+               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
+            end associate
+         end do
+      end associate
+   end function mean_pressures
 
    !> Errors of the row of an accepted state.
    subroutine note_state(self, scene, problem, state, row, stated, facts)
@@ -147,6 +178,7 @@ contains
       self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
+      call self%fractures%follow(self%step, mean_pressures(scene, problem, state))
       self%row = history_errors_t()
       self%of_length = 0.0_rk
       if (facts%has_estimate .and. row%fracture_length > 0.0_rk) then
@@ -164,6 +196,7 @@ contains
          if (facts%has_given_rates) self%of_pressure = self%of_flow
          self%rise = abs(values(pressure) - self%quantities%first(pressure))
          call self%jumps_of(scene, problem, state, jumps)
+         if (self%quantities%n_steps == 0) self%of_start = jumps%volume
          call note_jumps(self, problem, jumps, row)
       end if
       call note_fluid(self, scene, problem, row, facts)
@@ -194,6 +227,7 @@ contains
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
          self%row%max_opening = time(opening) + error_of_largest(fracture, jumps%n, jumps%error_n)
          self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
+         self%of_held = jumps%volume
          self%row%fracture_volume = time(volume) + jumps%volume
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
@@ -214,7 +248,8 @@ contains
       type(jumps_in_space_t), intent(out) :: jumps
 
       call jumps%find(scene%material, problem, state, &
-                      jump_facts_t(self%of_length, self%given_volume(), self%in_space()))
+                      jump_facts_t(self%of_length, self%given_volume(), self%diffusing, &
+                                   self%in_space(scene, problem)))
    end subroutine jumps_of
 
    !> Errors of the fluid volumes.
@@ -232,18 +267,20 @@ contains
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          leak = time(leakoff) + (layers + self%of_length)*abs(row%leakoff) + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
-                + self%of_pressure*abs(row%fracture_fluid) + lost
+                + max(least, self%of_pressure)*abs(row%fracture_fluid) + lost
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
-            error%injected = time(injected) + self%of_flow*abs(row%injected) + lost
-            error%produced = time(produced) + self%of_flow*abs(row%produced) + lost
+            error%injected = time(injected) + self%of_flow*abs(row%injected) + self%of_held + lost
+            error%produced = time(produced) + self%of_flow*abs(row%produced) &
+                             + min(row%produced, error%injected) + lost
          else
             error%leakoff = min(leak, held + error%outflow)
             error%fracture_fluid = min(held, leak + error%outflow)
             error%fracture_volume = min(error%fracture_volume, error%fracture_fluid &
                                    + self%of_pressure*abs(row%fracture_fluid - row%fracture_volume &
-                                                               + self%quantities%first(volume)))
+                                                               + self%quantities%first(volume)) &
+                                        + self%of_start)
             error%injected = lost
             error%produced = lost
          end if
@@ -285,15 +322,45 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> Error in space of the pressure in fractures: its part by leak-off, which acts on the opening
-   !! (the other part follows from the opening), and all of it [Pa].
-   pure function in_space(self)
+   !> Error in space of the pressure of each fracture cell [Pa].
+   pure function in_space(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
-      real(rk) :: in_space(2)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), allocatable :: error(:)
+      real(rk) :: share(size(self%fractures%value))
+      integer :: w
 
-      in_space = self%of_pressure*self%rise
-      in_space(1) = in_space(1)*self%diffusing
+      share = self%of_flow
+      do w = 1, size(scene%injections)
+         associate (well => scene%injections(w))
+            if (well%fracture == 0 .or. allocated(well%rate)) cycle
+            if (allocated(well%pressure)) share(well%fracture) = 0.0_rk
+         end associate
+      end do
+      associate (p => self%fractures)
+         share = share*abs(p%value - p%first)
+      end associate
+      error = share(problem%mesh%fracture%cell_fracture)
    end function in_space
+
+   !> Error of the pressure of each fracture cell, in time and space [Pa].
+   pure function cell_pressure_errors(self, scene, problem) result(error)
+      class(value_errors_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), allocatable :: error(:)
+
+      error = self%in_space(scene, problem) &
+              + self%fractures%error(problem%mesh%fracture%cell_fracture)
+   end function cell_pressure_errors
+
+   !> Rate of leak-off in the last step, by magnitude [m2/s].
+   pure real(rk) function leakoff_rate(self)
+      class(value_errors_t), intent(in) :: self
+
+      leakoff_rate = abs(self%quantities%rate(leakoff))
+   end function leakoff_rate
 
    !> Error of the mean pressure in the fractures, in time and space [Pa].
    pure real(rk) function pressure_error(self)
@@ -343,7 +410,8 @@ contains
             error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
                              + of_solution*abs(row%pressure)
             if (.not. well%has_given_flow()) then
-               error%injected = time(2*n + w) + max(share, self%of_flow)*abs(row%injected)
+               error%injected = time(2*n + w) + max(share, self%of_flow)*abs(row%injected) &
+                                + self%of_held
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)
                if (abs(row%injected) > 0.0_rk) error%flow = &
