@@ -1,7 +1,7 @@
 !> Runs a scene from start to end, with output to its files and to the terminal, with or without a
 !! fluid.
 module app_run
-   use, intrinsic :: iso_fortran_env, only: output_unit
+   use, intrinsic :: iso_fortran_env, only: int8, output_unit
    use app_changes, only: check_changes
    use app_checkpoints, only: checkpoints_t
    use app_interrupts, only: interrupted
@@ -20,6 +20,7 @@ module app_run
    use report_progress, only: progress_t, progress_values_t
    use report_record, only: closing_lines, run_record_t, status_failed, status_finished, &
                             status_stopped
+   use report_replay, only: first_part, part_of, read_record
    use report_restart, only: restartable_t
    use report_rows, only: history_row_t, probe_row_t
    use report_run, only: run_output_t
@@ -82,6 +83,7 @@ contains
       type(run_record_t) :: record
       type(timers_t) :: timers
       type(error_t), allocatable :: trouble
+      integer(int8), allocatable :: decisions(:)
       logical :: is_meshed
 
       was_interrupted = .false.
@@ -89,6 +91,13 @@ contains
       call timers%begin()
       call journal%files%open(directory, source, refused, error)
       if (allocated(error)) return
+      if (len_trim(scene%time%replay) > 0) then
+         call read_record(trim(scene%time%replay), version, decisions, error)
+         refused = allocated(error)
+         if (refused) call journal%files%place%release()
+         if (refused) return
+         call simulation%tape%follow(decisions)
+      end if
 
       if (present(origin)) then
          call restart(simulation, journal, scene, origin, timers, refused, error)
@@ -221,6 +230,7 @@ contains
             if (allocated(error)) return
             call simulation%grow(timers, error)
          end if
+         if (.not. allocated(error)) call keep_decisions(simulation, journal)
          if (allocated(error)) then
             if (error%is_interruption) then
                deallocate (error)
@@ -236,6 +246,16 @@ contains
          if (allocated(error)) return
       end do
    end subroutine march
+
+   !> Add the decisions up to the accepted state to the record.
+   subroutine keep_decisions(simulation, journal)
+      class(simulation_t), intent(in) :: simulation
+      type(journal_t), intent(inout) :: journal
+
+      if (.not. simulation%tape%is_recording) return
+      if (journal%files%record%length == 0) call journal%files%record%append(first_part(version))
+      call journal%files%record%append(part_of(simulation%tape%bytes()))
+   end subroutine keep_decisions
 
    !> Keep the accepted state in memory, and write a checkpoint if it is due.
    subroutine keep_state(simulation, journal, timers, error)

@@ -8,6 +8,7 @@ module growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
+   use base_tape, only: tape_t
    use base_timers, only: timers_t
    use base_tolerances, only: same_place, same_value
    use growth_law, only: advances, carry_over, in_grains, new_tip
@@ -55,6 +56,7 @@ module growth_front
       type(network_t) :: start  !< initial network, from the scene
       type(growth_rules_t) :: rules
       type(network_t) :: network_before  !< before the last increment
+      type(tape_t) :: tape  !< decisions of the run
    contains
       procedure(evaluate_tips), deferred :: evaluate
       procedure :: find_tips
@@ -160,12 +162,16 @@ contains
       advance = wanted
       if (self%rules%joins) advance = up_to_stop(wanted, self%rules%stop_gain - gains(self))
       call advance_tips(self, advance, any_grew)
+      call self%tape%keep("grew", any_grew)
       if (.not. any_grew) return
+      call keep_positions(self)
       call self%evaluate(timers, error)
       do k = 1, corrections
          if (allocated(error)) return
          call turn_tips(self, advance, any_turned)
+         call self%tape%keep("turned", any_turned)
          if (.not. any_turned) exit
+         call keep_positions(self)
          call self%evaluate(timers, error)
       end do
       if (allocated(error)) return
@@ -175,6 +181,27 @@ contains
       call join_tips(self, advance, any_joined)
       if (any_joined) call self%evaluate(timers, error)
    end subroutine grow_by
+
+   !> Record the positions of the tips that grow, or take them from the record.
+   subroutine keep_positions(self)
+      class(front_t), intent(inout) :: self
+      real(rk) :: values(6)
+      integer(ik) :: i
+
+      do i = 1, size(self%tip, kind=ik)
+         associate (tip => self%tip(i))
+            if (.not. tip%advance > 0.0_rk) cycle
+            values = [tip%xy, tip%direction, tip%kink, tip%advance]
+            call self%tape%keep("tip", values)
+            if (.not. self%tape%follows) cycle
+            tip%xy = values(1:2)
+            tip%direction = values(3:4)
+            tip%kink = values(5)
+            tip%advance = values(6)
+            call move_end(self%network, tip%fracture, tip%end, tip%xy)
+         end associate
+      end do
+   end subroutine keep_positions
 
    !> Growth of each tip where `stop_gain` is prescribed; else 0 [m].
    pure function gains(self)

@@ -98,10 +98,10 @@ module report_files
       end function c_remove
    end interface
 
-   character(len=*), parameter :: top_files(15) = [character(len=18) :: "scene.nml", "run.json", &
+   character(len=*), parameter :: top_files(16) = [character(len=18) :: "scene.nml", "run.json", &
       & "history.csv", "tips.csv", "fractures.csv", "probes.csv", "network.json", "events.csv", &
       & "slip_events.csv", "wells.csv", "entries.csv", "run.log", &
-      & "checkpoint.bin", "checkpoint_new.bin", "checkpoint_old.bin"]
+      & "checkpoint.bin", "checkpoint_new.bin", "checkpoint_old.bin", "record.bin"]
 
    integer(c_int), parameter :: is_held = -1  !< by another run; as in report_files.c
    integer(c_int), parameter :: no_hold = -2

@@ -60,6 +60,7 @@ contains
       call visit_summary(archive, simulation%summary)
       call simulation%watch%visit(archive)
       call simulation%catalogue%visit(archive)
+      call simulation%tape%visit(archive)
       call archive%list("ending", simulation%ending)
       call archive%item("owes_state", simulation%owes_state)
       call archive%item("shows_growth", simulation%shows_growth)

@@ -13,6 +13,7 @@ module report_run
    use report_files, only: place_t, remove_file, reserve_file, write_text_file
    use report_network, only: network_record_t
    use report_record, only: run_record_t, status_failed
+   use report_replay, only: record_name
    use report_simulation, only: snapshot_t
    use report_snapshots, only: snapshots_t
    use report_tables, only: tables_t
@@ -37,7 +38,9 @@ module report_run
       type(snapshots_t), private :: snapshots
       type(network_record_t), private :: network
       type(text_buffer_t), private :: log_text
-      integer(lk), private :: log_written = 0_lk  !< length of the log on disk
+      type(text_buffer_t) :: record  !< decisions (report_replay)
+      !> lengths of the log and of the record on disk
+      integer(lk), private :: log_written = 0_lk, record_written = 0_lk
       logical, private :: writes_vtu = .true.
       real(rk), private :: interval = 0.0_rk  !< time between written fields [s]
       real(rk), private :: next_fields = 0.0_rk  !< time of the next fields [s]
@@ -147,7 +150,9 @@ contains
       call self%snapshots%visit(archive)
       call self%network%visit(archive)
       call self%log_text%visit(archive)
+      call self%record%visit(archive)
       if (archive%is_loading) self%log_written = 0_lk
+      if (archive%is_loading) self%record_written = 0_lk
       call archive%item("next_fields", self%next_fields)
       call archive%leave()
    end subroutine visit
@@ -161,6 +166,7 @@ contains
       call self%snapshots%visit_text(archive)
       call self%network%visit_text(archive)
       call self%log_text%visit_text(archive)
+      call self%record%visit_text(archive)
       call archive%leave()
    end subroutine visit_text
 
@@ -252,21 +258,26 @@ contains
       call keep_first(trouble, error)
       call self%network%flush(trouble)
       call keep_first(trouble, error)
-      call write_log(self, trouble)
+      call write_longer(self%log_text, self%place%directory//"/run.log", self%log_written, trouble)
+      call keep_first(trouble, error)
+      call write_longer(self%record, self%place%directory//"/"//record_name, self%record_written, &
+                        trouble)
       call keep_first(trouble, error)
       self%last_flush = wall_time(self)
       self%flush_cost = self%last_flush - begun
    end subroutine flush_run
 
-   !> Write run.log if it has changed.
-   subroutine write_log(self, error)
-      class(run_output_t), intent(inout) :: self
+   !> Write a text if it has become longer.
+   subroutine write_longer(text, path, written, error)
+      type(text_buffer_t), intent(in) :: text
+      character(len=*), intent(in) :: path
+      integer(lk), intent(inout) :: written  !< length on disk
       type(error_t), allocatable, intent(out) :: error
 
-      if (self%log_text%length == self%log_written) return
-      call self%log_text%write_file(self%place%directory//"/run.log", error)
-      if (.not. allocated(error)) self%log_written = self%log_text%length
-   end subroutine write_log
+      if (text%length == written) return
+      call text%write_file(path, error)
+      if (.not. allocated(error)) written = text%length
+   end subroutine write_longer
 
    !> End the run: write all files, and run.json last, with its status failed if other files could
    !! not be written. A run that has not begun keeps the files of an earlier one.

@@ -201,6 +201,7 @@ contains
          call exchange(record, "tolerance", scene%time%tolerance)
          call exchange(record, "growth_factor", scene%time%share_after_growth)
          call exchange(record, "smallest_factor", scene%time%smallest_factor)
+         call exchange(record, "replay", scene%time%replay)
       case ("adaptive")
          call exchange(record, "enabled", scene%adaptive%enabled)
          call exchange(record, "tolerance", scene%adaptive%tolerance)

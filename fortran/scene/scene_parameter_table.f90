@@ -351,6 +351,8 @@ module scene_parameter_table
          at_most="growth_factor", absent="1e-6, or 1e-9 without step", &
          meaning="Fraction of step, or of end without it, below which a cut step ends the run; "// &
                  "no step is cut to less than a 64th of that; 0: the default"), &
+      parameter_t("time", "replay", kind_text, default="''", scenes=in_fluid, &
+         meaning="Folder of a run whose steps, path segments and windows are taken"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &
       parameter_t("in_situ", "syy", unit="Pa", default="0.0", meaning="Stress yy at y_datum"), &
       parameter_t("in_situ", "sxy", unit="Pa", default="0.0", meaning="Stress xy"), &

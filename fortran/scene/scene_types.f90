@@ -202,6 +202,7 @@ module scene_types
       real(rk) :: share_after_growth = 0.01_rk  !< first step after growth over the longest step [-]
       !> smallest step over the longest, at which a run ends [-]
       real(rk) :: smallest_factor = 0.0_rk
+      character(len=256) :: replay = ""  !< folder of the run whose decisions are taken; empty: none
    contains
       procedure :: longest
    end type time_t

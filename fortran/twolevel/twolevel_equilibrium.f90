@@ -148,7 +148,11 @@ contains
       type(step_report_t), intent(out) :: report
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
+      real(rk) :: reached(size(self%tip))
 
+      reached = self%now%segment%reached
+      call self%tape%keep("reached", reached)
+      self%now%segment%reached = reached
       call place_tips(self%front_state_t, self%now%segment, self%problem)
       call find_tip_layers(self, search%dt, search%may_jump)
       call self%try_step(search%dt, timers, report, error)
@@ -162,6 +166,7 @@ contains
       if (is_first .and. .not. search%is_last) then
          trial%time_error = self%step_error(search%dt)
          search%is_over = self%errs(trial%time_error/much)
+         call self%tape%keep("over", search%is_over)
          if (search%is_over) return
       end if
       call self%evaluate(timers, error)
@@ -179,10 +184,10 @@ contains
       if (.not. (search%is_over .or. search%is_last .or. search%may_jump)) then
          call see_overshoot(self, search, trial)
       end if
-      if (.not. search%is_over) then
-         self%now%active = active_tips(self%tip, self%now%segment, self%rules%toughness, &
-                                       search%kind)
-      end if
+      call self%tape%keep("over", search%is_over)
+      if (search%is_over) return
+      self%now%active = active_tips(self%tip, self%now%segment, self%rules%toughness, search%kind)
+      call self%tape%keep("active", self%now%active)
    end subroutine find_state
 
    !> End the tries after the first one, where a tip would have to begin a segment but exceeds its
@@ -253,6 +258,8 @@ contains
                       search%advances, moves, wants)
       wants = wants .and. .not. self%tip%arrested
       any_moves = any_moves .or. any(moves)
+      call self%tape%keep("moves", any_moves)
+      call self%tape%keep("wants", wants)
    end subroutine move_tips
 
    !> Continue when no tip moves within its segment: some tips leave their group, some join their
@@ -268,6 +275,7 @@ contains
 
       call separate_tips(self%now%segment, self%now%groups, self%tip, self%last%front%tip, &
                          self%rules%toughness, wants, search%kind, any_parted)
+      call self%tape%keep("parted", any_parted)
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
       ! Only now: while other tips still move, they may retreat.
@@ -276,11 +284,15 @@ contains
                                    self%rules%toughness)
       end if
       search%is_over = trial%onset < 1.0_rk
+      call self%tape%keep("over", search%is_over)
       if (search%is_over) return
       call stop_gained(self, search, wants, trial)
+      call self%tape%keep("over", search%is_over)
       if (search%is_over) return
       joins = wants .and. can_join(self%front_state_t, self%now, self%rules)
       wants = wants .and. self%tip%path_target == target_none
+      call self%tape%keep("joins", joins)
+      call self%tape%keep("wants", wants)
       if (.not. (trial%has_joined .or. trial%jumps)) then
          trial%time_error = self%step_error(search%dt)
       end if
@@ -336,8 +348,10 @@ contains
          trial%moment = search%moment
          trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
+         call self%tape%keep("over", search%is_over)
          if (search%is_over) return
       end if
+      call self%pace%see_joints(self%tape, self%tip%excess(self%rules%toughness), joins)
       call join_targets(self%front_state_t, self%now, self%rules, joins)
       trial%has_joined = .true.
       search%previous_try = previous_try_t()
@@ -363,8 +377,9 @@ contains
                                            toughness, self%load_pressure), i=1, size(wants))])) then
             call find_refinements(self, self%before%time, trial%refinements)
             search%is_over = size(trial%refinements) > 0
-            if (search%is_over) return
          end if
+         call self%tape%keep("over", search%is_over)
+         if (search%is_over) return
          ! A tip that stays at the end of its segment for a part of the step is slower than it will
          ! be: where viscosity decides, its excess says little.
          if (any(wants .and. (search%begun >= segments_max .or. &
@@ -373,6 +388,8 @@ contains
             trial%time_error = 0.0_rk  ! jumps have no rates
             search%may_jump = search%may_jump .or. search%dt <= search%moment
          end if
+         call self%tape%keep("jumps", trial%jumps)
+         call self%tape%keep("may_jump", search%may_jump)
          search%is_over = trial%jumps .and. .not. search%may_jump
          if (search%is_over) then
             call reject_overshoot(self, search, wants, trial)
@@ -414,13 +431,19 @@ contains
       search%is_over = .true.
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
                                                self%increments())/self%increments()])
-      if (.not. search%is_last) then
+      call self%pace%see_end(self%tape, self%tip%excess(self%rules%toughness), &
+                             self%last%front%tip%excess(self%rules%toughness), &
+                             self%tip%drive%angle, &
+                             advances(self%front_state_t, self%start, self%now%segment, &
+                                      self%increments()), self%tip%is_loaded(), &
+                             trial%jumps .or. search%may_jump)
+      if (.not. (search%is_last .or. self%tape%follows)) then
          if (self%errs(trial%time_error)) return
          call share_before_switch(self, search%dt, punctual, trial%switch, timers, error)
          if (allocated(error) .or. trial%switch < 1.0_rk) return
       end if
       call estimate_coarse_errors(self, timers, error)
-      if (allocated(error)) return
+      if (allocated(error) .or. self%tape%follows) return
       call find_refinements(self, self%before%time, trial%refinements)
    end subroutine conclude
 
@@ -456,6 +479,7 @@ contains
       deallocate (self%now%active)
       if (allocated(error)) return
       any_exceeds = any(others .and. self%tip%excess(self%rules%toughness) > tolerance)
+      call self%tape%keep("exceeds", any_exceeds)
    end subroutine evaluate_others
 
    !> Accept the tried state.

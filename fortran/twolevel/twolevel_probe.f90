@@ -49,13 +49,18 @@ contains
       type(step_report_t) :: report
       real(rk) :: shift
       integer(ik), allocatable :: columns(:)
+      logical :: is_column(size(self%tip))
       integer(ik) :: i, k
 
-      has_measured = .false.
-      if (count(in_play) < 2) return
-      columns = self%now%interaction%columns_to_measure(pack([(i, i=1, size(self%tip, &
+      allocate (columns(0))
+      if (count(in_play) >= 2) then
+         columns = self%now%interaction%columns_to_measure(pack([(i, i=1, size(self%tip, &
                                                                             kind=ik))], in_play), &
-                                                        self%now%segment)
+                                                           self%now%segment)
+      end if
+      is_column = [(any(columns == i), i=1, size(self%tip, kind=ik))]
+      call self%tape%keep("probes", is_column)
+      if (self%tape%follows) columns = pack([(i, i=1, size(self%tip, kind=ik))], is_column)
       has_measured = size(columns) > 0
       if (.not. has_measured) return
       state = self%now%coarse

@@ -17,6 +17,7 @@
 module twolevel_refinement
    use base_kinds, only: ik, pi, rk
    use base_number, only: brief_text
+   use base_tape, only: tape_t
    use growth_network, only: fracture_length
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
@@ -33,7 +34,10 @@ module twolevel_refinement
    private
 
    public :: find_refinements, growth_error, growth_error_t, is_uncertain, note_uncertain_tips
-   public :: refine_windows
+   public :: keep_refinements, refine_windows
+
+   !> Largest number of refinements in a record.
+   integer(ik), parameter :: most_refinements = 100000
 
    !> Consequences of the error of K_eq of one tip.
    type :: growth_error_t
@@ -235,6 +239,27 @@ contains
          end associate
       end do
    end subroutine refine_windows
+
+   !> Record refinements, or take them from the record.
+   subroutine keep_refinements(tape, refinements)
+      type(tape_t), intent(inout) :: tape
+      type(refinement_t), allocatable, intent(inout) :: refinements(:)
+      integer(ik) :: i, n
+
+      n = size(refinements, kind=ik)
+      call tape%keep("refinements", n)
+      if (n < 0 .or. n > most_refinements) return
+      if (n /= size(refinements)) then
+         deallocate (refinements)
+         allocate (refinements(n))
+      end if
+      if (n == 0) return
+      do i = 1, n
+         call tape%keep("tip", refinements(i)%tip)
+         call tape%keep("kind", refinements(i)%kind)
+         call tape%keep("error", refinements(i)%error)
+      end do
+   end subroutine keep_refinements
 
    !> Store the error before a refinement, with which its effect is judged.
    pure subroutine note_error(seen, part, error)

@@ -23,6 +23,7 @@ contains
       type(scene_t), intent(in) :: scene
 
       self%end_time = scene%time%end
+      self%tape%is_recording = .true.
       call self%stepper%begin(scene%time)
       call self%set_scene(scene)
       call self%chronicle%clear()

@@ -60,6 +60,7 @@ contains
          ahead(:, i) = way_ahead(self%tip(i), self%rules%increment_of(self%tip(i)%fracture))
          is_near(i) = is_at_ligament(self%now%coarse_network, self%rules, self%tip(i)%fracture, &
                                      self%tip(i)%xy, ahead(:, i))
+         call self%tape%keep("is_near", is_near(i))
       end do
       tip = self%tip
       ! Only the directions of these tips are to be found.
@@ -79,6 +80,11 @@ contains
          else
             is_new(i) = .false.
          end if
+      end do
+      do i = 1, size(self%tip, kind=ik)
+         if (.not. wants(i)) cycle
+         call self%tape%keep("is_new", is_new(i))
+         if (is_new(i)) call self%tape%keep("ahead", ahead(:, i))
       end do
       call end_segments(self%front_state_t, self%now, self%rules, self%start, tip, ahead, is_new, &
                         centres)

@@ -14,7 +14,8 @@ submodule(twolevel_state) twolevel_simulation
    use twolevel_limits, only: watch_mesh, watch_windows
    use twolevel_notes, only: note_excess
    use twolevel_stepping, only: refinement_t
-   use twolevel_refinement, only: find_refinements, note_uncertain_tips, refine_windows
+   use twolevel_refinement, only: find_refinements, keep_refinements, &
+                                  note_uncertain_tips, refine_windows
    use twolevel_schedule, only: follow_sides
    use twolevel_setup, only: choose_first_step, coarse_spec, first_cells, keep_above_zero, &
                              pressure_scale, rest_joints, rules_of_scene
@@ -30,6 +31,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       self%end_time = scene%time%end
+      self%tape%is_recording = .true.
       call self%stepper%begin(scene%time)
       call mesh_levels(self, scene, timers, error)
       if (allocated(error)) return
@@ -236,6 +238,7 @@ contains
          call estimate_coarse_errors(self, timers, error)
          if (allocated(error) .or. .not. self%scene%growth%in_equilibrium()) return
          call find_refinements(self, self%now%coarse%time, refinements)
+         call keep_refinements(self%tape, refinements)
          if (size(refinements) == 0) return
          call refine_windows(self, refinements)
       end do

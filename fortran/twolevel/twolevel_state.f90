@@ -16,6 +16,7 @@ module twolevel_state
    use twolevel_field_errors, only: add_rock_errors, find_fracture_errors, note_joint_errors
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
+   use twolevel_pace, only: pace_t
    use twolevel_places, only: end_at_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
@@ -77,6 +78,7 @@ module twolevel_state
       logical :: is_initial = .false.  !< the present state is the one before the first step
       type(last_step_t) :: step
       type(stepper_t) :: stepper
+      type(pace_t) :: pace  !< of a replay
       ! Results of all steps so far
       type(notes_t) :: notes  !< event log of growth in equilibrium
       type(stimulation_t) :: stimulation

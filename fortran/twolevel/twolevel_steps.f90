@@ -2,13 +2,13 @@
 !! necessary, and committed. `commit_step` is the one place where a step becomes the accepted state.
 submodule(twolevel_state) twolevel_steps
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_rock, only: shear_beside
    use mesh_types, only: fracture_mesh_t
-   use report_rows, only: entry_row_t, event_step_cut, event_unstable, history_row_t, well_row_t
+   use report_rows, only: entry_row_t, event_replay, event_step_cut, event_unstable, history_row_t, well_row_t
    use report_limits, only: limit_depth, limit_time_error, limit_well_error
    use report_slip, only: slip_step_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
@@ -18,7 +18,7 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
    use twolevel_pressure_errors, only: unresolved_depth
-   use twolevel_refinement, only: refine_windows
+   use twolevel_refinement, only: keep_refinements, refine_windows
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_well_rows, only: entry_rows
@@ -29,6 +29,26 @@ submodule(twolevel_state) twolevel_steps
 
    !> Share of the injected fluid that leaks off before layers matter [-].
    real(rk), parameter :: leaking = 0.01_rk
+
+   interface
+      !> Record how a step is tried, or take it from the record.
+      module subroutine keep_try(self, is_last, may_jump, ends_at_switch)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         logical, intent(inout) :: is_last, may_jump
+         logical, intent(out) :: ends_at_switch  !< a switch is reached
+      end subroutine keep_try
+
+      !> Find the step that the record has next; where it does not apply, the step is to be found
+      !! freely.
+      module subroutine replay_step(self, trial, timers, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(trial_t), intent(out) :: trial
+         type(timers_t), intent(inout) :: timers
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine replay_step
+   end interface
 
 contains
 
@@ -44,6 +64,7 @@ contains
       self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
       self%has_begun = .true.
       call self%begin_step()
+      call self%tape%begin()
       if (self%scene%growth%enabled) then
          call limit_windows(self, timers, error)
          if (allocated(error)) return
@@ -143,19 +164,45 @@ contains
       end associate
    end subroutine watch_errors
 
-   !> Find a step from the stored state, cut as often as necessary. Growth is unstable where tips
-   !! find no equilibrium in a step that is short compared with the time since the wells were
-   !! switched, or in the shortest step, whose time error is not checked: then the step consists of
-   !! this growth alone, until its arrest.
+   !> Find a step from the stored state, from a record or freely.
    subroutine find_step(self, trial, wanted, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(trial_t), intent(out) :: trial  !< of the step
       real(rk), intent(out) :: wanted  !< length of the step before it was cut [s]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: is_last, is_too_short, is_unstable, may_jump
+      logical :: is_unstable
+
+      self%step%is_after_switch = self%step%ends_at_switch
+      is_unstable = .false.
+      if (self%tape%follows) call replay_step(self, trial, timers, error)
+      if (allocated(error)) return
+      wanted = self%step%dt
+      if (.not. self%tape%follows) call search_step(self, trial, wanted, is_unstable, timers, error)
+      if (allocated(error)) return
+      is_unstable = is_unstable .or. trial%jumps
+      call self%tape%keep("is_unstable", is_unstable)
+      if (self%now%trend%is_known() .and. .not. (self%step%is_after_switch .or. is_unstable)) then
+         call self%watch%see(limit_time_error, trial%time_error, self%last_state())
+      end if
+      self%step%is_unstable = is_unstable
+   end subroutine find_step
+
+   !> Find a step from the stored state, cut as often as necessary. Growth is unstable where tips
+   !! find no equilibrium in a step that is short compared with the time since the wells were
+   !! switched, or in the shortest step, whose time error is not checked: then the step consists of
+   !! this growth alone, until its arrest.
+   subroutine search_step(self, trial, wanted, is_unstable, timers, error)
+      class(two_levels_t), intent(inout) :: self
+      type(trial_t), intent(out) :: trial  !< of the step
+      real(rk), intent(out) :: wanted  !< length of the step before it was cut [s]
+      logical, intent(out) :: is_unstable
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: ends_at_switch, is_last, is_too_short, may_jump
 
       wanted = 0.0_rk
+      is_unstable = .false.
       if (self%stepper%is_stuck()) then
          call raise_error(error, "", "no progress in time: hundreds of steps were cut to about "// &
                           brief_text(self%step%dt, 4)//" s, the last because "//self%step%why_cut)
@@ -165,13 +212,13 @@ contains
          self%step%dt = self%stepper%step_to(next_switch(self%scene, time) - time)
       end associate
       wanted = self%step%dt
-      self%step%is_after_switch = self%step%ends_at_switch
       is_too_short = .false.
       is_last = .false.
-      is_unstable = .false.
       may_jump = self%stepper%expects_jump() .and. &
                  self%step%dt <= moment(self%scene, self%before%time)
       do
+         call self%tape%rewind()
+         call keep_try(self, is_last, may_jump, ends_at_switch)
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
          if (trial%needs_windows()) then
@@ -195,12 +242,7 @@ contains
          may_jump = is_last .or. (trial%goes_too_far .and. &
                                   self%step%dt <= moment(self%scene, self%before%time))
       end do
-      is_unstable = is_unstable .or. trial%jumps
-      if (self%now%trend%is_known() .and. .not. (self%step%is_after_switch .or. is_unstable)) then
-         call self%watch%see(limit_time_error, trial%time_error, self%last_state())
-      end if
-      self%step%is_unstable = is_unstable
-   end subroutine find_step
+   end subroutine search_step
 
    !> Advice for the user where the equations are not solved in the shortest step.
    pure function way_out(trial) result(words)
@@ -224,10 +266,13 @@ contains
    !! onsets are interpolated; before the first step this state has no tractions.
    subroutine try_better_windows(self, refinements, timers, error)
       class(two_levels_t), intent(inout) :: self
-      type(refinement_t), intent(in) :: refinements(:)
+      type(refinement_t), allocatable, intent(inout) :: refinements(:)
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
 
+      call self%tape%rewind()
+      call keep_refinements(self%tape, refinements)
+      call self%tape%mark()
       associate (now => self%now%segment, before => self%last%levels%segment)
          if (all(now%is_open .eqv. before%is_open) .and. &
              .not. any(abs(now%accepted - before%accepted) > 0.0_rk)) then
