@@ -6,6 +6,7 @@ module app_cost
    use app_size, only: estimate_t, size_of_scene
    use base_kinds, only: ik, rk
    use mechanics_results, only: touches
+   use scene_stress, only: far_stress_t, find_far_stress, parts_of_scene
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -28,7 +29,7 @@ module app_cost
    ! Without a fluid [s]
    real(rk), parameter :: per_first_cell = 9.5e-5_rk  !< mesh and stated errors, once
    real(rk), parameter :: per_element = 5.0e-6_rk, per_element_and_tip = 1.8e-6_rk
-   real(rk), parameter :: contact_factor = 2.5_rk  !< contact iterates [-]
+   real(rk), parameter :: with_contact = 1.5_rk  !< contact iterates [-]
    real(rk), parameter :: cells_per_increment = 22.0_rk  !< mean over the run
 
 contains
@@ -68,10 +69,32 @@ contains
       end associate
       cost%steps = cost%steps + cost%increments
       cells = size_of%cells + cells_per_increment*cost%increments
-      factor = merge(contact_factor, 1.0_rk, any(touches(scene%fractures)))
+      factor = contact_factor(scene)
       cost%seconds = per_first_cell*size_of%cells + factor*cost%steps*cells &
                      *(per_element + per_element_and_tip*tips)
    end function cost_of_scene
+
+   !> The part of contact in the cost, by the share of fractures whose faces touch [-]. It is little
+   !! where the load opens all of them, and for a lone one without friction.
+   real(rk) function contact_factor(scene) result(factor)
+      type(scene_t), intent(in) :: scene
+      type(far_stress_t) :: far
+      integer :: n
+
+      factor = 1.0_rk
+      n = count(touches(scene%fractures))
+      if (n == 0 .or. size(scene%fractures) == 1 .and. &
+          .not. any(scene%fractures%friction > 0.0_rk)) return
+      factor = 1.0_rk + with_contact*(real(n, rk)/real(size(scene%fractures), rk))**2
+      call find_far_stress(scene, far)
+      if (allocated(far%unknown)) then
+         factor = sqrt(factor)  ! in between
+         return
+      end if
+      associate (parts => parts_of_scene(scene, far))
+         if (all(parts%normal < 0.0_rk)) factor = 1.0_rk
+      end associate
+   end function contact_factor
 
    !> Number of different times at which wells begin a stage, or end.
    pure integer function switches(scene) result(n)

@@ -18,7 +18,8 @@ contains
 
    !> Pressure at which a straight crack in an infinite body grows: K_eq, of K_I by its opening and
    !! K_II by the shear traction beyond friction, is K_IC; without growth below it [Pa].
-   pure real(rk) function grows_at(part, half_length, friction, cohesion, toughness) result(pressure)
+   pure real(rk) function grows_at(part, half_length, friction, cohesion, toughness) &
+      result(pressure)
       type(part_t), intent(in) :: part
       real(rk), intent(in) :: half_length  !< [m]
       real(rk), intent(in) :: friction, cohesion  !< [-], [Pa]

@@ -103,6 +103,7 @@ contains
       type(boundary_side_t), intent(in) :: sides(4)
       logical, intent(in) :: in_situ
       character(len=:), allocatable :: words
+      character(len=*), parameter :: of_points = "points of the body are loaded or held"
       real(rk) :: scale, normal(4)
       logical :: held(4)
       integer :: i
@@ -129,7 +130,14 @@ contains
       else if (.not. spread_of(shears(sides)) <= scale) then
          words = "the sides bear different shear tractions"
       end if
-      if (scene%has_points() .and. words == "") words = "points of the body are loaded or held"
+      if (words /= "" .or. .not. scene%has_points()) return
+      ! Restraints that only fix the rigid motions bear nothing.
+      do i = 1, size(scene%restraints)
+         if (any(abs(scene%restraints(i)%displacement) > 0.0_rk)) words = of_points
+      end do
+      do i = 1, size(scene%point_loads)
+         if (any(abs(scene%point_loads(i)%force) > 0.0_rk)) words = of_points
+      end do
    end function reason
 
    !> The shear stress by each side that has a traction along it; the others have that of the first

@@ -288,7 +288,8 @@ contains
       s%injections(1)%pressure = [11.2e6_rk]
       call expect(s, "", "below the toughness")
       s%injections(1)%pressure = [11.3e6_rk]
-      call expect(s, "&growth of 'f1': K_I is 728600.0 Pa m^1/2: the fracture would", "it would grow")
+      call expect(s, "&growth of 'f1': K_I is 728600.0 Pa m^1/2: the fracture would", &
+                  "it would grow")
       s%injections(1)%rate = [-1.0e-9_rk]
       call expect(s, "", "the lower limit of a producer")
       s = sound()
