@@ -420,6 +420,8 @@ contains
       type(growth_t), intent(inout) :: growth
 
       call exchange(record, "enabled", growth%enabled)
+      if (record%reading) growth%enabled_assumed = record%line > 0 .and. &
+                               .not. (record%is_given("enabled") .or. record%is_given("intensities"))
       call exchange(record, "intensities", growth%intensities)
       call exchange(record, "law", growth%law)
       call exchange(record, "increment", growth%increment, nothing=0.0_rk)

@@ -291,7 +291,9 @@ contains
       call exchange(record, "time", side%course%time)
       if (side%pressure_given) call exchange_value(record, of_pressure, side%pressure, &
                                                    side%course)
-      call exchange_value(record, of_inflow, side%inflow, side%course, nothing=0.0_rk)
+      if (record%reading) side%inflow_given = record%is_set("inflow")
+      call exchange_value(record, of_inflow, side%inflow, side%course, &
+                          nothing=merge(huge(1.0_rk), 0.0_rk, side%inflow_given))
       call exchange_value(record, of_normal_traction, side%normal_traction, side%course, &
                           nothing=0.0_rk)
       call exchange_value(record, of_shear_traction, side%shear_traction, side%course, &

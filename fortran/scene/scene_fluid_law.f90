@@ -19,6 +19,7 @@ module scene_fluid_law
    private
 
    public :: fluid_law_t, has_law, least_compressibility, new_fluid_law, skempton, storage
+   public :: strained_storage
 
    !> Range of an exponential law, as a logarithm of its change: values remain finite in every
    !! iteration [-].
@@ -251,6 +252,16 @@ contains
 
       storage = material%porosity*fluid%compressibility + solid_storage(material)
    end function storage
+
+   !> Storage of rock that is strained in one direction: diffusivity is k/(mu S) [1/Pa].
+   pure real(rk) function strained_storage(m, fluid) result(stored)
+      type(material_t), intent(in) :: m
+      type(fluid_t), intent(in) :: fluid
+      real(rk) :: modulus
+
+      modulus = m%young*(1.0_rk - m%poisson)/((1.0_rk + m%poisson)*(1.0_rk - 2.0_rk*m%poisson))
+      stored = storage(m, fluid) + m%biot**2/modulus
+   end function strained_storage
 
    !> Part of the solid in the storage [1/Pa].
    pure real(rk) function solid_storage(material)

@@ -34,14 +34,16 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(sheet_t), intent(out), optional :: source  !< the file, for messages about its lines
       type(sheet_t) :: sheet
+      logical :: assumed
 
       call parse_scene(path, sheet, error)
       if (.not. allocated(error)) call complete_sheet(sheet, error)
       if (.not. allocated(error)) call load_schedules(sheet, error)
-      if (.not. allocated(error)) call divide_by_thickness(sheet)
+      if (.not. allocated(error)) call divide_by_thickness(sheet, assumed)
       if (.not. allocated(error)) call check_sheet(sheet, error)
       if (allocated(error)) return
       call sheet_to_scene(sheet, scene)
+      scene%thickness_assumed = assumed
       call resolve_defaults(scene)
       call check_scene(sheet, scene, error)
       if (present(source)) source = sheet
@@ -110,18 +112,21 @@ contains
    end subroutine name_by_file
 
    !> Volumes per time become rates per metre of thickness.
-   pure subroutine divide_by_thickness(sheet)
+   pure subroutine divide_by_thickness(sheet, assumed)
       type(sheet_t), intent(inout) :: sheet
+      logical, intent(out) :: assumed  !< a thickness that the file does not give
       type(value_t) :: thickness
       integer :: i, item
 
       thickness = sheet%records(sheet%find("scene"))%value("thickness")
+      assumed = .false.
       do i = 1, sheet%length
          associate (values => sheet%records(i)%values)
             do item = lbound(values, 1), ubound(values, 1)
                if (.not. values(item)%per_thickness) cycle
                values(item)%reals = values(item)%reals/thickness%reals(1)
                values(item)%per_thickness = .false.
+               assumed = .not. thickness%line > 0
             end do
          end associate
       end do

@@ -9,11 +9,12 @@ module scene_plausible
    use scene_check_geometry, only: near_end_t, near_ends
    use scene_check_mechanics, only: surplus_restraints
    use scene_check_permeability, only: anisotropy
-   use scene_fluid_law, only: skempton
+   use scene_fluid_law, only: skempton, strained_storage
    use scene_regime, only: find_regime
    use scene_region_outline, only: body_part
    use scene_sides, only: normal_tractions
-   use scene_types, only: fracture_t, scene_t
+   use scene_stress, only: far_stress_t, find_far_stress, part_t, parts_of_scene
+   use scene_types, only: fracture_t, no_limit, scene_t
    use scene_words, only: rounded_text
    implicit none(type, external)
    private
@@ -38,7 +39,9 @@ module scene_plausible
                          of_stub = 20, of_anisotropy = 21, of_fluid_density = 22, &
                          of_weightless = 23, of_uniform = 24, of_tension = 25, &
                          of_dry = 26, of_overpressure = 27, of_viscous = 28, &
-                         of_surplus = 29, of_friction_there = 30
+                         of_surplus = 29, of_friction_there = 30, of_wide = 31, &
+                         of_sealed = 32, of_would_grow = 33, of_thickness = 34, &
+                         of_no_growth = 35
 
    ! The table keeps its own layout.
    !&<
@@ -115,7 +118,21 @@ module scene_plausible
       doubt_t("material", "poisson", "-", &
          "above 0.49, likewise, with friction, with &adaptive too", &
          "friction then follows wrong normal tractions around tips: K_II of closed sliding "// &
-         "tips is several per cent off, within their stated errors")]
+         "tips is several per cent off, within their stated errors"), &
+      doubt_t("fracture", "aperture", "m", "above 0.005, with &fluid", &
+         "natural fractures have 1e-5 to 1e-3 m, and an aperture in mm needs aperture_mm"), &
+      doubt_t("injection", "reach", "m", &
+         "sqrt(c t) reaches a side, none with pressure or inflow", &
+         "the body is sealed and its pressure changes with the volume of the wells; give sides "// &
+         "a pressure, or inflow = 0 if they are sealed"), &
+      doubt_t("growth", "K_I", "Pa m^1/2", &
+         "above toughness at a pressure of its wells, without growth", &
+         "the fracture would grow, which is left out: enabled = .true. of &growth simulates it"), &
+      doubt_t("scene", "thickness", "m", "assumed, and a rate is a volume per time", &
+         "rates such as rate_l_s are those of this height of the fractures; give thickness"), &
+      doubt_t("growth", "enabled", "logical", &
+         "assumed, in a group that gives neither it nor intensities", &
+         "nothing grows; enabled = .true. lets fractures grow, and .false. says that they do not")]
    !&>
 
    !> Distance below which an end reaches a target (twolevel_segments) [increments].
@@ -138,6 +155,8 @@ contains
       call doubt_material(scene, has_fluid, list)
       call doubt_fractures(scene%fractures, has_fluid, list)
       call doubt_growth(scene, list)
+      call add(list, scene%thickness_assumed, of_thickness, scene%thickness)
+      call add(list, scene%growth%enabled_assumed, of_no_growth, 0.0_rk)
       if (has_fluid) call doubt_flow(scene, list)
       if (has_fluid) call doubt_column(scene, list)
       if (has_fluid .and. scene%growth%enabled) call doubt_ends(scene, list)
@@ -187,6 +206,7 @@ contains
       type(fracture_t), intent(in) :: fractures(:)
       logical, intent(in) :: has_fluid
       type(text_t), allocatable, intent(inout) :: list(:)
+      real(rk), parameter :: widest = 5.0e-3_rk*(1.0_rk + round_off)  ! [m]
       integer :: i
 
       do i = 1, size(fractures)
@@ -194,8 +214,10 @@ contains
             call add(list, f%friction > 1.5_rk, of_friction, f%friction, whose)
             call add(list, f%law == "friction" .and. tan(f%dilation) > f%friction, of_dilation, &
                      f%dilation*degrees, whose)
-            call add(list, has_fluid .and. f%aperture > 0.1_rk*f%length(), of_aperture, &
-                     f%aperture, whose)
+            if (.not. has_fluid) cycle
+            call add(list, f%aperture > 0.1_rk*f%length(), of_aperture, f%aperture, whose)
+            call add(list, within(f%aperture, widest, 0.1_rk*f%length()), of_wide, f%aperture, &
+                     whose)
          end associate
       end do
    end subroutine doubt_fractures
@@ -209,10 +231,63 @@ contains
       integer :: well
 
       call find_regime(scene, value, leakoff, well)
-      if (well == 0) return
-      call add(list, value < nearly*least_verified, of_viscous, value, &
-               " '"//trim(scene%injections(well)%name)//"'")
+      if (well > 0) call add(list, value < nearly*least_verified, of_viscous, value, &
+                             " '"//trim(scene%injections(well)%name)//"'")
+      if (.not. scene%growth%enabled .and. scene%has_wells()) call doubt_no_growth(scene, list)
    end subroutine doubt_growth
+
+   !> Check whether fractures that do not grow would do so at the pressure of a well: K_I of the
+   !! straight crack between their ends, without those around it.
+   pure subroutine doubt_no_growth(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      type(far_stress_t) :: far
+      type(part_t), allocatable :: parts(:)
+      real(rk) :: intensity, largest, toughness
+      integer :: i, k
+
+      call find_far_stress(scene, far)
+      if (allocated(far%unknown)) return
+      parts = parts_of_scene(scene, far)
+      do i = 1, size(scene%fractures)
+         toughness = min(scene%fractures(i)%toughness, scene%material%toughness)
+         if (.not. toughness < huge(1.0_rk)) cycle
+         largest = largest_pressure(scene, i)
+         intensity = -huge(1.0_rk)
+         do k = 1, size(parts)
+            if (parts(k)%fracture /= i) cycle
+            intensity = max(intensity, (largest - parts(k)%normal) &
+                            *sqrt(0.5_rk*pi*scene%fractures(i)%length()))
+         end do
+         call add(list, intensity > toughness, of_would_grow, intensity, &
+                  " of '"//trim(scene%fractures(i)%name)//"'")
+      end do
+   end subroutine doubt_no_growth
+
+   !> The largest pressure that wells prescribe in a fracture, or allow [Pa].
+   pure real(rk) function largest_pressure(scene, fracture) result(largest)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: fracture  !< index into scene%fractures
+      integer :: i, k
+      logical :: is_there
+
+      largest = -huge(1.0_rk)
+      do i = 1, size(scene%injections)
+         associate (well => scene%injections(i))
+            if (.not. allocated(well%pressure)) cycle
+            is_there = well%fracture == fracture
+            if (allocated(well%entries)) is_there = any(well%entries%fracture == fracture)
+            if (.not. is_there) cycle
+            do k = 1, size(well%pressure)
+               if (well%pressure(k) >= no_limit) cycle
+               if (allocated(well%rate)) then
+                  if (.not. well%rate(k) > 0.0_rk) cycle  ! the lower limit of a producer
+               end if
+               largest = max(largest, well%pressure(k))
+            end do
+         end associate
+      end do
+   end function largest_pressure
 
    !> Check for ends that almost touch something, or just pass it.
    pure subroutine doubt_ends(scene, list)
@@ -330,6 +405,7 @@ contains
                   min(d%x_max - d%x_min, d%y_max - d%y_min), of_window, &
                   scene%discretization%window)
       end associate
+      if (scene%has_wells()) call doubt_seal(scene, list)
       do i = 1, merge(size(scene%injections), 0, allocated(scene%injections))
          call add(list, scene%injections(i)%start >= scene%time%end, of_start, &
                   scene%injections(i)%start)
@@ -339,6 +415,39 @@ contains
                   interval < scene%time%step*(1.0_rk - same_time), of_interval, interval)
       end associate
    end subroutine doubt_flow
+
+   !> Check whether wells change the pressure at sides that are all sealed: the depth of diffusion
+   !! from the nearest point of a fracture or well.
+   pure subroutine doubt_seal(scene, list)
+      type(scene_t), intent(in) :: scene
+      type(text_t), allocatable, intent(inout) :: list(:)
+      real(rk) :: distance, reach, stored
+      integer :: i
+
+      stored = strained_storage(scene%material, scene%fluid)
+      if (scene%domain%shape /= "rectangle" .or. .not. stored > 0.0_rk) return
+      if (any(scene%sides%pressure_given .or. scene%sides%inflow_given)) return
+      distance = huge(1.0_rk)
+      associate (d => scene%domain, wells => scene%injections)
+         do i = 1, size(scene%fractures)
+            associate (x => scene%fractures(i)%x, y => scene%fractures(i)%y)
+               distance = min(distance, minval(x) - d%x_min, d%x_max - maxval(x), &
+                              minval(y) - d%y_min, d%y_max - maxval(y))
+            end associate
+         end do
+         do i = 1, size(wells)
+            if (wells(i)%fracture > 0) cycle
+            distance = min(distance, wells(i)%x - d%x_min, d%x_max - wells(i)%x, &
+                           wells(i)%y - d%y_min, d%y_max - wells(i)%y)
+         end do
+      end associate
+      associate (m => scene%material)
+         ! Diffusivity of rock that is strained in one direction.
+         reach = sqrt(max(m%permeability_xx, m%permeability_yy)/scene%fluid%viscosity &
+                             *scene%time%end/stored)
+      end associate
+      call add(list, reach > distance, of_sealed, reach)
+   end subroutine doubt_seal
 
    !> A value lies between two limits.
    pure logical function within(value, lowest, highest)
@@ -363,8 +472,9 @@ contains
       if (present(whose)) place = place//whose
       unit = ""
       if (d%unit /= "-") unit = " "//trim(d%unit)
-      call add_text(list, place//": "//trim(d%name)//" is "//rounded_text(value)//unit//": "// &
-                    trim(d%usual))
+      unit = rounded_text(value)//unit
+      if (d%unit == "logical") unit = trim(merge(".true. ", ".false.", value > 0.0_rk))
+      call add_text(list, place//": "//trim(d%name)//" is "//unit//": "//trim(d%usual))
    end subroutine add
 
 end module scene_plausible

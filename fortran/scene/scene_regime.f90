@@ -12,7 +12,7 @@
 !! fracture while C_m is small, and in the rock once it is large.
 module scene_regime
    use base_kinds, only: pi, rk
-   use scene_fluid_law, only: storage
+   use scene_fluid_law, only: strained_storage
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -51,7 +51,7 @@ contains
    pure real(rk) function carter_coefficient(scene, rise) result(coefficient)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: rise  !< dp, of the pressure above that of the rock [Pa]
-      real(rk) :: modulus, permeability, stored
+      real(rk) :: permeability
 
       coefficient = 0.0_rk
       if (.not. rise > 0.0_rk) return
@@ -59,9 +59,8 @@ contains
          permeability = sqrt(max(0.0_rk, m%permeability_xx*m%permeability_yy &
                                  - m%permeability_xy**2))
          ! Across the fracture the rock is strained, along it not.
-         modulus = m%young*(1.0_rk - m%poisson)/((1.0_rk + m%poisson)*(1.0_rk - 2.0_rk*m%poisson))
-         stored = storage(m, scene%fluid) + m%biot**2/modulus
-         coefficient = 2.0_rk*rise*sqrt(permeability*stored/(pi*viscosity))
+         coefficient = 2.0_rk*rise*sqrt(permeability*strained_storage(m, scene%fluid) &
+                                        /(pi*viscosity))
       end associate
    end function carter_coefficient
 

@@ -42,6 +42,7 @@ module scene_sides
       real(rk) :: spring(2) = 0.0_rk  !< traction opposite to the displacement, over it [Pa/m]
       logical :: pressure_given = .false.  !< .false.: inflow is prescribed
       real(rk) :: pressure = 0.0_rk  !< [Pa]
+      logical :: inflow_given = .false.  !< .false., without a pressure: 0 is the default
       real(rk) :: inflow = 0.0_rk  !< volume per time and area into the body [m/s]
       type(side_course_t) :: course
    contains

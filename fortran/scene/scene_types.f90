@@ -229,6 +229,7 @@ module scene_types
    !> Fracture growth.
    type :: growth_t
       logical :: enabled = .false.
+      logical :: enabled_assumed = .false.  !< it is the default, beside other names of growth
       !> stress intensity factors are computed (always with growth)
       logical :: intensities = .false.
       character(len=name_length) :: law = "equilibrium"  !< "equilibrium" or "paris"
@@ -269,6 +270,8 @@ module scene_types
       character(len=name_length) :: name = ""
       character(len=256) :: title = ""
       real(rk) :: thickness = 1.0_rk  !< of the body, out of the plane [m]
+      !> it is the default, and rates of the file are volumes per time
+      logical :: thickness_assumed = .false.
       type(domain_t) :: domain
       type(material_t) :: material
       !> regions in the order of the file: the later of two that overlap applies; unallocated: none

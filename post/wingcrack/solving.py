@@ -84,7 +84,12 @@ def check(given: SimpleNamespace) -> int:
 
     Its words are written here: gfortran does not tell of a full disk.
     """
-    status, words = _call([SOLVER, "check", given.scene], stdout=subprocess.PIPE)
+    asked = ["--stress"] if given.stress or given.json or given.mohr else []
+    status, words = _call([SOLVER, "check", given.scene, *asked], stdout=subprocess.PIPE)
+    if status == 0 and asked:
+        from wingcrack.figures import mohr  # of the wheel too, but only for this
+
+        return mohr.show(words, as_json=given.json, figure=given.mohr)
     sys.stdout.write(words)
     return status
 

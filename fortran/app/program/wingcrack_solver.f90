@@ -7,6 +7,7 @@ program wingcrack_solver
    use app_run, only: run_scene
    use app_simulations, only: simulates_fluids
    use app_size, only: check_size, describe_scene
+   use app_stress, only: stress_description
    use app_version, only: version
    use base_errors, only: error_t
    use base_kinds, only: rk
@@ -20,7 +21,7 @@ program wingcrack_solver
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | run [SCENE.nml] --restart DIR [--end T] "// &
-                                  "[--out DIR] [--quiet] | check SCENE.nml | name SCENE.nml | "// &
+                                  "[--out DIR] [--quiet] | check SCENE.nml [--stress] | name SCENE.nml | "// &
                                   "ranks SCENE.nml | "// &
                                   "--describe json | --version"
    !> Kept to the program's end: gfortran 12 loses memory when it deallocates by the dynamic type.
@@ -119,10 +120,15 @@ contains
    subroutine check()
       type(scene_t) :: scene
 
-      if (command_argument_count() > 2) call leave("unknown argument "//argument(3)//"; "//usage, &
-                                                   exit_usage)
+      if (command_argument_count() > 2 .and. argument(3) /= "--stress") then
+         call leave("unknown argument "//argument(3)//"; "//usage, exit_usage)
+      end if
       call read_judged(argument(2), scene)
-      call describe_scene(scene, output_unit)
+      if (argument(3) == "--stress") then
+         write (output_unit, "(a)") stress_description(scene)
+      else
+         call describe_scene(scene, output_unit)
+      end if
    end subroutine check
 
    !> Read and check a scene; a fault ends the program.

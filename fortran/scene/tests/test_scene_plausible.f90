@@ -224,10 +224,18 @@ contains
       s = sound()
       s%fractures(1)%aperture = 0.03_rk
       call expect(s, "&fracture 'f1': aperture is 0.03 m: ", "aperture")
+      s%fractures(1)%aperture = 0.005_rk
+      call expect(s, "", "5 mm")
+      s%fractures(1)%aperture = 0.0051_rk
+      call expect(s, "&fracture 'f1': aperture is 0.0051 m: natural fractures", "above 5 mm")
+      s%fluid%viscosity = 0.0_rk
+      call expect(s, "", "above 5 mm without a fluid")
    end subroutine test_fractures
 
    subroutine test_flow()
       type(scene_t) :: s
+      !> k/(mu S), S = phi c + (alpha - phi)/K + alpha^2/M with K = 22.2 GPa, M = 44.4 GPa
+      real(rk), parameter :: diffusivity = 5.0e-17_rk/4.6075e-11_rk
 
       s = sound()
       s%fluid%compressibility = 4.0e-4_rk
@@ -254,6 +262,36 @@ contains
       s = sound()
       s%injections%start = 3600.0_rk
       call expect(s, "&injection: start is 3600.0 s: ", "a well that never runs")
+      s = sound()
+      s%material%biot = 0.7_rk
+      s%material%porosity = 0.01_rk
+      s%time%end = 0.899_rk**2/diffusivity
+      call expect(s, "", "0.9 m from the right side")
+      s%time%end = 0.91_rk**2/diffusivity
+      call expect(s, "&injection: reach is 0.91 m: the body is sealed", "sealed")
+      s%sides(3)%inflow_given = .true.
+      call expect(s, "", "sealed on purpose")
+      s%sides(3)%inflow_given = .false.
+      s%sides(4)%pressure_given = .true.
+      call expect(s, "", "a pressure at a side")
+      s = sound()
+      s%thickness_assumed = .true.
+      call expect(s, "&scene: thickness is 1.0 m: rates such as", "thickness")
+      s = sound()
+      s%growth%enabled = .false.
+      s%growth%enabled_assumed = .true.
+      call expect(s, "&growth: enabled is .false.: nothing grows", "growth")
+      ! K_I of 0.2 m across 10 MPa is 0.7 MPa sqrt(m) at 11.2489 MPa.
+      s%growth%enabled_assumed = .false.
+      s%sides(1)%displacement_given(1) = .true.
+      s%sides(3)%displacement_given(2) = .true.
+      s%injections(1)%pressure = [11.2e6_rk]
+      call expect(s, "", "below the toughness")
+      s%injections(1)%pressure = [11.3e6_rk]
+      call expect(s, "&growth of 'f1': K_I is 728600.0 Pa m^1/2: the fracture would", &
+                  "it would grow")
+      s%injections(1)%rate = [-1.0e-9_rk]
+      call expect(s, "", "the lower limit of a producer")
       s = sound()
       s%discretization%window = 2.0_rk
       call expect(s, "&fine: window is 2.0 m: ", "window")

@@ -47,6 +47,7 @@ def understood(way: str, words: list[str], place: Path) -> tuple[int, str, str]:
         ["run", "--threads=3", "--ranks", "2", str(SCENE), "--out", "some where", "--no-plot"],
         ["run", "--restart", ".", "--end", "7200"],
         ["check", str(SCENE)],
+        ["check", "--stress", str(SCENE), "--json", "--mohr", "m.pdf"],
         ["plot", ".", "/", "--times", "1h,90", "--only", "maps,tips", "--format", "png,pdf"],
         ["view", ".", "--port", "8040"],
         ["study", str(SCENE), "--cluster", "local", "--jobs", "3", "--quick"],

@@ -72,13 +72,29 @@ def run(given: SimpleNamespace) -> None:
     "check",
     "wingcrack.solving:check",
     _SCENE,
-    about="Prints what the scene has, what it leaves out and its estimated size. Writes nothing.\n",
+    flag(
+        "--stress",
+        "of each fracture: slip tendency and the pressures at which it slips, opens and grows;"
+        " K_m of wells; steps and CPU time",
+    ),
+    flag("--json", "the same as JSON, in SI units"),
+    Parameter("--mohr", "FILE", "draw the Mohr diagram into FILE.png or FILE.pdf", Path),
+    about="Prints what the scene has, what it leaves out and its estimated size. Writes nothing\n"
+    "but the Mohr diagram.\n",
     statuses="0 good; 1 the words cannot be written; 2 the scene is refused, or bad usage.",
-    example="./wingcrack check inputs/paper_c/onset.nml\n",
+    example="""\
+./wingcrack check inputs/paper_c/onset.nml
+./wingcrack check --stress inputs/examples/field.nml --mohr /tmp/field_mohr.png
+""",
 )
 def check(given: SimpleNamespace) -> None:
     """Read and validate a scene without running it."""
     _judge_scene(given)
+    if given.mohr is not None:
+        if given.mohr.suffix not in {".png", ".pdf"}:
+            raise UsageError(f"--mohr must end in .png or .pdf, unlike {given.mohr}")
+        if not given.mohr.parent.is_dir():
+            raise UsageError(f"the diagram cannot go to {given.mohr}: there is no such folder")
 
 
 def _judge_restart(given: SimpleNamespace) -> None:
