@@ -239,6 +239,10 @@ class Search:
             place = beside.interpolate(0.5, normalized=True)
             yield _fault("overlap", (0,), place.coords[0], place.distance(self.rim))
             return
+        flat = _flat_meeting(shape, self.rim, points, limits)
+        if flat is not None:
+            yield _fault("overlap", (0,), flat, 0.0)
+            return
         corners = np.array(self.rim.coords)
         for k, depth in enumerate(shapely.distance(shapely.points(points), self.rim)):
             is_end = k in (0, len(points) - 1)
@@ -274,7 +278,9 @@ class Search:
         shape, other = (self.shapes[lines[k]] for k in roles)
         beside = stretches_beside(shape, other, self.limits)
         if beside.length == 0.0:
-            return None
+            places = np.vstack([met, *(line.points for line in lines)])
+            flat = _flat_meeting(shape, other, places, self.limits)
+            return None if flat is None else _fault("overlap", roles, flat, 0.0)
         if len(met) == 1:
             ends = np.vstack([line.points[[0, -1]] for line in lines])
             if np.hypot(*(ends - met[0]).T).min() >= self.limits.near:
@@ -336,6 +342,29 @@ class Search:
             if self.limits.same < second - first < self.limits.near:
                 place = self.shapes[line].interpolate(first).coords[0]
                 yield one, other, _fault("near crossings", (0,), place, second - first)
+
+
+def _flat_meeting(
+    line: LineString, other: LineString, places: Points, limits: Limits
+) -> Points | None:
+    """One of the places, at which two lines meet at less than the angle, however short."""
+    points = shapely.points(places)
+    is_met = shapely.dwithin(points, line, limits.same) & shapely.dwithin(points, other, limits.same)
+    for place in places[is_met]:
+        ways = [_ways_from(place, shape, limits.same) for shape in (line, other)]
+        sine = ways[0][:, None, 0] * ways[1][None, :, 1] - ways[0][:, None, 1] * ways[1][None, :, 0]
+        angles = np.degrees(np.arctan2(np.abs(sine), ways[0] @ ways[1].T))
+        if (angles < limits.angle_deg).any():
+            return np.asarray(place)
+    return None
+
+
+def _ways_from(place: Points, shape: LineString, same: float) -> Points:
+    """(n, 2) ways from a place of a line to the ends of the segments that it lies on [m]."""
+    segments = _segments(shape)
+    is_there = shapely.dwithin(shapely.linestrings(segments), Point(place), same)
+    ways = segments[is_there].reshape(-1, 2) - place
+    return np.asarray(ways[np.hypot(*ways.T) > same])
 
 
 def _segments_at(shape: LineString, place: Points) -> Points:
