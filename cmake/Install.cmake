@@ -37,7 +37,7 @@ install(
 install(DIRECTORY inputs docs DESTINATION share/wingcrack)
 install(
   FILES README.md CHANGELOG.md LICENSE CITATION.cff requirements.txt requirements_study.txt
-        requirements_maps.txt requirements_movies.txt
+        requirements_maps.txt requirements_maps_gis.txt requirements_movies.txt
   DESTINATION share/wingcrack
 )
 

@@ -33,7 +33,7 @@ prepare() {
 # the documentation too.
 prepare_developer() {
     requirement_lists+=("$root/requirements_developer.txt" "$root/requirements_study.txt"
-        "$root/requirements_maps.txt" "$root/requirements_docs.txt")
+        "$root/requirements_maps.txt" "$root/requirements_maps_gis.txt" "$root/requirements_docs.txt")
     prepare
 }
 
@@ -62,9 +62,19 @@ prepare_study() {
     prepare "$solver_target"
 }
 
-# prepare_maps: see to what fracture maps and random networks take, beside the rest.
+# prepare_maps ARGUMENT...: see to what fracture maps and random networks take, beside the rest; what
+# reads files of geographic information systems comes with the first of them, or with --crs.
 prepare_maps() {
     requirement_lists+=("$root/requirements_maps.txt")
+    local argument
+    for argument; do
+        case ${argument,,} in
+            *.shp | *.gpkg | *.dxf | *.fgb | *.gml | *.kml | --crs | --crs=*)
+                requirement_lists+=("$root/requirements_maps_gis.txt")
+                break
+                ;;
+        esac
+    done
     prepare "$solver_target"
 }
 

@@ -1,5 +1,6 @@
 #include "network.hpp"
 
+#include "box_grid.hpp"
 #include "errors.hpp"
 
 #include <utility>
@@ -19,7 +20,8 @@ public:
     GraphBuilder(const std::vector<Segment>& segments, const std::vector<Vec2>& fixed_points,
                  const Domain& domain, bool clip, const Tolerances& tolerances)
         : segments_(segments), fixed_points_(fixed_points), domain_(domain), box_(domain.box()),
-          clip_(clip), tolerances_(tolerances), cuts_(segments.size()) {}
+          clip_(clip), tolerances_(tolerances), cuts_(segments.size()),
+          point_grid_(box_, 2 * segments.size()) {}
 
     Graph build() {
         for (int i = 0; i < count(); ++i)
@@ -27,9 +29,7 @@ public:
         check_inner_vertices();
         for (std::size_t k = 0; k < fixed_points_.size(); ++k)
             place_fixed(static_cast<int>(k));
-        for (int j = 0; j < count(); ++j)
-            for (int i = 0; i < j; ++i)
-                intersect(i, j);
+        intersect_all();
         for (int i = 0; i < count(); ++i)
             divide(i);
         for (const std::vector<Cut>& cuts : cuts_)
@@ -70,12 +70,15 @@ private:
 
     // The graph point at p, which is made if there is none within the tolerance.
     int point_at(Vec2 p) {
-        for (int k = 0; k < static_cast<int>(graph_.points.size()); ++k)
+        const Vec2 reach = {tolerances_.same, tolerances_.same};
+        for (int k : point_grid_.candidates(p - reach, p + reach))
             if (distance(at(k), p) <= tolerances_.same)
                 return k;
         p = snapped(p);
+        const int number = static_cast<int>(graph_.points.size());
         graph_.points.push_back({p, domain_.is_on_boundary(p)});
-        return static_cast<int>(graph_.points.size()) - 1;
+        point_grid_.add(number, p, p);
+        return number;
     }
 
     // Put the ends of a segment into the graph, cut at the rectangle's sides (Liang and Barsky
@@ -234,8 +237,24 @@ private:
                std::max(c.y, d.y) + gap < std::min(a.y, b.y);
     }
 
+    // Every two segments whose boxes are near to each other, the earlier one first.
+    void intersect_all() {
+        BoxGrid grid(box_, segments_.size());
+        const Vec2 gap = {tolerances_.near_miss, tolerances_.near_miss};
+        for (int j = 0; j < count(); ++j) {
+            if (!is_placed(j))
+                continue;
+            const Vec2 a = start(j), b = stop(j);
+            const Vec2 low = {std::min(a.x, b.x), std::min(a.y, b.y)};
+            const Vec2 high = {std::max(a.x, b.x), std::max(a.y, b.y)};
+            for (int i : grid.candidates(low - gap, high + gap))
+                intersect(i, j);
+            grid.add(j, low, high);
+        }
+    }
+
     void intersect(int i, int j) {
-        if (!is_placed(i) || !is_placed(j) || boxes_apart(i, j))
+        if (boxes_apart(i, j))
             return;
         if (segments_[i].old_cell >= 0 && segments_[j].old_cell >= 0)
             return; // they were meshed before
@@ -372,17 +391,17 @@ private:
             if (!graph_.points[p].on_boundary)
                 continue;
             for (int k = 0; k < domain_.edge_count(); ++k)
-                check_gap(p, domain_.corners()[k], {CulpritKind::corner, k});
+                check_gap(p, domain_.corners()[k], [&] { return Culprit{CulpritKind::corner, k}; });
             for (int other : on_boundary)
-                check_gap(p, at(other), holder(other));
+                check_gap(p, at(other), [&] { return holder(other); });
             on_boundary.push_back(p);
         }
     }
 
-    void check_gap(int point, Vec2 other, Culprit whose) const {
+    template <typename Whose> void check_gap(int point, Vec2 other, Whose&& whose) const {
         const double gap = distance(other, at(point));
         if (gap > 0.0 && gap < tolerances_.near_miss)
-            refuse(FaultKind::too_near, {holder(point), whose}, at(point),
+            refuse(FaultKind::too_near, {holder(point), whose()}, at(point),
                    "{1} meets the boundary {at} only " + number_text(gap) +
                        " m from {2}; put them at one place or farther apart");
     }
@@ -394,6 +413,7 @@ private:
     const bool clip_;
     const Tolerances tolerances_;
     std::vector<std::vector<Cut>> cuts_; // by segment; the first two are its ends
+    BoxGrid point_grid_;
     Graph graph_;
 };
 

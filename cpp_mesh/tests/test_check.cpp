@@ -2,6 +2,8 @@
 #include "api_mesh.hpp"
 #include "checks.hpp"
 
+#include <ctime>
+
 namespace {
 
 struct Who {
@@ -150,11 +152,46 @@ void joints(Checks& checks) {
                    "more joints than there is room for");
 }
 
+// 5,000 crosses on a lattice, and a line along each side of it that ends near to none.
+void many_segments(Checks& checks) {
+    constexpr int columns = 100, rows = 50;
+    std::vector<Polyline> crosses;
+    for (int i = 1; i <= columns; ++i)
+        for (int j = 1; j <= rows; ++j) {
+            const double x = i + 0.1 * std::sin(i * j), y = j + 0.1 * std::cos(i * j);
+            crosses.push_back({{x - 0.3, y}, {x + 0.4, y}});
+            crosses.push_back({{x, y + 0.4}, {x, y - 0.3}});
+        }
+    crosses.push_back({{0.5, 0.4}, {columns + 0.5, 0.4}});
+    crosses.push_back({{0.5, rows + 0.6}, {columns + 0.5, rows + 0.6}});
+    TestNetwork network(crosses);
+    const cm_spec spec = rectangle_spec(columns + 1.0, rows + 1.0, 0.05, 0.2);
+    const cm_network view = network.view();
+    std::vector<cm_joint> found(columns * rows);
+    int32_t n_joints = 0;
+    const std::clock_t start = std::clock();
+    checks.is_true(cm_check(&spec, &view, columns * rows, found.data(), &n_joints) == 0,
+                   cm_last_error());
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    checks.is_close(seconds, 0.0, 10.0, "10,002 segments in 10 s");
+    checks.is_equal(n_joints, columns * rows, "a joint a cross");
+    std::vector<char> is_found(columns * rows, 0);
+    for (int32_t k = 0; k < std::min(n_joints, columns * rows); ++k) {
+        const int cross = found[k].fracture[0] / 2, i = cross / rows + 1, j = cross % rows + 1;
+        is_found[cross] = found[k].fracture[1] == 2 * cross + 1 &&
+                          std::hypot(found[k].x - i - 0.1 * std::sin(i * j),
+                                     found[k].y - j - 0.1 * std::cos(i * j)) < 1e-12;
+    }
+    checks.is_equal(std::count(is_found.begin(), is_found.end(), 1), columns * rows,
+                    "each where its fractures cross");
+}
+
 } // namespace
 
 int main() {
     Checks checks;
     fractures(checks);
+    many_segments(checks);
     bodies(checks);
     fixed_points(checks);
     joints(checks);

@@ -17,6 +17,7 @@ from wingcrack.scenes.parameters import groups
 from wingcrack.scenes.solver import check
 from wingcrack_maps.base import Base, read_base
 from wingcrack_maps.body import assign_roles, boundary_of, rectangle_around
+from wingcrack_maps.contacts import weld
 from wingcrack_maps.entries import complete, entry_values, give_names, set_regions, setting
 from wingcrack_maps.faults import SAME, Limits, extent, find_faults
 from wingcrack_maps.features import Map
@@ -67,7 +68,7 @@ def _content(given: SimpleNamespace) -> tuple[Map, str]:
         sets = [Set(*three) for three in laws]
         network = random_network(sets, given.box, given.seed, given.distance, given.crossings)
         return network, f"a random network with seed {given.seed}"
-    content = read_map(given.map, given.unit)
+    content = read_map(given.map, given.unit, given.crs, given.layer)
     if given.origin is not None:
         shift(content, given.origin)
     assign_roles(content, given.polygons, str(given.map))
@@ -95,6 +96,7 @@ def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
     limits = _limits(given, content)
     read = len(content.lines)
     total = sum(line.length for line in content.lines)
+    _weld(content, body, limits)
     found = find_faults(content.lines, body, limits)
     report = Report(path, limits.near, limits.angle_deg)
     repairs: list[Repair] = []
@@ -102,6 +104,7 @@ def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
         content.lines, repairs = repair(content.lines, body, limits, given.ends, _tell)
         if not content.lines:
             raise SceneError(f"{path}: with --repair {given.repair:g} no fracture would be left")
+        _weld(content, body, limits)
     left = find_faults(content.lines, body, limits)
     report.counts = {
         "fractures read": read,
@@ -160,7 +163,18 @@ def _limits(given: SimpleNamespace, content: Map) -> Limits:
     near = given.repair or given.near or lengths[len(lengths) // 2] / 40.0
     if given.repair is not None and given.near not in (None, given.repair):
         raise SceneError("--near and --repair ask for two distances; give one of them")
-    return Limits(near, given.angle, max(SAME * extent(content.lines), 1e-12))
+    same = max(SAME * extent(content.lines), content.precision, 1e-12)
+    return Limits(near, given.angle, same)
+
+
+def _weld(content: Map, body: Polygon | None, limits: Limits) -> None:
+    """Make joints of what meets within the precision of the map, and say so."""
+    content.lines, number, largest = weld(content.lines, body, limits.same)
+    if number:
+        content.note(
+            "precision", f"at {number} places fractures missed each other by up to {largest:.2g} m:"
+            f" less than the {limits.same:.2g} m to which the map is known, so they meet"
+        )  # fmt: skip
 
 
 def _network(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.geometry import LineString, Point, Polygon
 from shapely.strtree import STRtree
 
@@ -50,6 +51,7 @@ KINDS = {
     "short fracture": "is shorter than the distance",
     "duplicate": "lies on another fracture from end to end",
     "overlap": "runs along another fracture or the boundary, nearer than the distance",
+    "flat crossing": "crosses another fracture at too small an angle",
     "end past": "ends just behind a fracture that it crosses",
     "near end": "ends near a fracture or the boundary without touching it",
     "near vertex": "has a vertex near a fracture, which is not on it",
@@ -61,6 +63,10 @@ KINDS = {
 """All kinds in the order in which they are repaired, with what the fracture does."""
 
 HARMLESS = ("self-crossing",)
+ANGLES = ("hairpin", "flat crossing")
+"""Kinds whose size is an angle."""
+
+_ORDER = list(KINDS)
 
 
 def extent(lines: Sequence[Line]) -> float:
@@ -71,10 +77,7 @@ def extent(lines: Sequence[Line]) -> float:
 
 def find_faults(lines: Sequence[Line], body: Polygon | None, limits: Limits) -> list[Fault]:
     """All faults of a network, in the order of `KINDS`."""
-    search = _Search(lines, body, limits)
-    found = list(search.all())
-    order = list(KINDS)
-    return sorted(found, key=lambda fault: (order.index(fault.kind), fault.lines))
+    return Search(body, limits).faults(lines)
 
 
 def vertex_angle(points: Points, vertex: int) -> float:
@@ -86,199 +89,297 @@ def vertex_angle(points: Points, vertex: int) -> float:
 
 def stretches_beside(line: LineString, other: LineString, limits: Limits) -> shapely.Geometry:
     """Where a line runs along another one: nearer than the distance, at less than the angle."""
-    pieces = []
     ours, others = _segments(line), _segments(other)
-    for ends in others:
-        near = LineString(ends).buffer(limits.near)
-        for own in ours:
-            if _angle_deg(own, ends) >= limits.angle_deg:
-                continue
-            piece = LineString(own).intersection(near)
-            # a cap or two are what segments have that only follow each other
-            if piece.length > 1.5 * limits.near:
-                pieces.append(piece)
-    return shapely.union_all(pieces) if pieces else LineString()
+    i, j = np.nonzero(_angles_deg(ours, others) < limits.angle_deg)
+    if len(i) == 0:
+        return LineString()
+    own, along = shapely.linestrings(ours[i]), shapely.linestrings(others[j])
+    near = shapely.dwithin(own, along, limits.near)
+    pieces = shapely.intersection(own[near], shapely.buffer(along[near], limits.near))
+    # a cap or two are what segments have that only follow each other
+    pieces = pieces[shapely.length(pieces) > 1.5 * limits.near]
+    return shapely.union_all(pieces) if len(pieces) else LineString()
 
 
-def _segments(line: LineString) -> list[Points]:
+def _segments(line: LineString) -> Points:
+    """(n, 2, 2): segment, end, coordinate."""
     points = shapely.get_coordinates(line)
-    return [points[k : k + 2] for k in range(len(points) - 1)]
+    return np.stack([points[:-1], points[1:]], axis=1)
 
 
-def _angle_deg(a: Points, b: Points) -> float:
-    """Between two undirected segments [degree]."""
-    p, q = a[1] - a[0], b[1] - b[0]
-    sine = abs(float(p[0] * q[1] - p[1] * q[0]))
-    return math.degrees(math.atan2(sine, abs(float(p @ q))))
+def _angles_deg(a: Points, b: Points) -> Points:
+    """(n, m) angles between undirected segments [degree]."""
+    p, q = (a[:, 1] - a[:, 0])[:, None], (b[:, 1] - b[:, 0])[None]
+    sine = np.abs(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0])
+    return np.degrees(np.arctan2(sine, np.abs((p * q).sum(axis=-1))))
 
 
-class _Search:
-    def __init__(self, lines: Sequence[Line], body: Polygon | None, limits: Limits) -> None:
-        self.lines, self.body, self.limits = lines, body, limits
-        self.shapes = [LineString(line.points) for line in lines]
-        self.tree = STRtree(self.shapes)
+@dataclass(frozen=True)
+class _Pair:
+    """What two fractures near each other have; `lines` of its faults are 0 and 1 for the two."""
+
+    faults: tuple[Fault, ...]
+    along: tuple[Points, Points]  # where they meet, along each [m]; of an overlap nothing
+
+
+_NOWHERE = (np.empty(0), np.empty(0))
+
+
+class Search:
+    """Search for faults that examines again only what has changed since the last network.
+
+    `Line` objects are never changed, but replaced; those that stay keep their order.
+    """
+
+    def __init__(self, body: Polygon | None, limits: Limits) -> None:
+        self.body, self.limits = body, limits
         self.rim = None if body is None else body.exterior
-        self.pairs = list(self._pairs())
+        self.inside = None if body is None else body.buffer(limits.same)
+        shapely.prepare([shape for shape in (self.rim, self.inside) if shape is not None])
+        self.shapes: dict[Line, LineString] = {}
+        self._alone: dict[Line, list[Fault]] = {}
+        self._pairs: dict[Line, dict[Line, _Pair]] = {}  # of both, each under the other
+        self._crossings: dict[Line, list[tuple[Line, Line, Fault]]] = {}
+        self._tree, self._number = STRtree([]), dict[Line, int]()
 
-    def all(self) -> Iterator[Fault]:
-        for i in range(len(self.lines)):
-            yield from self._alone(i)
-            yield from self._with_body(i)
-        beside = set()
-        for i, j in self.pairs:
-            pair = list(self._run_together(i, j))
-            yield from pair
-            if pair:
-                beside.add((i, j))
-        for i, j in self.pairs:
-            if (i, j) not in beside:
-                yield from self._ends_and_vertices(i, j)
-                yield from self._ends_and_vertices(j, i)
-        yield from self._crossings(beside)
+    def faults(self, lines: Sequence[Line]) -> list[Fault]:
+        """All faults of a network, in the order of `KINDS`."""
+        self._update(lines)
+        found = [
+            replace(fault, lines=(i,)) for i, line in enumerate(lines) for fault in self._alone[line]
+        ]
+        for i, line in enumerate(lines):
+            for other, pair in self._pairs[line].items():
+                both = (i, self._number[other])
+                if pair.faults and both[0] < both[1]:
+                    found.extend(
+                        replace(fault, lines=tuple(both[k] for k in fault.lines))
+                        for fault in pair.faults
+                    )
+            for one, other, fault in self._crossings[line]:
+                found.append(replace(fault, lines=(i, self._number[one], self._number[other])))
+        return sorted(found, key=lambda fault: (_ORDER.index(fault.kind), fault.lines))
 
-    def _pairs(self) -> Iterator[tuple[int, int]]:
-        for i, shape in enumerate(self.shapes):
-            found = self.tree.query(shape, predicate="dwithin", distance=self.limits.near)
-            yield from ((i, int(j)) for j in sorted(found) if j > i)
+    def is_met(self, line: Line, place: Points) -> bool:
+        """Whether another fracture passes through a place."""
+        found = self._tree.query(Point(place), predicate="dwithin", distance=self.limits.same)
+        return bool((found != self._number[line]).any())
 
-    def _alone(self, i: int) -> Iterator[Fault]:
-        points, limits = self.lines[i].points, self.limits
+    def _update(self, lines: Sequence[Line]) -> None:
+        gone = self.shapes.keys() - set(lines)
+        changed = {other for line in gone for other in self._pairs[line]} - gone
+        for line in gone:
+            for other in self._pairs.pop(line):
+                if other not in gone:
+                    del self._pairs[other][line]
+            del self.shapes[line], self._alone[line], self._crossings[line]
+        new = [line for line in lines if line not in self.shapes]
+        for line in new:
+            self.shapes[line] = LineString(line.points)
+            self._pairs[line] = {}
+        shapes = [self.shapes[line] for line in lines]
+        self._tree, self._number = STRtree(shapes), {line: i for i, line in enumerate(lines)}
+        for line in new:
+            self._alone[line] = [*self._of_one(line), *self._with_body(line)]
+        queried = np.array([self.shapes[line] for line in new], dtype=object)
+        found = self._tree.query(queried, predicate="dwithin", distance=self.limits.near)
+        for k, j in found.T:
+            one, other = new[k], lines[j]
+            if other is one or other in self._pairs[one]:
+                continue
+            first, second = sorted((one, other), key=self._number.__getitem__)
+            pair = self._examine(first, second)
+            self._pairs[first][second] = pair
+            self._pairs[second][first] = pair
+            changed.update((one, other))
+        for line in changed.union(new):
+            self._crossings[line] = list(self._near_crossings(line))
+
+    def _of_one(self, line: Line) -> Iterator[Fault]:
+        points, limits, shape = line.points, self.limits, self.shapes[line]
         gaps = np.hypot(*np.diff(points, axis=0).T)
-        for k, gap in enumerate(gaps):
-            if gap <= limits.same:
-                yield self._fault("repeated vertex", (i,), points[k + 1], gap, k + 1)
-            elif gap < limits.near and len(points) > 2:
-                yield self._fault("short segment", (i,), points[k], gap, k)
+        for k in np.nonzero(gaps < limits.near)[0]:
+            if gaps[k] <= limits.same:
+                yield _fault("repeated vertex", (0,), points[k + 1], gaps[k], k + 1)
+            elif len(points) > 2:
+                yield _fault("short segment", (0,), points[k], gaps[k], k)
         for k in range(1, len(points) - 1):
             if min(gaps[k - 1], gaps[k]) > limits.same:
                 angle = vertex_angle(points, k)
                 if angle < limits.angle_deg:
-                    yield self._fault("hairpin", (i,), points[k], angle, k)
-        if self.lines[i].length < limits.near:
-            yield self._fault("short fracture", (i,), points[0], self.lines[i].length)
-        if not self.shapes[i].is_simple and not self.shapes[i].is_ring:
-            yield self._fault("self-crossing", (i,), self._own_crossing(i), 0.0)
+                    yield _fault("hairpin", (0,), points[k], angle, k)
+        if line.length < limits.near:
+            yield _fault("short fracture", (0,), points[0], line.length)
+        if len(points) > 2 and not shape.is_simple and not shape.is_ring:
+            yield _fault("self-crossing", (0,), self._own_crossing(shape), 0.0)
 
-    def _own_crossing(self, i: int) -> Points:
+    def _own_crossing(self, shape: LineString) -> Points:
         """A place that a line passes twice."""
-        segments = [LineString(ends) for ends in _segments(self.shapes[i])]
+        segments = shapely.linestrings(_segments(shape))
         for k, first in enumerate(segments):
-            for second in segments[k + 2 :]:
-                if first.intersects(second):
-                    return np.asarray(shapely.get_coordinates(first.intersection(second))[0])
-        return np.asarray(self.lines[i].points[0])
+            met = segments[k + 2 :][shapely.intersects(first, segments[k + 2 :])]
+            if len(met):
+                return np.asarray(shapely.get_coordinates(first.intersection(met[0]))[0])
+        return np.asarray(shape.coords[0])
 
-    def _with_body(self, i: int) -> Iterator[Fault]:
-        if self.rim is None or self.body is None:
+    def _with_body(self, line: Line) -> Iterator[Fault]:
+        if self.rim is None or self.inside is None:
             return
-        points, limits, shape = self.lines[i].points, self.limits, self.shapes[i]
-        outside = shape.difference(self.body.buffer(limits.same))
-        if outside.length > limits.same:
-            yield self._fault(
-                "outside",
-                (i,),
-                outside.coords[0]
-                if outside.geom_type == "LineString"
-                else outside.geoms[0].coords[0],
-                outside.length,
-            )
+        points, limits, shape = line.points, self.limits, self.shapes[line]
+        if not self.inside.covers(shape):
+            outside = shape.difference(self.inside)
+            if outside.length > limits.same:
+                first = shapely.get_coordinates(outside)[0]
+                yield _fault("outside", (0,), first, outside.length)
+                return
+        if not shapely.dwithin(shape, self.rim, limits.near):
             return
-        if stretches_beside(shape, self.rim, limits).length > 0.0:
-            place = stretches_beside(shape, self.rim, limits).interpolate(0.5, normalized=True)
-            yield self._fault("overlap", (i,), place.coords[0], place.distance(self.rim))
+        beside = stretches_beside(shape, self.rim, limits)
+        if beside.length > 0.0:
+            place = beside.interpolate(0.5, normalized=True)
+            yield _fault("overlap", (0,), place.coords[0], place.distance(self.rim))
             return
-        for k, point in enumerate(points):
-            depth = Point(point).distance(self.rim)
+        flat = _flat_meeting(shape, self.rim, points, limits)
+        if flat is not None:
+            yield _fault("overlap", (0,), flat, 0.0)
+            return
+        corners = np.array(self.rim.coords)
+        for k, depth in enumerate(shapely.distance(shapely.points(points), self.rim)):
             is_end = k in (0, len(points) - 1)
             if limits.same < depth < limits.near:
                 kind = "near end" if is_end else "near vertex"
-                yield self._fault(kind, (i,), point, depth, k)
+                yield _fault(kind, (0,), points[k], depth, k)
             elif depth <= limits.same and not is_end:
-                yield self._fault("inner vertex", (i,), point, depth, k)
+                yield _fault("inner vertex", (0,), points[k], depth, k)
             elif depth <= limits.same:
-                corners = np.array(self.rim.coords)
-                gap = float(np.hypot(*(corners - point).T).min())
+                gap = float(np.hypot(*(corners - points[k]).T).min())
                 if limits.same < gap < limits.near:
-                    yield self._fault("near corner", (i,), point, gap, k)
+                    yield _fault("near corner", (0,), points[k], gap, k)
 
-    def _run_together(self, i: int, j: int) -> Iterator[Fault]:
+    def _examine(self, first: Line, second: Line) -> _Pair:
+        lines = (first, second)
+        met = shapely.get_coordinates(self.shapes[first].intersection(self.shapes[second]))
+        together = self._run_together(lines, met)
+        if together is not None:
+            return _Pair((together,), _NOWHERE)
+        places = shapely.points(met)
+        along = tuple(np.atleast_1d(self.shapes[line].project(places)) for line in lines)
+        pair = _Pair((), (along[0], along[1]))
+        near = [shapely.distance(shapely.points(lines[k].points), self.shapes[lines[1 - k]])
+                for k in (0, 1)]  # fmt: skip
+        faults = [*self._ends_and_vertices(lines, 0, pair, near),
+                  *self._ends_and_vertices(lines, 1, pair, near)]  # fmt: skip
+        return replace(pair, faults=tuple(faults))
+
+    def _run_together(self, lines: tuple[Line, Line], met: Points) -> Fault | None:
         # of two the shorter one gives way; of two alike the later one
-        is_shorter = self.lines[i].length < self.lines[j].length - self.limits.near
-        shorter, longer = (i, j) if is_shorter else (j, i)
-        shape, other = self.shapes[shorter], self.shapes[longer]
+        is_shorter = lines[0].length < lines[1].length - self.limits.near
+        roles = (0, 1) if is_shorter else (1, 0)
+        shape, other = (self.shapes[lines[k]] for k in roles)
         beside = stretches_beside(shape, other, self.limits)
         if beside.length == 0.0:
-            return
+            places = np.vstack([met, *(line.points for line in lines)])
+            flat = _flat_meeting(shape, other, places, self.limits)
+            return None if flat is None else _fault("overlap", roles, flat, 0.0)
+        if len(met) == 1:
+            ends = np.vstack([line.points[[0, -1]] for line in lines])
+            if np.hypot(*(ends - met[0]).T).min() >= self.limits.near:
+                angles = _angles_deg(*(_segments_at(line, met[0]) for line in (shape, other)))
+                return _fault("flat crossing", roles, met[0], angles.min())
         place = shapely.get_coordinates(beside)[0]
         if shape.difference(other.buffer(self.limits.near)).length <= self.limits.same:
-            size = float(shape.hausdorff_distance(other))
-            yield self._fault("duplicate", (shorter, longer), place, size)
-        else:
-            yield self._fault("overlap", (shorter, longer), place, beside.distance(other))
+            return _fault("duplicate", roles, place, float(shape.hausdorff_distance(other)))
+        return _fault("overlap", roles, place, beside.distance(other))
 
-    def _ends_and_vertices(self, i: int, j: int) -> Iterator[Fault]:
-        points, limits, other = self.lines[i].points, self.limits, self.shapes[j]
+    def _ends_and_vertices(
+        self, lines: tuple[Line, Line], own: int, pair: _Pair, near: Sequence[NDArray[np.float64]]
+    ) -> Iterator[Fault]:
+        limits, points = self.limits, lines[own].points
         last = len(points) - 1
-        for k, point in enumerate(points):
-            gap = Point(point).distance(other)
+        roles = (own, 1 - own)
+        for k in np.nonzero((near[own] > limits.same) & (near[own] < limits.near))[0]:
             if k not in (0, last):
-                if limits.same < gap < limits.near:
-                    yield self._fault("near vertex", (i, j), point, gap, k)
-                continue
+                yield _fault("near vertex", roles, points[k], near[own][k], k)
+        for k in (0, last):
+            gap = near[own][k]
             if gap <= limits.same:
                 continue
-            stub = self._stub(i, j, is_start=k == 0)
+            stub = self._stub(lines[own], pair.along[own], is_start=k == 0)
             if limits.same < stub < limits.near:
-                yield self._fault("end past", (i, j), point, stub, k)
-            elif gap < limits.near and not self._is_told(i, j, point):
-                yield self._fault("near end", (i, j), point, gap, k)
+                yield _fault("end past", roles, points[k], stub, k)
+            elif gap < limits.near and not (own == 0 and self._is_told(lines, pair, points[k], near)):
+                yield _fault("near end", roles, points[k], gap, k)
 
-    def _is_told(self, i: int, j: int, point: Points) -> bool:
+    def _is_told(
+        self, lines: tuple[Line, Line], pair: _Pair, end: Points, near: Sequence[NDArray[np.float64]]
+    ) -> bool:
         """Two ends that are near to each other are told once, as of the later fracture."""
-        if i > j:
-            return False
-        ends = self.lines[j].points[[0, -1]]
-        gaps = np.hypot(*(ends - point).T)
-        nearest = float(gaps.min())
-        end = ends[int(gaps.argmin())]
-        return (
-            nearest < self.limits.near
-            and Point(end).distance(self.shapes[i]) > self.limits.same
-            and self._stub(j, i, int(gaps.argmin()) == 0) >= self.limits.near
+        gaps = np.hypot(*(lines[1].points[[0, -1]] - end).T)
+        nearest = int(gaps.argmin())
+        return bool(
+            gaps[nearest] < self.limits.near
+            and near[1][-nearest] > self.limits.same
+            and self._stub(lines[1], pair.along[1], nearest == 0) >= self.limits.near
         )
 
-    def _stub(self, i: int, j: int, is_start: bool) -> float:
+    def _stub(self, line: Line, along: Points, is_start: bool) -> float:
         """Length of what a line has behind the last place where it crosses another one [m]."""
-        met = shapely.get_coordinates(self.shapes[i].intersection(self.shapes[j]))
-        if len(met) == 0:
+        if len(along) == 0:
             return math.inf
-        places = [self.shapes[i].project(Point(place)) for place in met]
-        return float(min(places) if is_start else self.shapes[i].length - max(places))
+        return float(along.min() if is_start else self.shapes[line].length - along.max())
 
-    def _crossings(self, beside: set[tuple[int, int]]) -> Iterator[Fault]:
-        """Places on one line where others cross it, too near to each other or to its vertices."""
-        limits = self.limits
-        met: dict[int, list[tuple[float, int]]] = {}
-        for i, j in self.pairs:
-            if (i, j) in beside:
-                continue
-            for place in shapely.get_coordinates(self.shapes[i].intersection(self.shapes[j])):
-                for own, other in ((i, j), (j, i)):
-                    along = float(self.shapes[own].project(Point(place)))
-                    met.setdefault(own, []).append((along, other))
-        for i, places in met.items():
-            places.sort()
-            for (first, one), (second, other) in pairwise(places):
-                if limits.same < second - first < limits.near:
-                    place = self.shapes[i].interpolate(first).coords[0]
-                    yield self._fault("near crossings", (i, one, other), place, second - first)
+    def _near_crossings(self, line: Line) -> Iterator[tuple[Line, Line, Fault]]:
+        """Places on one line where others cross it, too near to each other."""
+        met = sorted(
+            (
+                (float(place), self._number[other], other)
+                for other, pair in self._pairs[line].items()
+                for place in pair.along[self._number[line] > self._number[other]]
+            ),
+            key=lambda item: item[:2],
+        )
+        for (first, _, one), (second, _, other) in pairwise(met):
+            if self.limits.same < second - first < self.limits.near:
+                place = self.shapes[line].interpolate(first).coords[0]
+                yield one, other, _fault("near crossings", (0,), place, second - first)
 
-    @staticmethod
-    def _fault(
-        kind: str,
-        lines: tuple[int, ...],
-        place: Sequence[float] | Points,
-        size: float,
-        vertex: int = -1,
-    ) -> Fault:
-        return Fault(kind, lines, (float(place[0]), float(place[1])), float(size), vertex)
+
+def _flat_meeting(
+    line: LineString, other: LineString, places: Points, limits: Limits
+) -> Points | None:
+    """One of the places, at which two lines meet at less than the angle, however short."""
+    points = shapely.points(places)
+    is_met = shapely.dwithin(points, line, limits.same) & shapely.dwithin(points, other, limits.same)
+    for place in places[is_met]:
+        ways = [_ways_from(place, shape, limits.same) for shape in (line, other)]
+        sine = ways[0][:, None, 0] * ways[1][None, :, 1] - ways[0][:, None, 1] * ways[1][None, :, 0]
+        angles = np.degrees(np.arctan2(np.abs(sine), ways[0] @ ways[1].T))
+        if (angles < limits.angle_deg).any():
+            return np.asarray(place)
+    return None
+
+
+def _ways_from(place: Points, shape: LineString, same: float) -> Points:
+    """(n, 2) ways from a place of a line to the ends of the segments that it lies on [m]."""
+    segments = _segments(shape)
+    is_there = shapely.dwithin(shapely.linestrings(segments), Point(place), same)
+    ways = segments[is_there].reshape(-1, 2) - place
+    return np.asarray(ways[np.hypot(*ways.T) > same])
+
+
+def _segments_at(shape: LineString, place: Points) -> Points:
+    """The segment of a line that is nearest to a place, (1, 2, 2)."""
+    segments = _segments(shape)
+    nearest = int(shapely.distance(shapely.linestrings(segments), Point(place)).argmin())
+    return segments[nearest : nearest + 1]
+
+
+def _fault(
+    kind: str,
+    lines: tuple[int, ...],
+    place: Sequence[float] | Points,
+    size: float,
+    vertex: int | np.integer = -1,
+) -> Fault:
+    where = (float(place[0]), float(place[1]))
+    return Fault(kind, lines, where, float(size), int(vertex))

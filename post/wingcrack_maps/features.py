@@ -14,9 +14,9 @@ Points: TypeAlias = NDArray[np.float64]
 Attributes: TypeAlias = dict[str, object]
 
 
-@dataclass
+@dataclass(eq=False)
 class Line:
-    """A fracture."""
+    """A fracture; it is never changed, but replaced."""
 
     name: str
     points: Points  # (n, 2) vertices from one end to the other [m]
@@ -55,6 +55,9 @@ class Map:
     lines: list[Line] = field(default_factory=list)
     areas: list[Area] = field(default_factory=list)
     notes: list[Note] = field(default_factory=list)
+    system: str = ""  # coordinate system that the map states
+    # places nearer than this are one [m]: numbers of the map's size have no more digits
+    precision: float = 0.0
 
     @property
     def features(self) -> list[Line | Area]:

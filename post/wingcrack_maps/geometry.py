@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from shapely.geometry import LineString, Polygon
+import shapely
+from shapely.geometry import LineString, MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from wingcrack.scenes.errors import SceneError
@@ -26,7 +27,7 @@ def add_geometry(
     place in it.
     """
     role = _role(attributes, path, source)
-    parts = list(_parts(geometry))
+    parts = list(_parts(_joined(geometry, content, source)))
     if not parts:
         content.note("empty", f"{source} has an empty geometry and gives nothing")
     for number, part in enumerate(parts, start=1):
@@ -46,6 +47,19 @@ def add_geometry(
             _add_polygon(content, part, Area(name, _no_points(), role, attributes), path, source)
         else:
             content.note("left out", f"{source} is a {part.geom_type}, no line and no polygon")
+
+
+def _joined(geometry: BaseGeometry, content: Map, source: str) -> BaseGeometry:
+    """Make one line of parts of a geometry that go on where others end."""
+    if not isinstance(geometry, MultiLineString):
+        return geometry
+    joined = shapely.line_merge(geometry)
+    fewer = len(geometry.geoms) - shapely.get_num_geometries(joined)
+    if fewer > 0:
+        content.note("joined", f"{source}: {fewer + 1} parts go on where others end: one fracture"
+                     if fewer + 1 == len(geometry.geoms) else
+                     f"{source}: parts go on where others end, {fewer} fewer")  # fmt: skip
+    return joined
 
 
 def _add_polygon(content: Map, part: Polygon, area: Area, path: str, source: str) -> None:

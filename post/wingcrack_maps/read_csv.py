@@ -12,7 +12,7 @@ from wingcrack.figures.text_files import csv_rows
 from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Attributes, Line, Map
 from wingcrack_maps.geometry import add_geometry, name_of
-from wingcrack_maps.units import refuse_degrees
+from wingcrack_maps.units import in_degrees
 
 _DEEPEST = 100  # brackets within one another: GEOS ends the process at some thousand
 
@@ -31,7 +31,11 @@ def geometry_of(text: str, path: str, source: str) -> shapely.Geometry:
     """Read one geometry."""
     head, separator, rest = text.partition(";")
     if separator and head.upper().startswith("SRID="):
-        refuse_degrees(path, head)
+        if in_degrees(head):
+            raise SceneError(
+                f"{path}: its coordinate system {head} is in degrees of longitude and latitude,"
+                " but lengths are needed: project the map first, to UTM for instance"
+            )
         text = rest
     opened = accumulate((mark == "(") - (mark == ")") for mark in text if mark in "()")
     try:
@@ -47,7 +51,17 @@ def geometry_of(text: str, path: str, source: str) -> shapely.Geometry:
 
 
 _GEOMETRY = ("wkt", "geometry", "geom", "the_geom")
-_SEGMENT = (("x1", "y1", "x2", "y2"), ("x_1", "y_1", "x_2", "y_2"))
+_SEGMENT = ("x1", "y1", "x2", "y2")
+# names that other programs give to the columns
+_ALIASES = {
+    **dict(zip(("x_1", "y_1", "x_2", "y_2"), _SEGMENT, strict=True)),
+    **dict(zip(("start_x", "start_y", "end_x", "end_y"), _SEGMENT, strict=True)),
+    "pt_x": "x",
+    "pt_y": "y",
+    "fid": "id",
+}
+# tables without a row of names, by the number of columns
+_BARE = {3: ("id", "x", "y"), 4: _SEGMENT, 5: ("id", *_SEGMENT)}
 _LAYOUTS = (
     "x1, y1, x2, y2 (a straight fracture a row), name, x, y (a vertex a row) or wkt (a geometry"
     " a row)"
@@ -58,21 +72,33 @@ def read_csv(text: str, path: str) -> Map:
     """Read a table whose first row names the columns.
 
     Columns are parted by commas, semicolons or tabs, whichever the first row has; where it is not
-    commas, numbers may have a decimal comma.
+    commas, numbers may have a decimal comma. The names may be in a comment (#), or missing where
+    all columns are numbers.
     """
-    rows = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
+    rows: list[tuple[int, str]] = []
+    comment = ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.lstrip().startswith("#"):
+            comment = comment if rows else line.lstrip("# \t")
+        elif line.strip():
+            rows.append((number, line))
     if not rows:
         raise SceneError(f"{path}: the table is empty; it must have a row of column names")
     separator = next((mark for mark in "\t;" if mark in rows[0][1]), ",")
     header = csv_rows([rows[0][1]], separator)[0]
+    found = Map()
+    if all(isinstance(_plain(word, separator), float) for word in header):
+        named = csv_rows([comment], separator)[0] if comment else []
+        if len(named) != len(header):
+            named = list(_BARE.get(len(header), ()))
+            found.note("no column names", f"the columns are taken as {', '.join(named)}")
+        if named:
+            header, rows = named, [rows[0], *rows]
     repeated = {word for word in header if word and header.count(word) > 1}
     if repeated:
         raise SceneError(f"{path}: the column '{sorted(repeated)[0]}' is given twice")
-    table = _Table(path, {word.lower(): k for k, word in enumerate(header)}, header, separator)
+    column = {_ALIASES.get(word.lower(), word.lower()): k for k, word in enumerate(header)}
+    table = _Table(path, column, header, separator, found)
     for number, line in rows[1:]:
         table.add(number, csv_rows([line], separator)[0])
     return table.finish()
@@ -81,14 +107,16 @@ def read_csv(text: str, path: str) -> Map:
 class _Table:
     """What the rows so far have given."""
 
-    def __init__(self, path: str, column: dict[str, int], header: list[str], mark: str) -> None:
+    def __init__(
+        self, path: str, column: dict[str, int], header: list[str], mark: str, found: Map
+    ) -> None:
         self.path, self.column, self.header, self.mark = path, column, header, mark
-        self.found = Map()
+        self.found = found
         self.vertices: dict[str, list[tuple[float, float]]] = {}
         self.first: dict[str, tuple[Attributes, str]] = {}
         self.last = ""
         self.geometry = next((word for word in _GEOMETRY if word in column), "")
-        self.segment = next((words for words in _SEGMENT if all(w in column for w in words)), ())
+        self.segment = _SEGMENT if all(word in column for word in _SEGMENT) else ()
         self.name = next((w for w in ("name", "fracture", "label", "id") if w in column), "")
         is_vertices = self.name and {"x", "y"} <= column.keys()
         if not (self.geometry or self.segment or is_vertices):
@@ -109,7 +137,7 @@ class _Table:
         attributes: Attributes = {
             word: _plain(cells[k], self.mark)
             for k, word in enumerate(self.header)
-            if word and word.lower() not in used and cells[k] != ""
+            if word and _ALIASES.get(word.lower(), word.lower()) not in used and cells[k] != ""
         }
         if self.geometry:
             made = geometry_of(cells[self.column[self.geometry]], self.path, source)

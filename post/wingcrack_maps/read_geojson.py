@@ -13,44 +13,31 @@ from wingcrack.figures.text_files import json_value
 from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map
 from wingcrack_maps.geometry import add_geometry
-from wingcrack_maps.units import refuse_degrees
 
 _DEPTHS = {"Point": 0, "MultiPoint": 1, "LineString": 1, "MultiLineString": 2, "Polygon": 2,
            "MultiPolygon": 3}  # fmt: skip
 
 
-def read_geojson(text: str, path: str) -> tuple[Map, bool]:
-    """Read a FeatureCollection, a Feature or a bare geometry.
-
-    Returns
-    -------
-    Map, bool
-        The map in its own unit, and whether it says its coordinate system.
-    """
+def read_geojson(text: str, path: str) -> Map:
+    """Read a FeatureCollection, a Feature or a bare geometry, in its own unit."""
     try:
         content = json_value(text)
     except ValueError as reason:
         raise SceneError(f"{path}: not a JSON file: {reason}") from None
     if not isinstance(content, dict) or "type" not in content:
         raise SceneError(f'{path}: no GeoJSON, which is an object with a "type"')
-    system = _system(content, path)
-    found = Map()
+    found = Map(system=_system(content))
     for number, feature in enumerate(_features(content, path), start=1):
         _add(found, feature, path, f"feature {number}")
-    if system:
-        words = f"the map has {system}; lengths have the unit of --unit, by default m"
-        found.note("coordinate system", words)
-    return found, bool(system)
+    return found
 
 
-def _system(content: dict[str, Any], path: str) -> str:
+def _system(content: dict[str, Any]) -> str:
     entry = content.get("crs")
     if not entry:
         return ""
     named = entry.get("properties", {}) if isinstance(entry, dict) else {}
-    system = str(named.get("name") or named.get("code") or entry)
-    refuse_degrees(path, system)
-    return system
+    return str(named.get("name") or named.get("code") or entry)
 
 
 def _features(content: dict[str, Any], path: str) -> list[Any]:

@@ -9,11 +9,14 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Point, Polygon
 
-from wingcrack_maps.faults import BODY, HARMLESS, Fault, Limits, find_faults
+from wingcrack_maps.faults import BODY, HARMLESS, Fault, Limits, Search
 from wingcrack_maps.features import Line, Points
 
-_ROUNDS = 80
-_PATIENCE = 25  # rounds after which a place is cut out, where moving goes round in circles
+_ROUNDS = 2000
+# Where the repairs of a fracture, and of the one that it is a part of, go round in circles: after
+# so many the place is cut out, after twice as many the fracture is removed.
+_PATIENCE = 12
+_MOVED = ("near end", "near vertex", "near crossings", "overlap", "flat crossing", "end past")
 
 
 @dataclass(frozen=True)
@@ -51,10 +54,8 @@ def repair(
     """
     network = _Network(list(lines), body, limits, ends)
     done: list[Repair] = []
-    for number in range(_ROUNDS):
-        if number == _PATIENCE:
-            network.give_up_moving()
-        faults = [f for f in find_faults(network.lines, body, limits) if f.kind not in HARMLESS]
+    for _ in range(_ROUNDS):
+        faults = [f for f in network.search.faults(network.lines) if f.kind not in HARMLESS]
         tell(len(done), len(faults))
         made = network.round(faults)
         done.extend(made)
@@ -67,7 +68,9 @@ class _Network:
     def __init__(self, lines: list[Line], body: Polygon | None, limits: Limits, ends: str) -> None:
         self.lines, self.body, self.limits, self.ends = lines, body, limits, ends
         self.names = {line.name for line in lines}
+        self.search = Search(body, limits)
         self.after: dict[int, list[Line]] = {}
+        self.tries: dict[Line, int] = {}  # repairs that led to a line
         self.ways: dict[str, Callable[[Fault], str]] = {
             "outside": self._clip,
             "repeated vertex": self._drop_vertex,
@@ -76,6 +79,7 @@ class _Network:
             "short fracture": self._remove,
             "duplicate": self._remove,
             "overlap": self._take_out,
+            "flat crossing": self._take_out,
             "end past": self._cut_stub,
             "near end": self._mend_end,
             "near vertex": self._move_vertex,
@@ -83,11 +87,6 @@ class _Network:
             "near corner": self._to_corner,
             "inner vertex": self._split,
         }
-
-    def give_up_moving(self) -> None:
-        """From now on cut places out instead of moving anything there."""
-        for kind in ("near end", "near vertex", "near crossings", "overlap", "end past"):
-            self.ways[kind] = self._cut_out
 
     def round(self, faults: Sequence[Fault]) -> list[Repair]:
         """Repair faults of one kind, each fracture once; the rest comes when all is examined."""
@@ -99,7 +98,7 @@ class _Network:
                 if fault.kind != kind or touched.intersection(fault.lines):
                     continue
                 before = self._whole(fault.lines)
-                what = self.ways[kind](fault)
+                what = self._way(fault)(fault)
                 if what:
                     touched.update(fault.lines)
                     change = self._whole(fault.lines) - before
@@ -109,8 +108,16 @@ class _Network:
         kept: list[Line] = []
         for i, line in enumerate(self.lines):
             kept.extend(self.after.get(i, [line]))
+            for part in self.after.get(i, ()):
+                self.tries[part] = self.tries.get(line, 0) + 1
         self.lines = kept
         return made
+
+    def _way(self, fault: Fault) -> Callable[[Fault], str]:
+        tries = max(self.tries.get(self.lines[i], 0) for i in fault.lines)
+        if tries > 2 * _PATIENCE:
+            return self._remove_shorter
+        return self._cut_out if tries > _PATIENCE and fault.kind in _MOVED else self.ways[fault.kind]
 
     def _whole(self, indices: Sequence[int]) -> float:
         return sum(line.length for i in indices for line in self.after.get(i, [self.lines[i]]))
@@ -123,7 +130,7 @@ class _Network:
         return Repair(fault.kind, names, fault.place, fault.size, what, change)
 
     def _shape(self, i: int) -> LineString:
-        return LineString(self.lines[i].points)
+        return self.search.shapes[self.lines[i]]
 
     def _other(self, fault: Fault) -> LineString:
         """What the first fracture of a fault is too near to."""
@@ -144,13 +151,24 @@ class _Network:
 
     def _cut_out(self, fault: Fault) -> str:
         """Cut the place out of the shorter one, which leaves a gap of some distances."""
-        i = min(fault.lines, key=lambda k: self.lines[k].length)
+        i = self._shorter(fault)
         hole = Point(fault.place).buffer(2.0 * self.limits.near)
         return f"place cut out: {self._keep(i, self._shape(i).difference(hole))}"
+
+    def _shorter(self, fault: Fault) -> int:
+        return min(fault.lines, key=lambda k: self.lines[k].length)
 
     def _remove(self, fault: Fault) -> str:
         self.after[fault.lines[0]] = []
         return f"removed, {self.lines[fault.lines[0]].length:.6g} m long"
+
+    def _remove_shorter(self, fault: Fault) -> str:
+        i = self._shorter(fault)
+        self.after[i] = []
+        return (
+            f"{self.lines[i].name} removed, {self.lines[i].length:.6g} m long:"
+            f" {self.tries.get(self.lines[i], 0)} repairs there did not end"
+        )
 
     def _drop_vertex(self, fault: Fault) -> str:
         """Leave out an inner vertex of a short segment, one that no other fracture meets first."""
@@ -161,16 +179,9 @@ class _Network:
         inner = [k for k in (first, first + 1) if 0 < k < len(points) - 1]
         if not inner:
             return self._remove(fault)
-        vertex = min(inner, key=lambda k: self._is_met(i, points[k]))
+        vertex = min(inner, key=lambda k: self.search.is_met(self.lines[i], points[k]))
         self._set(i, np.delete(points, vertex, axis=0))
         return f"its vertex {vertex + 1} left out"
-
-    def _is_met(self, i: int, place: Points) -> bool:
-        return any(
-            Point(place).distance(LineString(other.points)) <= self.limits.same
-            for j, other in enumerate(self.lines)
-            if j != i
-        )
 
     def _split(self, fault: Fault) -> str:
         points = self.lines[fault.lines[0]].points

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from wingcrack_maps.faults import BODY, HARMLESS, KINDS, Fault
+from wingcrack_maps.faults import ANGLES, BODY, HARMLESS, KINDS, Fault
 from wingcrack_maps.features import Line, Note
 from wingcrack_maps.repair import Repair
 
@@ -72,7 +72,7 @@ class Report:
 
 
 def _size(kind: str, size: float) -> str:
-    return f"{size:.4g} degree" if kind == "hairpin" else f"{size:.4g} m"
+    return f"{size:.4g} degree" if kind in ANGLES else f"{size:.4g} m"
 
 
 def terminal_text(report: Report) -> str:

@@ -10,6 +10,9 @@ from wingcrack.runs.units import FARTHEST
 from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Map, Points
 
+_DIGITS = 2.0**-50
+"""Of numbers in double precision, with room for a few operations on them."""
+
 METRES = {"m": 1.0, "km": 1000.0, "ft": 0.3048, "cm": 0.01, "mm": 0.001}
 
 # Projected systems among the numbers that the EPSG registry otherwise gives to geographic ones.
@@ -19,16 +22,26 @@ _PROJECTED = (range(4087, 4089), range(4217, 4218), range(4399, 4464), range(448
               range(4839, 4840), range(4855, 4881))  # fmt: skip
 
 
-def refuse_degrees(path: str, system: str) -> None:
-    """Refuse a coordinate system in degrees, by its name.
+def refuse_degrees(path: str, system: str, content: Map) -> None:
+    """Refuse a map in degrees with the system that it may be projected to."""
+    zone = utm_zone(np.vstack(_all_points(content)))
+    raise SceneError(
+        f"{path}: its coordinate system {system} is in degrees of longitude and latitude, but"
+        f" lengths are needed: --crs {zone} projects it (UTM, in metres), as --crs utm does"
+    )
 
-    `system`: as ``urn:ogc:def:crs:EPSG::4326``, ``EPSG:25832`` or ``CRS84``.
+
+def utm_zone(places: Points) -> str:
+    """The UTM zone of places in degrees, by its name in the EPSG registry.
+
+    Examples
+    --------
+    >>> utm_zone(np.array([[5.3, 60.4]])), utm_zone(np.array([[-70.0, -33.0]]))
+    ('EPSG:32631', 'EPSG:32719')
     """
-    if in_degrees(system):
-        raise SceneError(
-            f"{path}: its coordinate system {system} is in degrees of longitude and latitude, but"
-            " lengths are needed: project the map first, to UTM for instance"
-        )
+    longitude, latitude = places.mean(axis=0)
+    zone = int((longitude + 180.0) // 6.0) % 60 + 1
+    return f"EPSG:{(32600 if latitude >= 0.0 else 32700) + zone}"
 
 
 def in_degrees(system: str) -> bool:
@@ -59,6 +72,8 @@ def scale(content: Map, unit: str, path: str) -> None:
 
     Raises `SceneError` if one is farther from the origin than the earth is wide.
     """
+    places = np.abs(np.vstack(_all_points(content)))
+    content.precision = _DIGITS * float(places.max()) * METRES[unit]
     for item in content.features:
         item.points = item.points * METRES[unit]
         if np.abs(item.points).max() > FARTHEST:

@@ -16,7 +16,8 @@ KINDS = {
     "mechanics": "no fluid: a crack grows under tension",
     "column": "no fractures: consolidation of a column",
 }
-ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo")
+ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo",
+           ".shp", ".gpkg", ".dxf", ".fgb", ".gml", ".kml")  # fmt: skip
 UNITS = ("m", "km", "ft", "cm", "mm")
 _OVERWRITE = flag("--overwrite", "replace files that are there")
 _COMMON = (  # of what makes scenes of fractures
@@ -83,6 +84,12 @@ def new(given: SimpleNamespace) -> None:
     Parameter("map", "MAP", read=Path, required=True),
     choice("--unit", UNITS, "unit of the map's coordinates"),
     Parameter(
+        "--crs",
+        "SYSTEM",
+        "project the map to this coordinate system in metres, as EPSG:25832 or utm",
+    ),
+    Parameter("--layer", "NAME", "the layer to read (default: all)"),
+    Parameter(
         "--origin",
         "X,Y",
         "place of the map [m] that becomes (0, 0): X,Y, or centre or corner of the map",
@@ -98,6 +105,7 @@ The file's ending says what it is:
   .csv .txt       a table with columns x1, y1, x2, y2 (a fracture a row), name, x, y (a vertex a
                   row) or wkt; parted by commas, semicolons or tabs
   .wkt            well-known text, a geometry a line
+  .shp .gpkg .dxf .fgb .gml .kml   read by GDAL, which the first such call installs
   .geo .msh       gmsh: physical curves are fractures, physical surfaces body and regions; nothing
                   is executed: of a .geo file straight lines are read, of the rest its .msh file
 Attributes with the name of an entry of &fracture (friction, aperture, toughness ...) become that
