@@ -15,6 +15,7 @@ from matplotlib.colors import (
     TwoSlopeNorm,
 )
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
@@ -73,6 +74,8 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     fields, label = [frame.matrix.cell["pressure"] for frame in frames], "pore pressure"
     if np.ptp(first.matrix.cell["pressure"]) > _DEPTH * max(map(_largest, changes)):
         fields, label = changes, f"change of pore pressure since {moment_label(run, first.moment)}"
+        if frames[0].moment == first.moment and len(frames) > 1:  # nothing to see in it
+            frames, fields = frames[1:], fields[1:]
     values = [MEGAPASCAL.of(field) for field in fields]
     norm, colours = _signed_scale(values, label)
     unit = run_length_unit(run)
@@ -111,8 +114,14 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     )
     bar.set_label(f"{label} [MPa]")
     if any(frame.fractures is not None for frame in frames):
-        style.outside_legend(figure, style.state_handles(), len(style.STATES))
+        style.outside_legend(figure, _states(frames), len(style.STATES))
     return figure
+
+
+def _states(frames: Sequence[Frame]) -> list[Line2D]:
+    """Entries of the legend for the states that there are."""
+    numbers = {int(n) for f in frames if f.fractures is not None for n in f.fractures.state}
+    return [item for number, item in enumerate(style.state_handles()) if number in numbers]
 
 
 def _smaller(one: Window | None, other: Window | None) -> Window | None:
@@ -233,7 +242,7 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     set_window(rows[0][0], view, unit)
     style.letter(lettered)
     if any(frame.fractures is not None for frame in frames):
-        style.outside_legend(figure, style.state_handles(), len(style.STATES))
+        style.outside_legend(figure, _states(frames), len(style.STATES))
     return figure
 
 
