@@ -66,7 +66,7 @@ def do(given):
     return int(os.environ.get("POST_STATUS", "0"))
 
 
-plot = view = study = verify = bench = new = make_scene = do
+plot = view = study = verify = reproduce = bench = new = make_scene = do
 module = os.environ.get("POST_IMPORTS")
 if module:
     __import__(module)

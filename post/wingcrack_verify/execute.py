@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,13 +56,22 @@ class Runner:
     def run_all(
         self, jobs: Iterable[Job], progress: Callable[[Job, Outcome], None]
     ) -> dict[tuple[str, str], Outcome]:
-        """Outcome of each job by case and run; `progress` is called with each as it ends."""
+        """Outcome of each job by case and run; `progress` is called with each as it ends.
+
+        Another call with the same cache waits: each would remove the folders of the other's runs.
+        """
         listed = list(jobs)
-        outcomes = self._pool.run_all(
-            range(len(listed)),
-            lambda number: self.run(listed[number]),
-            lambda number, outcome: progress(listed[number], outcome),
-        )
+        self._cache.mkdir(parents=True, exist_ok=True)
+        handle = os.open(self._cache, os.O_RDONLY)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX)
+            outcomes = self._pool.run_all(
+                range(len(listed)),
+                lambda number: self.run(listed[number]),
+                lambda number, outcome: progress(listed[number], outcome),
+            )
+        finally:
+            os.close(handle)
         return {
             (listed[number].case, listed[number].run.name): outcome
             for number, outcome in outcomes.items()

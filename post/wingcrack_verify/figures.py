@@ -250,6 +250,35 @@ def requested_drawing(drawn: DrawnFigure) -> Drawing | None:
 
 
 @styled
+def numbers_drawing(title: str, points: Sequence[Any]) -> Drawing:
+    """A curve of printed numbers: the thesis', those of an experiment, ours and the exact ones."""
+    figure, axes = _new()
+    x = np.array([point.number.x for point in points])
+    curves = {
+        "exact": [point.exact for point in points],
+        "thesis": [point.number.thesis for point in points],
+        "measured": [point.number.measured for point in points],
+        "ours": [point.ours for point in points],
+    }
+    for index, (label, found) in enumerate(curves.items()):
+        values = np.array([np.nan if value is None else value for value in found])
+        if not np.isfinite(values).any():
+            continue
+        look: dict[str, Any] = {"color": "black", "linewidth": 0.8}
+        if label != "exact":
+            look = {"color": CYCLE[index - 1], "linestyle": "none", "marker": MARKERS[index]}
+            look |= {"fillstyle": "none", "markersize": 5}
+        axes.plot(x[np.isfinite(values)], values[np.isfinite(values)], label=label, **look)
+    if float(x.min()) > 0.0 and float(x.max()) > 20.0 * float(x.min()):
+        axes.set_xscale("log")
+        _plain_logs(axes)
+    said = points[0].number
+    axes.set(xlabel=said.x_label, ylabel=_wrapped(f"{title} [{said.unit}]"))
+    _legend(figure, axes)
+    return _finish(figure, title, "")
+
+
+@styled
 def map_drawing(report: MapReport) -> Drawing:
     """Mean Newton iterations over two parameters; a cross where the run did not converge."""
     chart = report.chart

@@ -52,28 +52,37 @@ def page_text(
         }
         for name, picture in pictures.items()
     }
+    return (
+        templates()
+        .get_template("report.html.j2")
+        .render(
+            record=record,
+            texts={name: readme_html(path, folder) for name, path in judged.folders.items()},
+            links={name: os.path.relpath(path, folder) for name, path in judged.folders.items()},
+            items={item["name"]: item for item in (*record["cases"], *record["stability"])},
+            figures=figures,
+            shared=sheet.definitions(),
+            columns=_COLUMNS | {"settings": _setting_columns(record)},
+            script=(_TEMPLATES / "report.js").read_text(encoding="utf-8"),
+        )
+    )
+
+
+def templates() -> jinja2.Environment:
+    """Templates of pages, with the filters that they use."""
     loader = jinja2.FileSystemLoader(_TEMPLATES)
-    templates = jinja2.Environment(
+    found = jinja2.Environment(
         loader=loader,
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    templates.filters["number"] = number_text
-    templates.filters["slug"] = slug
-    templates.filters["anchor"] = anchor
-    templates.filters["shortened"] = shortened
-    return templates.get_template("report.html.j2").render(
-        record=record,
-        texts={name: readme_html(path, folder) for name, path in judged.folders.items()},
-        links={name: os.path.relpath(path, folder) for name, path in judged.folders.items()},
-        items={item["name"]: item for item in (*record["cases"], *record["stability"])},
-        figures=figures,
-        shared=sheet.definitions(),
-        columns=_COLUMNS | {"settings": _setting_columns(record)},
-        script=(_TEMPLATES / "report.js").read_text(encoding="utf-8"),
-    )
+    found.filters["number"] = number_text
+    found.filters["slug"] = slug
+    found.filters["anchor"] = anchor
+    found.filters["shortened"] = shortened
+    return found
 
 
 def _setting_columns(record: dict[str, Any]) -> tuple[str, ...]:

@@ -103,7 +103,10 @@ def test_stress_maps_show_mean_and_shear(loaded: Run) -> None:
     ratio = 0.5 * (stress[:, 0] + stress[:, 1]) / drawn
     assert ratio == pytest.approx(ratio[0])  # one unit
     low, high = field.get_clim()
-    assert low == -high
+    assert low < high
+    every = [np.asarray(_field(axes).get_array()) for axes in panels[:6]]
+    assert min(values.min() for values in every) <= 0.98 * low  # little room beyond
+    assert 1.02 * high <= max(values.max() for values in every)
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert names == list(style.STATES)
 

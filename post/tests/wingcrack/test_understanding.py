@@ -55,6 +55,7 @@ def understood(way: str, words: list[str], place: Path) -> tuple[int, str, str]:
         ["import", str(SCENE.parents[1] / "examples" / "outcrop.geojson"), "--set", "friction=1"],
         ["network", *LAWS, "--out", "n.nml", "--distance", "1"],
         ["verify", "--quick", "onset_c1"],
+        ["reproduce", "paper_b", "--quick"],
         ["bench", "b1", "--repeat", "5"],
         ["test", "mypy", "ruff"],
         ["build", "--debug"],

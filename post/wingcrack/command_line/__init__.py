@@ -33,7 +33,16 @@ example:
 _MODULES = {
     "run_commands": ("run", "check", "plot", "analyse", "view", "study"),
     "scene_commands": ("new", "import", "network"),
-    "developer_commands": ("verify", "bench", "test", "build", "format", "lint", "docs"),
+    "developer_commands": (
+        "verify",
+        "reproduce",
+        "bench",
+        "test",
+        "build",
+        "format",
+        "lint",
+        "docs",
+    ),
 }
 _NAMED = {"import": "import_map", "format": "format_sources"}
 _PLACES = {

@@ -51,6 +51,50 @@ def verify(given: SimpleNamespace) -> None:
         raise UsageError(f"the report cannot go to {given.report}, which is a file")
 
 
+_PAPERS = ("paper_a", "paper_b", "paper_c", "paper_d")
+
+
+@command(
+    "reproduce",
+    "wingcrack_verify.reproduce:reproduce",
+    Parameter("paper", "|".join(_PAPERS), required=True),
+    Parameter("--out", "DIR", "for the results (default: out/PAPER)", Path),
+    flag("--quick", "some of the numbers and figures, in seconds"),
+    Parameter("--jobs", "N", "runs at a time (2)", whole(1, 64), 2),
+    *(
+        Parameter(name, "DIR", help, absolute, TOP / path)
+        for name, path, help in (  # noqa: A001
+            ("--papers", "inputs/papers", "where the files of the papers are"),
+            ("--cases", "verification", "where the cases are, whose runs are used"),
+            ("--build", "build/release", "where the solver was built"),
+            ("--cache", "build/verification", "where the files of the runs are kept"),
+        )
+    ),
+    about="""\
+Runs all scenes and studies of a paper of the thesis (Dang 2023), draws its figures, and writes a
+table of every number that it prints: the thesis' value, that of an experiment where it quotes one,
+ours with its stated error, and the exact one where it is known (docs/reproduce.md). Results are
+index.html, table.csv, figures/ and studies/. Runs of an earlier call or of `verify` are not
+repeated.
+""",
+    statuses="""\
+0 done; 1 a run, a number or a figure failed (the last lines say which); 2 bad usage; 3 not
+built; 130 interrupted: what is done is kept.""",
+    example="""\
+./wingcrack reproduce paper_b
+./wingcrack reproduce paper_c --quick --out /tmp/paper_c
+""",
+)
+def reproduce(given: SimpleNamespace) -> None:
+    """Reproduce a paper of the thesis: scenes, studies, figures, printed numbers."""
+    if given.paper not in _PAPERS:
+        raise UsageError(f"there is no paper '{given.paper}' (there are: {', '.join(_PAPERS)})")
+    name = given.paper + ("_quick" if given.quick else "")
+    given.out = (given.out or Path("out") / name).resolve()
+    if given.out.exists() and not given.out.is_dir():
+        raise UsageError(f"results cannot go to {given.out}, which is a file")
+
+
 @command(
     "bench",
     "wingcrack_verify.bench.cli:bench",

@@ -158,7 +158,7 @@ def _page(run: Run, record: Drawn, way: Sequence[str]) -> Outcome:
     return Outcome("index", tuple(files))
 
 
-def figure_of(run: Run, name: str) -> Figure:
+def figure_of(run: Run, name: str, times_s: Sequence[float] = ()) -> Figure:
     """Give one figure by the name of its files, as ``story`` or ``fracture_1``.
 
     Raises `AbsentError` if the run does not hold what it needs, `RunError` if there is no figure of
@@ -169,7 +169,7 @@ def figure_of(run: Run, name: str) -> Figure:
             continue
         if not figures.several and name != figures.name:
             continue
-        for label, figure in figures.draw(run, ()):
+        for label, figure in figures.draw(run, times_s):
             if not label or f"{figures.name}_{label}" == name:
                 return figure
     known = (f"{f.name}_NAME" if f.several else f.name for f in _FIGURES)

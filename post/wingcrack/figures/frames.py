@@ -21,11 +21,15 @@ from wingcrack.figures.fields import (
     read_matrix,
 )
 from wingcrack.figures.read import Run
+from wingcrack.figures.scales import ROUND_OFF
 from wingcrack.figures.states import select_states
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.units import Unit
 
+_FEW = 8  # fractures up to which lines are not thinner
+_LINEAR = 0.1  # share of the spread that a plane leaves of a field that is nearly linear
 SMALL = 0.4  # fractures below this share of the body get a closer map
+CHANGED = 0.05  # share of the largest change from which on a cell counts as changed
 SHARE = 0.95  # of the area in view, within the colour scale; stresses at tips have no bound
 
 
@@ -113,9 +117,26 @@ def extent(fields: Sequence[MatrixField]) -> Window:
 def zoom_window(body: Window, fractures: Sequence[FractureField | None]) -> Window | None:
     """Square around all fractures at all times; None if they are large in the body or absent."""
     ends = [f.segments.reshape(-1, 2) for f in fractures if f is not None and len(f.segments)]
-    if not ends:
-        return None
-    points = np.concatenate(ends)
+    return _square(body, np.concatenate(ends)) if ends else None
+
+
+def changed_window(
+    body: Window, frames: Sequence[Frame], changes: Sequence[FloatArray]
+) -> Window | None:
+    """Square around the cells that change by a share of the largest change; None if it is large.
+
+    `changes`: a value per cell of each state.
+    """
+    largest = max(float(np.abs(change).max()) for change in changes)
+    points = [
+        frame.matrix.points[frame.matrix.triangles[np.abs(change) >= CHANGED * largest]]
+        for frame, change in zip(frames, changes, strict=True)
+    ]
+    return _square(body, np.concatenate(points).reshape(-1, 2)) if largest > 0.0 else None
+
+
+def _square(body: Window, points: FloatArray) -> Window | None:
+    """Square with some room around points, inside the body; None if they fill much of it."""
     lower, upper = points.min(axis=0), points.max(axis=0)
     size = float((upper - lower).max())
     width, height = body.x_max - body.x_min, body.y_max - body.y_min
@@ -139,8 +160,52 @@ def value_scale(fields: Sequence[FloatArray]) -> Normalize:
     return Normalize(low, high)
 
 
+def line_width(run: Run, width: float) -> float:
+    """Width of fractures in a map: the thinner the more there are."""
+    count = len((run.network or {}).get("fractures", ()))
+    return width * min(1.0, max(0.3, float(np.sqrt(_FEW / max(count, 1)))))
+
+
+def changes_since(first: Frame, frame: Frame, field: str) -> FloatArray:
+    """Change of a field of the cells since the first state, whose mesh may be another one.
+
+    A first state that is linear in the place, as the hydrostatic one, is taken off exactly.
+    """
+    start, now = first.matrix.cell[field], frame.matrix.cell[field]
+    if np.array_equal(first.matrix.triangles, frame.matrix.triangles):
+        return np.asarray(now - start)
+    middle = first.matrix.points[first.matrix.triangles].mean(axis=1)
+    places = frame.matrix.points[frame.matrix.triangles].mean(axis=1)
+    origin, size = middle.mean(axis=0), max(float(np.ptp(middle)), 1e-300)
+
+    def plane(where: FloatArray) -> FloatArray:
+        return np.column_stack((np.ones(len(where)), (where - origin) / size))
+
+    fit = np.linalg.lstsq(plane(middle), start, rcond=None)[0]
+    rest = start - plane(middle) @ fit
+    if np.abs(rest).max() <= ROUND_OFF * max(float(np.abs(start).max()), 1e-300):
+        return np.asarray(now - plane(places) @ fit)
+    mesh = Triangulation(
+        first.matrix.points[:, 0], first.matrix.points[:, 1], first.matrix.triangles
+    )
+    cell = np.asarray(mesh.get_trifinder()(*places.T), dtype=np.int64)
+    before = start[cell]
+    if float(rest.std()) < _LINEAR * float(start.std()):
+        before = plane(places) @ fit + rest[cell]
+    return np.asarray(np.where(cell < 0, 0.0, now - before))
+
+
+def usual_range(matrix: MatrixField, values: FloatArray, view: Window) -> tuple[float, float]:
+    """Range that most of the area in view keeps to: a few singular cells do not set a scale."""
+    middle = np.median(values)
+    return (
+        float(middle) - usual_limit(matrix, np.minimum(values - middle, 0.0), view),
+        float(middle) + usual_limit(matrix, np.maximum(values - middle, 0.0), view),
+    )
+
+
 def usual_limit(matrix: MatrixField, values: FloatArray, view: Window) -> float:
-    """Size that most of the area in view keeps to: a few singular cells do not set a scale."""
+    """Size that most of the area in view keeps to."""
     corners = matrix.points[matrix.triangles]
     middle = corners.mean(axis=1)
     inside = (middle[:, 0] >= view.x_min) & (middle[:, 0] <= view.x_max)

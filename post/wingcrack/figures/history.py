@@ -35,6 +35,7 @@ _MODES: tuple[_Mode, ...] = (
 _MOST_MARKERS = 25  # per line: more run into each other
 _LEGEND_COLUMNS = 4
 _LONG_LABEL = 34  # characters
+_EARLY = 0.02  # share of the time before growth below which time is logarithmic
 _EQUAL = 0.01  # tips whose curves differ by less, of the largest in the panel, share one line
 
 
@@ -59,11 +60,22 @@ def intensities(run: Run) -> Figure:
     panels = list(figure.subplots(1, len(_MODES)))
     for axes, mode in zip(panels, _MODES, strict=True):
         _draw_mode(axes, table, mode, [rows for _, rows in tips], (time, label), unit)
+        _spread_beginning(axes, run)
     if toughness is not None:
         panels[-1].axhline(float(unit.of(toughness)), color="#555555", linewidth=0.8, ls="--")
     style.letter(panels)
     style.outside_legend(figure, handles, columns)
     return figure
+
+
+def _spread_beginning(axes: Axes, run: Run) -> None:
+    """Logarithmic time where growth begins in the first part of a run with a fluid."""
+    start, moments = growth_start(run), run.history.moments()
+    if has_load(run) or start is None or not 0.0 < start < _EARLY * moments[-1]:
+        return
+    first = float(abscissa(run, moments[moments > 0.0])[0][0])
+    axes.set_xscale("log")
+    axes.set_xlim(left=first)
 
 
 def draw_intensity(axes: Axes, run: Run, quantity: str = "keq") -> list[Artist]:

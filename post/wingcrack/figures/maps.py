@@ -7,8 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Colormap, LinearSegmentedColormap, Normalize
+from matplotlib.colors import (
+    Colormap,
+    LinearSegmentedColormap,
+    ListedColormap,
+    Normalize,
+    TwoSlopeNorm,
+)
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
@@ -18,12 +25,16 @@ from wingcrack.figures.fields import MatrixField
 from wingcrack.figures.frames import (
     Frame,
     Window,
+    changed_window,
+    changes_since,
     draw_field,
     draw_fractures,
     extent,
+    line_width,
+    read_frame,
     read_frames,
     set_window,
-    usual_limit,
+    usual_range,
     value_scale,
     zoom_window,
 )
@@ -36,11 +47,16 @@ from wingcrack.figures.units import MEGAPASCAL, Unit, stress_unit
 
 PANELS_PER_ROW = 3
 DEFAULT_COUNT = 6
+_DEPTH = 0.1  # range of the first state over the largest change from which on changes are drawn
+_ONE_SIGN = 0.02  # share of the larger limit below which the other sign does not count
 
 
 @style.styled
 def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
-    """Draw the pore pressure in chosen states on one colour scale.
+    """Draw the pore pressure in chosen states on one colour scale; its change where depth shows.
+
+    Where the pressure differs from place to place from the start on (depth, gravity), its change
+    since the first written state is drawn, in which the wells are seen.
 
     Fractures that are small in the body get a second panel each, below the whole body. Raises
     `AbsentError` if the run wrote no VTU files, or none with a pressure (mechanics only).
@@ -49,8 +65,19 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     """
     frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_pressure)
     body = extent([frame.matrix for frame in frames])
-    zoom = zoom_window(body, [frame.fractures for frame in frames])
-    norm = value_scale([MEGAPASCAL.of(frame.matrix.cell["pressure"]) for frame in frames])
+    first = frames[0] if wanted_s == () else read_frame(run, 0)
+    changes = [changes_since(first, frame, "pressure") for frame in frames]
+    zoom = _smaller(
+        zoom_window(body, [frame.fractures for frame in frames]),
+        changed_window(body, frames, changes),
+    )
+    fields, label = [frame.matrix.cell["pressure"] for frame in frames], "pore pressure"
+    if np.ptp(first.matrix.cell["pressure"]) > _DEPTH * max(map(_largest, changes)):
+        fields, label = changes, f"change of pore pressure since {moment_label(run, first.moment)}"
+        if frames[0].moment == first.moment and len(frames) > 1:  # nothing to see in it
+            frames, fields = frames[1:], fields[1:]
+    values = [MEGAPASCAL.of(field) for field in fields]
+    norm, colours = _signed_scale(values, label)
     unit = run_length_unit(run)
     columns = min(PANELS_PER_ROW, len(frames))
     bands = -(-len(frames) // columns)
@@ -61,10 +88,9 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
         band, column = divmod(index, columns)
         for depth, view in enumerate(views):
             axes = grid[band * len(views) + depth][column]
-            values = MEGAPASCAL.of(frame.matrix.cell["pressure"])
-            draw_field(axes, frame, values, norm, style.FIELD_COLOURS, unit)
+            draw_field(axes, frame, values[index], norm, colours, unit)
             close = depth == 1 or zoom is None
-            draw_fractures(axes, frame.fractures, 2.2 if close else 1.0, unit)
+            draw_fractures(axes, frame.fractures, line_width(run, 2.2 if close else 1.0), unit)
             set_window(axes, view, unit)
             if depth == 0:
                 axes.set_title(_title(run, frame.moment))
@@ -80,16 +106,48 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     style.letter(lettered)
     drawn = [panel for row in grid for panel in row if panel.collections]
     bar = figure.colorbar(
-        ScalarMappable(norm, style.FIELD_COLOURS),
+        ScalarMappable(norm, colours),
         ax=drawn,
         shrink=0.6 if bands > 1 else 0.9,
         aspect=30,
         pad=0.015,
     )
-    bar.set_label("pore pressure [MPa]")
+    bar.set_label(f"{label} [MPa]")
     if any(frame.fractures is not None for frame in frames):
-        style.outside_legend(figure, style.state_handles(), len(style.STATES))
+        style.outside_legend(figure, _states(frames), len(style.STATES))
     return figure
+
+
+def _states(frames: Sequence[Frame]) -> list[Line2D]:
+    """Entries of the legend for the states that there are."""
+    numbers = {int(n) for f in frames if f.fractures is not None for n in f.fractures.state}
+    return [item for number, item in enumerate(style.state_handles()) if number in numbers]
+
+
+def _smaller(one: Window | None, other: Window | None) -> Window | None:
+    """The narrower of two windows, or the one that there is."""
+    there = [window for window in (one, other) if window is not None]
+    return min(there, key=lambda window: window.x_max - window.x_min, default=None)
+
+
+def _largest(values: FloatArray) -> float:
+    return float(np.abs(values).max())
+
+
+def _signed_scale(values: Sequence[FloatArray], label: str) -> tuple[Normalize, Colormap | str]:
+    """Scale for all states; where the change has both signs, colours tell them apart."""
+    norm = value_scale(values)
+    if not label.startswith("change") or not norm.vmin or not norm.vmin < 0.0 < (norm.vmax or 0.0):
+        return norm, style.FIELD_COLOURS
+    return norm, signed_colours(norm.vmin, norm.vmax or 0.0)
+
+
+def signed_colours(low: float, high: float) -> Colormap | str:
+    """Colours for values between two limits: of both signs those that change at zero."""
+    if not low < 0.0 < high or min(-low, high) < _ONE_SIGN * max(-low, high):
+        return style.FIELD_COLOURS
+    places = TwoSlopeNorm(0.0, low, high)(np.linspace(low, high, 256))
+    return ListedColormap(MEAN_COLOURS(places))
 
 
 def _check_pressure(matrix: MatrixField) -> None:
@@ -158,23 +216,24 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     height = min(_HEIGHT, (width - 1.6) / columns * view.ratio)
     figure = style.new_figure(width, 2 * bands * (height + 0.3) + 0.85)
     rows = figure.subplots(2 * bands, columns, squeeze=False, sharex=True, sharey=True)
-    quantities: tuple[tuple[str, Colormap | str, list[FloatArray]], ...] = (
-        ("mean stress", MEAN_COLOURS, [mean_stress(frame.matrix) for frame in frames]),
-        ("largest shear stress", style.FIELD_COLOURS, [_shear(frame.matrix) for frame in frames]),
+    quantities = (
+        ("mean stress", [mean_stress(frame.matrix) for frame in frames]),
+        ("largest shear stress", [_shear(frame.matrix) for frame in frames]),
     )
     lettered: list[Axes] = []
-    for half, (name, colours, fields) in enumerate(quantities):
+    for half, (name, fields) in enumerate(quantities):
         panels = list(rows[half * bands : (half + 1) * bands].flat)
-        norm, scale = _stress_scale(frames, fields, view, signed=colours == MEAN_COLOURS)
+        norm, scale = _stress_scale(frames, fields, view)
+        colours = signed_colours(float(norm.vmin or 0.0), float(norm.vmax or 0.0))
         for axes, frame, field in zip(panels, frames, fields, strict=False):
             draw_field(axes, frame, scale.of(field), norm, colours, unit)
-            draw_fractures(axes, frame.fractures, 1.1, unit)
+            draw_fractures(axes, frame.fractures, line_width(run, 1.1), unit)
             axes.set_title(moment_label(run, frame.moment, frame.row))
         lettered += panels[: len(frames)]
         bar = figure.colorbar(
             ScalarMappable(norm, colours),
             ax=panels,
-            extend="both" if colours == MEAN_COLOURS else "max",
+            extend="both",
             aspect=20 * bands,
             pad=0.02,
         )
@@ -183,7 +242,7 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     set_window(rows[0][0], view, unit)
     style.letter(lettered)
     if any(frame.fractures is not None for frame in frames):
-        style.outside_legend(figure, style.state_handles(), len(style.STATES))
+        style.outside_legend(figure, _states(frames), len(style.STATES))
     return figure
 
 
@@ -206,14 +265,21 @@ def _check_stress(matrix: MatrixField) -> None:
 
 
 def _stress_scale(
-    frames: Sequence[Frame], fields: Sequence[FloatArray], view: Window, *, signed: bool
+    frames: Sequence[Frame], fields: Sequence[FloatArray], view: Window
 ) -> tuple[Normalize, Unit]:
     """One scale for all panels of a quantity: what most of the area in view keeps to."""
-    limits = (usual_limit(f.matrix, field, view) for f, field in zip(frames, fields, strict=True))
-    limit = max(limits) or 1.0
-    unit = stress_unit(limit)
-    top = float(unit.of(limit))
-    return Normalize(-top if signed else 0.0, top), unit
+    pairs = zip(frames, fields, strict=True)
+    limits = np.array([usual_range(f.matrix, field, view) for f, field in pairs])
+    return stress_norm(float(limits[:, 0].min()), float(limits[:, 1].max()))
+
+
+def stress_norm(low: float, high: float) -> tuple[Normalize, Unit]:
+    """Scale between two stresses [Pa], and its unit; a uniform stress has some room around it."""
+    unit = stress_unit(np.array([low, high]))
+    if not high - low > 1.0e-6 * max(abs(low), abs(high)):
+        room = 0.01 * abs(low) or unit.size
+        low, high = low - room, high + room
+    return Normalize(float(unit.of(low)), float(unit.of(high))), unit
 
 
 def _label_outer(rows: Sequence[Sequence[Axes]], count: int, unit: Unit) -> None:

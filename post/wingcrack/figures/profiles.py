@@ -59,14 +59,24 @@ def fracture_profiles(
     table = needed(run.fractures, "fractures.csv", "the state along fractures")
     labels = table.text("fracture")
     all_labels = fracture_labels(table)
-    chosen = all_labels if every else _foremost_labels(run, all_labels)
+    chosen = all_labels if every else _foremost_labels(run, _eventful(run, table, all_labels))
     for label in chosen:
         yield label, _profile(run, table, label, labels == label, wanted_s)
     if len(chosen) < len(all_labels):
         raise AbsentError(
-            f"{len(all_labels) - len(chosen)} of {len(all_labels)} fractures: they have no well and"
-            " are not among those that have grown or are the longest; --only fractures draws all"
+            f"{len(all_labels) - len(chosen)} of {len(all_labels)} fractures: they stick without a"
+            " well, or others have grown or are longer; --only fractures draws all"
         )
+
+
+def _eventful(run: Run, table: Table, labels: Sequence[str]) -> Sequence[str]:
+    """Labels of fractures that have a well, slip, open or grow; all where none does."""
+    wells = {well.fracture for well in run.scene.wells} if run.scene else set()
+    moved = set(table.text("fracture")[table.text("state") != "stick"].tolist())
+    if run.events is not None and run.events.rows:
+        moved |= set(run.events.text("fracture").tolist())
+    found = [one for one in labels if one in moved or run.fracture_name(one) in wells]
+    return found or labels
 
 
 def _foremost_labels(run: Run, labels: Sequence[str]) -> Sequence[str]:

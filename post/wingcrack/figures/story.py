@@ -187,7 +187,7 @@ def _draw_pressures(axes: Axes, run: Run, wells: Table) -> None:
         colour = style.CYCLE[index % MOST_WELLS]
         axes.plot(time, MEGAPASCAL.of(wells.number("pressure_pa")[rows]), color=colour, label=name)
     axes.set(ylabel="pressure at depth [MPa]", title="pressure of the wells")
-    axes.legend(loc="best", ncols=2)
+    _legend_above(axes)
 
 
 def _draw_injectivity(axes: Axes, run: Run) -> None:
@@ -253,7 +253,15 @@ def _draw_fluid(axes: Axes, run: Run) -> None:
     axes.plot(time, unit.of(given), color="#000000", lw=1.0, label=label)
     axes.set(title="where the fluid is", ylabel=f"volume per thickness [{unit.name}]")
     axes.set_ylim(bottom=min(0.0, float(unit.of(below).min())))
-    axes.legend(loc="upper left")
+    _legend_above(axes)
+
+
+def _legend_above(axes: Axes) -> None:
+    """Legend in two columns, with room for it above what is drawn."""
+    entries = len(axes.get_legend_handles_labels()[0])
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + (0.06 + 0.13 * -(-entries // 2)) * (high - low))
+    axes.legend(loc="upper left", ncols=2)
 
 
 def draw_lengths(axes: Axes, run: Run) -> None:

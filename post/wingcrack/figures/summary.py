@@ -128,8 +128,10 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
     axes.set_title(r"largest $K_\mathrm{eq}/K_\mathrm{IC}$")
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
     if run.tips is None or run.tips.rows == 0 or not toughness:
-        why = "no toughness" if not toughness else "no tips"
-        _say(axes, why)
+        if run.history.rows > 1:
+            draw_jumps(axes, run)  # nothing can grow: how far fractures slip and open
+        else:
+            _say(axes, "no tips" if toughness else "no toughness")
         return
     if has_load(run) and growth_start(run) is not None:
         place, below = tip_steps(run, run.tips), STEP_LABEL

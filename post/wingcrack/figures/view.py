@@ -21,17 +21,17 @@ from wingcrack.figures.frames import (
     draw_fractures,
     extent,
     read_frame,
-    usual_limit,
+    usual_range,
     value_scale,
     written_states,
     zoom_window,
 )
 from wingcrack.figures.load import moment_label
-from wingcrack.figures.maps import MEAN_COLOURS, mean_stress
+from wingcrack.figures.maps import mean_stress, signed_colours, stress_norm
 from wingcrack.figures.read import Run
 from wingcrack.figures.states import last_settled
 from wingcrack.figures.table import FloatArray
-from wingcrack.figures.units import MEGAPASCAL, METRE, stress_unit
+from wingcrack.figures.units import MEGAPASCAL, METRE
 
 WARP_SHARE = 0.03  # the largest displacement is drawn as this share of the body's width
 _MARGIN = 0.04  # of the body's size around it
@@ -93,11 +93,10 @@ def _quantity(matrix: MatrixField, file: str) -> tuple[str, FloatArray, Normaliz
     if "stress" not in matrix.cell:
         raise RunError(f"{file}: the cell data 'stress' is missing.")
     stress = mean_stress(matrix)
-    limit = usual_limit(matrix, stress, extent([matrix])) or 1.0
-    unit = stress_unit(limit)
-    top = float(unit.of(limit))
+    norm, unit = stress_norm(*usual_range(matrix, stress, extent([matrix])))
+    colours = signed_colours(float(norm.vmin or 0.0), float(norm.vmax or 0.0))
     name = f"mean in-plane stress [{unit.name}]"
-    return name, unit.of(stress), Normalize(-top, top), MEAN_COLOURS
+    return name, unit.of(stress), norm, colours
 
 
 def _nodal_displacement(matrix: MatrixField, file: str) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,10 +10,10 @@ from matplotlib.colors import Colormap, Normalize
 
 from wingcrack.figures import style
 from wingcrack.figures.fields import MatrixField
-from wingcrack.figures.frames import extent, usual_limit, value_scale
-from wingcrack.figures.maps import MEAN_COLOURS
+from wingcrack.figures.frames import extent, usual_range, value_scale
+from wingcrack.figures.maps import signed_colours, stress_norm
 from wingcrack.figures.table import FloatArray
-from wingcrack.figures.units import MEGAPASCAL, Unit, displacement_unit, stress_unit
+from wingcrack.figures.units import MEGAPASCAL, Unit, displacement_unit
 from wingcrack.runs.fields import Fields
 from wingcrack.runs.units import NONE
 
@@ -51,27 +51,29 @@ def values_of(found: Fields, field: str) -> FloatArray:
     return found.of_rock(field)
 
 
-def colouring(states: Sequence[Fields], field: str) -> Colouring:
-    """One scale for all states; stress is cut at what most of the body keeps to.
+def colouring(states: Iterable[Fields], field: str) -> Colouring:
+    """One scale for all states, which are read one by one.
 
-    At tips stress has no bound.
+    Stress is cut at what most of the body keeps to: at tips it has no bound.
     """
-    values = [values_of(found, field) for found in states]
     whole = field.partition(".")[0]
     name = _NAMES.get(field, field.replace(".", ", "))
+    unit, limits = Unit(NONE, 1.0), []
+    for found in states:
+        values, rock = values_of(found, field), rock_of(found)
+        if whole == "stress":
+            limits.append(usual_range(rock, values, extent([rock])))
+        else:
+            limits.append((float(np.nanmin(values)), float(np.nanmax(values))))
+        unit = Unit(found.units.get(whole, NONE), 1.0)
+    low, high = min(pair[0] for pair in limits), max(pair[1] for pair in limits)
     if whole == "stress":
-        rocks = [rock_of(found) for found in states]
-        limit = max(
-            usual_limit(rock, one, extent([rock])) for rock, one in zip(rocks, values, strict=True)
-        )
-        limit = limit or 1.0
-        unit = stress_unit(limit)
-        top = float(unit.of(limit))
-        return Colouring(unit, f"{name} [{unit.name}]", Normalize(-top, top), MEAN_COLOURS)
-    unit = Unit(states[0].units.get(whole, NONE), 1.0)
+        norm, unit = stress_norm(low, high)
+        colours = signed_colours(float(norm.vmin or 0.0), float(norm.vmax or 0.0))
+        return Colouring(unit, f"{name} [{unit.name}]", norm, colours)
     if unit.name == "Pa":
         unit = MEGAPASCAL
     elif unit.name == "m":
-        unit = displacement_unit(*values)
-    norm = value_scale([unit.of(one) for one in values])
+        unit = displacement_unit(np.array([low, high]))
+    norm = value_scale([unit.of([low, high])])
     return Colouring(unit, f"{name} [{unit.name}]", norm, style.FIELD_COLOURS)

@@ -66,8 +66,7 @@ class Picture:
         self._run = run
         self._moments = run.field_moments
         self._field = field or default_field(last)
-        # near tips the states between may differ more: these two bound what the run does
-        self._look = colouring([run.fields(self._moments[0]), last], self._field)
+        self._look = colouring(map(run.fields, self._moments), self._field)
         self._pyvista = _load_pyvista(off_screen=off_screen)
         self.plotter: Any = self._pyvista.Plotter(  # its types do not fit to its decorators
             off_screen=off_screen, window_size=list(size)

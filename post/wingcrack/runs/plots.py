@@ -142,7 +142,7 @@ def plot_network(run: Results, colour: str, ax: Axes | None) -> Axes:
 def plot_map(run: Results, field: str, time: float | None, ax: Axes | None, *, close: bool) -> Axes:
     """Draw a field of the rock, with the fractures by state."""
     found = run.fields(time)
-    look = colouring([found], field)
+    look = colouring(map(run.fields, run.field_moments), field)
     values = look.unit.of(values_of(found, field))
     axes = new_axes(ax)
     matrix = rock_of(found)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import html
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -11,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError, SceneError
-from wingcrack.figures.fields import Snapshot, read_series
+from wingcrack.figures.fields import Snapshot, nearest, read_series
 from wingcrack.figures.table import FloatArray, Table, read_table
 from wingcrack.names import error_column
 from wingcrack.runs.fields import Fields, read_fields
@@ -20,6 +21,8 @@ from wingcrack.runs.units import column_unit
 
 if TYPE_CHECKING:
     import pandas
+    import pyvista
+    import xarray
 
     from wingcrack.figures.equilibrium import EquilibriumPath
     from wingcrack.figures.read import Run as Files
@@ -41,6 +44,26 @@ class Results:
     def __repr__(self) -> str:
         """Folder and status."""
         return f"<wingcrack.Run {str(self.directory)!r}: {self.status}>"
+
+    def _repr_html_(self) -> str:
+        """Name, end, sizes and warnings, as a notebook shows a run."""
+        record = self.record
+        facts = {
+            "scene": html.escape(self.name),
+            "status": html.escape(self.status),
+            "reason": html.escape(self.reason),
+            "steps": record.get("steps", ""),
+            "cells": record.get("cells", ""),
+            "fracture cells": record.get("fracture_cells", ""),
+            "CPU time": f"{record['cpu_s']:.3g} s" if "cpu_s" in record else "",
+            "warnings": "<br>".join(map(html.escape, self.warnings)) or "none",
+        }
+        rows = "".join(
+            f"<tr><th>{name}</th><td>{value}</td></tr>"
+            for name, value in facts.items()
+            if value != ""
+        )
+        return f"<table><caption>{html.escape(str(self.directory))}</caption>{rows}</table>"
 
     def refresh(self) -> Self:
         """Forget what was read: a run that goes on has more by now. Gives the run itself."""
@@ -226,6 +249,64 @@ class Results:
             If a file is missing or cut off.
         """
         return read_fields(self.directory, self._matrix, self._fracture_series, time)
+
+    def mesh(self, time: float | None = None) -> pyvista.UnstructuredGrid:
+        """Rock in the written state nearest to a time as a grid of pyvista, with all its fields.
+
+        Parameters
+        ----------
+        time : float or None
+            As for `fields`.
+
+        Raises
+        ------
+        AbsentError
+            If no state is written.
+        EnvironmentLacksError
+            If pyvista is not installed.
+        """
+        try:
+            import pyvista
+        except ImportError as reason:
+            raise EnvironmentLacksError(f"meshes need pyvista ({reason})") from None
+        if not self._matrix:
+            raise AbsentError(f"{self.directory} has no fields (VTU output off?)")
+        state = self._matrix[-1] if time is None else nearest(self._matrix, time)
+        return pyvista.read(state.path)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Histories of run, wells and probes as a dataset of xarray, units in the attributes.
+
+        The coordinate is the time [s], or without a fluid the row (a load may fall), with the load
+        factor as a variable. Columns of wells.csv, `wells_` before their names, have a
+        dimension for the wells.
+
+        Raises
+        ------
+        EnvironmentLacksError
+            If xarray is not installed.
+        """
+        try:
+            import xarray
+        except ImportError as reason:
+            raise EnvironmentLacksError(f"datasets need xarray ({reason})") from None
+        clock = "time_s" if self.table("history").has("time_s") else "row"
+        moments = self.moments if clock == "time_s" else np.arange(self.moments.size)
+        tables = [self.table("history")]
+        if (self.directory / "probes.csv").is_file():
+            tables.append(self.table("probes"))
+        variables = {
+            name: ((clock,), column(table, name), {"units": column_unit(name)})
+            for table in tables
+            for name in table.cells
+            if name != "time_s" and table.rows == moments.size
+        }
+        found = xarray.Dataset(variables, {clock: moments}, {"scene": self.name})
+        if clock == "time_s" and (self.directory / "wells.csv").is_file():
+            wells = self.wells.set_index(["time_s", "well"]).select_dtypes("number").to_xarray()
+            for name in wells.data_vars:
+                found[f"wells_{name}"] = wells[name].assign_attrs(units=column_unit(str(name)))
+        return found
 
     @cached_property
     def equilibrium(self) -> EquilibriumPath:

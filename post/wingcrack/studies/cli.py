@@ -16,6 +16,7 @@ from typing import Any
 from wingcrack.errors import CaseError
 from wingcrack.figures.text_files import write_whole
 from wingcrack.runner.task import Outcome, Task
+from wingcrack.studies.convergence import write_convergence
 from wingcrack.studies.outputs import UnreadableError, judge_run
 from wingcrack.studies.running import Clock, check_scenes, done_before, run_tasks, tasks_of
 from wingcrack.studies.study import Study, read_study
@@ -114,6 +115,7 @@ class _Call:
         write_parquet(table, out / "table.csv", out / "table.parquet")
         if study.quantiles:
             write_statistics(study, table, out / "statistics.csv")
+        write_convergence(study, table, out / "convergence.csv")
         before_s = self.clock.cpu_s()
         notes = [] if ended else _draw(study, table, out, self.given.format)
         self._write_record(ledger, ended, self.clock.cpu_s() - before_s)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,12 +14,14 @@ from matplotlib.ticker import MaxNLocator
 
 from wingcrack.errors import CaseError
 from wingcrack.figures import style
+from wingcrack.studies.convergence import extrapolate
+from wingcrack.studies.distributions import SAMPLE
+from wingcrack.studies.groups import column_of, grouped, label_of, told_apart
 from wingcrack.studies.outputs import select_in_run
 from wingcrack.studies.plots import Plot
-from wingcrack.studies.quantities import Quantity
-from wingcrack.studies.study import Parameter, Study, StudyRun
+from wingcrack.studies.study import Study, StudyRun
 from wingcrack.studies.table import StudyTable
-from wingcrack.studies.units import NONE, axis_label, pretty_number, pretty_unit, spoken
+from wingcrack.studies.units import spoken
 from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.selection import Values
 
@@ -48,7 +50,7 @@ def draw(
         figure = _lines(study, plot, curves) if plot.kind == "lines" else _band(study, plot, curves)
     else:
         missing = []
-        figure = _over(study, plot, table) if plot.kind == "over" else _bars(study, plot, table)
+        figure = _OF_TABLE[plot.kind](study, plot, table)
     return style.save(figure, out / "figures" / plot.name, formats), missing
 
 
@@ -77,7 +79,7 @@ def _curves(
 def _lines(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
     """One line per run, with a legend as long as there are few."""
     figure, axes = _empty(plot)
-    names = _told_apart(study, plot)
+    names = told_apart(study, plot)
     few = len(curves) <= _MOST_IN_LEGEND
     for curve, look in zip(curves, _looks(curves, names), strict=True):
         assert curve.values.x is not None
@@ -87,7 +89,7 @@ def _lines(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
             linewidth=1.2 if few else 0.5,
             alpha=1.0 if few else 0.6,
             marker=style.lone_marker(curve.values.values.size),
-            label=_label(curve.run, names, study),
+            label=label_of(curve.run, names, study),
             **look,
         )
     if names and few:
@@ -124,27 +126,26 @@ def _band(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
     first = max(float(np.min(_x(curve))) for curve in curves)
     last = min(float(np.max(_x(curve))) for curve in curves)
     if not first < last:
-        raise CaseError(f"figure '{plot.name}': the lines of the runs share no stretch of x")
+        raise CaseError(f"figure '{plot.name}': the lines of the runs share no interval of x")
     logs = plot.x_log and first > 0.0
     x = np.geomspace(first, last, _BAND_POINTS) if logs else np.linspace(first, last, _BAND_POINTS)
-    values = np.array([np.interp(x, _x(curve), curve.values.values) for curve in curves])
     shares = study.quantiles or (0.1, 0.5, 0.9)
-    levels = np.quantile(values, shares, axis=0)
-    for low in range(len(shares) // 2):
-        high = len(shares) - 1 - low
-        axes.fill_between(
-            x,
-            levels[low],
-            levels[high],
-            color=style.CYCLE[0],
-            alpha=0.2,
-            linewidth=0.0,
-            label=f"{100 * shares[low]:g} to {100 * shares[high]:g} % of {len(curves)} runs",
-        )
-    if len(shares) % 2:
-        middle = len(shares) // 2
-        label = f"{100 * shares[middle]:g} %"
-        axes.plot(x, levels[middle], color=style.CYCLE[0], label=label)
+    places = dict.fromkeys(curve.run.place for curve in curves)
+    for index, place in enumerate(places):
+        here = [curve for curve in curves if curve.run.place == place]
+        values = np.array([np.interp(x, _x(curve), curve.values.values) for curve in here])
+        levels = np.quantile(values, shares, axis=0)
+        look: dict[str, Any] = {"color": style.CYCLE[index % len(style.CYCLE)]}
+        said = f"{place}: " if place else ""
+        for low in range(len(shares) // 2):
+            high = len(shares) - 1 - low
+            label = f"{said}{100 * shares[low]:g} to {100 * shares[high]:g} % of {len(here)} runs"
+            axes.fill_between(
+                x, levels[low], levels[high], alpha=0.2, linewidth=0.0, label=label, **look
+            )
+        if len(shares) % 2:
+            middle = len(shares) // 2
+            axes.plot(x, levels[middle], label=f"{said}{100 * shares[middle]:g} %", **look)
     axes.legend(loc="best")
     axes.set(xlabel=plot.x_label, ylabel=plot.y_label)
     return figure
@@ -153,25 +154,13 @@ def _band(study: Study, plot: Plot, curves: Sequence[_Curve]) -> Figure:
 @style.styled
 def _over(study: Study, plot: Plot, table: StudyTable) -> Figure:
     """A quantity over a parameter or another quantity; a line for each value of the others."""
-    assert plot.over is not None and plot.quantity is not None
     figure, axes = _empty(plot)
-    x_column, x_label = _column(study, plot.over)
-    y_column, y_label = _column(study, plot.quantity)
-    x, y = table.numbers(x_column), table.numbers(y_column)
-    kept = np.isfinite(x) & np.isfinite(y)
-    if not kept.any():
-        raise CaseError(f"figure '{plot.name}': no run has both numbers")
-    others = [name for name in _told_apart(study, plot) if name != plot.over]
-    labels = np.array([_label(run, others, study) for run in study.runs])
-    groups = list(dict.fromkeys(labels[kept])) if not study.drawn or plot.by else [None]
-    for index, group in enumerate(groups):
-        rows = kept if group is None else kept & (labels == group)
-        order = np.argsort(x[rows], kind="stable")
-        look: dict[str, Any] = style.line_look(index)
+    x_label, y_label, groups = grouped(study, plot, table)
+    for index, (group, x, y) in enumerate(groups):
+        look = _line_with_marks(index)
         if study.drawn:
             look["linestyle"] = "none"
-        marker = style.MARKERS[1 + index % (len(style.MARKERS) - 1)]
-        axes.plot(x[rows][order], y[rows][order], marker=marker, label=group or "", **look)
+        axes.plot(x, y, label=group, **look)
     if len(groups) > 1:
         _legend(figure, axes, len(groups))
     axes.set(xlabel=plot.x_label or x_label, ylabel=plot.y_label or y_label)
@@ -179,29 +168,95 @@ def _over(study: Study, plot: Plot, table: StudyTable) -> Figure:
 
 
 @style.styled
+def _convergence(study: Study, plot: Plot, table: StudyTable) -> Figure:
+    """Difference of a quantity from its extrapolated value, with that and the observed order."""
+    figure, axes = _empty(plot)
+    axes.set(xscale="log", yscale="log")
+    x_label, y_label, groups = grouped(study, plot, table)
+    for index, (group, x, y) in enumerate(groups):
+        found = extrapolate(x, y)
+        said = f"{group}: " if group else ""
+        if found is None:
+            axes.plot([], [], label=f"{said}no order is observed", **_line_with_marks(index))
+            continue
+        label = f"{said}limit {found.limit:.5g}, order {found.order:.2f}"
+        axes.plot(x, np.abs(y - found.limit), label=label, **_line_with_marks(index))
+    _legend(figure, axes, len(groups))
+    y_label = f"difference from the limit, {plot.y_label or y_label}"
+    axes.set(xlabel=plot.x_label or x_label, ylabel=y_label)
+    return figure
+
+
+def _line_with_marks(index: int) -> dict[str, Any]:
+    marker = style.MARKERS[1 + index % (len(style.MARKERS) - 1)]
+    return {"marker": marker, **style.line_look(index)}
+
+
+@style.styled
 def _bars(study: Study, plot: Plot, table: StudyTable) -> Figure:
-    """How a quantity is distributed, with its quantiles."""
+    """How a quantity is distributed, with its quantiles; at several places of a grid, each."""
     assert plot.quantity is not None
     figure, axes = _empty(plot)
-    column, label = _column(study, plot.quantity)
+    column, label = column_of(study, plot.quantity)
     values = table.numbers(column)
-    values = values[np.isfinite(values)]
-    if values.size == 0:
+    if not np.isfinite(values).any():
         raise CaseError(f"figure '{plot.name}': no run has a {plot.quantity}")
-    bins = _bins(values, plot.x_log).tolist()
-    axes.hist(values, bins=bins, color=style.CYCLE[4], edgecolor="white")
+    bins = _bins(values[np.isfinite(values)], plot.x_log).tolist()
+    places = study.places
+    for index, (place, rows) in enumerate(places.items()):
+        found = values[rows][np.isfinite(values[rows])]
+        colour = style.CYCLE[index % len(style.CYCLE)] if len(places) > 1 else style.CYCLE[4]
+        alone: dict[str, Any] = {"color": colour, "edgecolor": "white"}
+        beside: dict[str, Any] = {"color": colour, "histtype": "step", "label": place}
+        axes.hist(found, bins=bins, **(alone if len(places) == 1 else beside))
+        for number, share in enumerate(study.quantiles if found.size else ()):
+            quantile = float(np.quantile(found, share))
+            said = f"{100 * share:g} %: {quantile:.4g}" if len(places) == 1 else None
+            look: dict[str, Any] = {"color": "black" if said else colour, "label": said}
+            dashes = style.LINE_STYLES[number % len(style.LINE_STYLES)]
+            axes.axvline(quantile, linestyle=dashes, linewidth=0.8, **look)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
-    for index, share in enumerate(study.quantiles):
-        place = float(np.quantile(values, share))
-        axes.axvline(
-            place,
-            color="black",
-            linestyle=style.LINE_STYLES[index % len(style.LINE_STYLES)],
-            label=f"{100 * share:g} %: {place:.4g}",
-        )
-    if study.quantiles:
-        axes.legend(loc="best", title=f"{values.size} runs")
+    if len(places) > 1:
+        _legend(figure, axes, len(places))
+    elif study.quantiles:
+        axes.legend(loc="best", title=f"{np.isfinite(values).sum()} runs")
     axes.set(xlabel=plot.x_label or label, ylabel=plot.y_label or "runs")
+    return figure
+
+
+@style.styled
+def _tornado(study: Study, plot: Plot, table: StudyTable) -> Figure:
+    """Mean of a quantity where a parameter is low and where it is high, the widest on top.
+
+    Low and high are the lowest and highest third of the runs, or of a grid the first and last
+    value: the other parameters are spread over both alike.
+    """
+    assert plot.quantity is not None
+    figure, axes = _empty(plot)
+    column, label = column_of(study, plot.quantity)
+    values = table.numbers(column)
+    kept = np.isfinite(values)
+    if not kept.any():
+        raise CaseError(f"figure '{plot.name}': no run has a {plot.quantity}")
+    bars = []
+    for parameter in study.parameters:
+        x = table.numbers(parameter.heading)
+        rows = kept & np.isfinite(x)
+        if parameter.name == SAMPLE or np.unique(x[rows]).size < 2:
+            continue
+        low, high = np.quantile(x[rows], (1.0 / 3.0, 2.0 / 3.0))
+        means = [float(values[rows & part].mean()) for part in (x <= low, x >= high)]
+        bars.append((abs(means[1] - means[0]), parameter.name.split(".")[-1], means))
+    bars.sort()
+    middle = float(values[kept].mean())
+    for side, (said, colour) in enumerate((("low", style.CYCLE[4]), ("high", style.CYCLE[1]))):
+        lengths = [means[side] - middle for _, _, means in bars]
+        axes.barh(range(len(bars)), lengths, left=middle, height=0.6, color=colour, label=said)
+    axes.axvline(middle, color="black", linewidth=0.8)
+    axes.set_yticks(range(len(bars)), [name.replace("_", " ") for _, name, _ in bars])
+    axes.grid(visible=False, axis="y")
+    _legend(figure, axes, 2)
+    axes.set(xlabel=plot.x_label or f"mean of {label}")
     return figure
 
 
@@ -210,6 +265,9 @@ def _bins(values: Array, logs: bool) -> Array:
     if not logs or values.min() <= 0.0:
         return np.asarray(np.histogram_bin_edges(values, "auto"))
     return np.asarray(10.0 ** np.histogram_bin_edges(np.log10(values), "auto"))
+
+
+_OF_TABLE = {"over": _over, "convergence": _convergence, "histogram": _bars, "tornado": _tornado}
 
 
 def _empty(plot: Plot) -> tuple[Figure, Axes]:
@@ -223,39 +281,6 @@ def _empty(plot: Plot) -> tuple[Figure, Axes]:
     if plot.equal_axes:
         axes.set_aspect("equal", adjustable="datalim")
     return figure, axes
-
-
-def _told_apart(study: Study, plot: Plot) -> list[str]:
-    """Parameters that tell lines apart: those asked for, or all that differ."""
-    if plot.by:
-        return list(plot.by)
-    if study.drawn:
-        return []
-    values: Mapping[str, set[str]] = {
-        item.name: {spoken(run.values.get(item.name)) for run in study.runs}
-        for item in study.parameters
-    }
-    return [name for name, found in values.items() if len(found) > 1]
-
-
-def _label(run: StudyRun, names: Sequence[str], study: Study) -> str:
-    units = {parameter.name: parameter.unit for parameter in study.parameters}
-    parts = []
-    for name in names:
-        if name in run.values:
-            unit = "" if units[name] == NONE else f" {pretty_unit(units[name])}"
-            said = name.split(".")[-1].replace("_", " ")
-            parts.append(f"{said} {pretty_number(run.values[name])}{unit}")
-    return ", ".join(parts)
-
-
-def _column(study: Study, name: str) -> tuple[str, str]:
-    """Column of a quantity or parameter, and how an axis of it is called."""
-    named: tuple[Quantity | Parameter, ...] = (*study.quantities, *study.parameters)
-    for item in named:
-        if item.name == name:
-            return item.heading, axis_label(item.name, item.unit)
-    raise CaseError(f"there is no quantity or parameter '{name}'")
 
 
 def _legend(figure: Figure, axes: Axes, count: int) -> None:

@@ -10,15 +10,22 @@ from pydantic import model_validator
 from wingcrack.sweeps.fields import Entry, Text, Texts, choice
 from wingcrack.sweeps.selection import Selection
 
-# Kinds with the keys that each needs: lines of all runs, a quantity over a parameter, the band of
-# quantiles of lines, the histogram of a quantity.
+# Kinds with the keys that each needs: lines of all runs, a quantity over a parameter, its
+# difference from the extrapolated value, the band of quantiles of lines, the histogram of a
+# quantity, the effect of each parameter on it.
 _NEEDS = {
     "lines": ("x_label", "y_label"),
     "over": ("quantity", "over"),
+    "convergence": ("quantity", "over"),
     "band": ("x_label", "y_label"),
     "histogram": ("quantity",),
+    "tornado": ("quantity",),
 }
-_ONLY = {"by": ("lines", "over"), "over": ("over",), "quantity": ("over", "histogram")}
+_ONLY = {
+    "by": ("lines", "over", "convergence"),
+    "over": ("over", "convergence"),
+    "quantity": ("over", "convergence", "histogram", "tornado"),
+}
 
 
 class Plot(Entry):

@@ -64,6 +64,13 @@ class StudyRun:
     text: str
 
     @property
+    def place(self) -> str:
+        """The place of the grid that a sample belongs to; all runs have one without samples."""
+        names = list(self.values)
+        of_grid = names[: names.index(SAMPLE)] if SAMPLE in names else []
+        return ", ".join(f"{name} = {spoken(self.values[name])}" for name in of_grid)
+
+    @property
     def constants(self) -> dict[str, float]:
         """Values that expressions can use by name."""
         return {
@@ -90,6 +97,14 @@ class Study:
     quantiles: tuple[float, ...]
     plots: tuple[Plot, ...]
     cluster: Cluster
+
+    @property
+    def places(self) -> dict[str, list[int]]:
+        """Rows of the table by the place of the grid, in their order."""
+        found: dict[str, list[int]] = {}
+        for row, run in enumerate(self.runs):
+            found.setdefault(run.place, []).append(row)
+        return found
 
     @property
     def names(self) -> set[str]:

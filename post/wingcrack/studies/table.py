@@ -69,7 +69,7 @@ def _row(study: Study, run: StudyRun, outcome: Outcome, out: Path) -> Row:
 
 def write_csv(table: StudyTable, path: Path) -> None:
     """Write the table as CSV; what is not there is an empty cell."""
-    rows = [[_cell(row[column]) for column in table.columns] for row in table.rows]
+    rows = [[cell_text(row[column]) for column in table.columns] for row in table.rows]
     write_rows(path, table.columns, rows)
 
 
@@ -96,21 +96,28 @@ def write_parquet(table: StudyTable, csv_file: Path, path: Path) -> None:
 
 
 def write_statistics(study: Study, table: StudyTable, path: Path) -> None:
-    """Write mean, spread and quantiles of each quantity, over the runs that have it."""
+    """Write mean, spread and quantiles of each quantity, over the runs that have it.
+
+    Samples at several places of a grid have a row for each place.
+    """
     names = [f"q{100.0 * share:g}" for share in study.quantiles]
-    header = ("quantity", "runs", "absent", "mean", "standard_deviation", "min", *names, "max")
+    header = ["quantity", "runs", "absent", "mean", "standard_deviation", "min", *names, "max"]
+    if len(study.places) > 1:
+        header.append("place")
     rows = []
     for quantity in study.quantities:
-        values = table.numbers(quantity.heading)
-        finished = sum(row["status"] == "finished" for row in table.rows)
-        values = values[np.isfinite(values)]
-        cells: list[Any] = [quantity.heading, values.size, finished - values.size]
-        if values.size:
-            spread = float(np.std(values, ddof=1)) if values.size > 1 else None
-            quantiles = [float(value) for value in np.quantile(values, study.quantiles)]
-            least, most = float(values.min()), float(values.max())
-            cells += [float(values.mean()), spread, least, *quantiles, most]
-        rows.append([_cell(cell) for cell in cells] + [""] * (len(header) - len(cells)))
+        for place, of_place in study.places.items():
+            values = table.numbers(quantity.heading)[of_place]
+            finished = sum(table.rows[row]["status"] == "finished" for row in of_place)
+            values = values[np.isfinite(values)]
+            cells: list[Any] = [quantity.heading, values.size, finished - values.size]
+            if values.size:
+                spread = float(np.std(values, ddof=1)) if values.size > 1 else None
+                quantiles = [float(value) for value in np.quantile(values, study.quantiles)]
+                least, most = float(values.min()), float(values.max())
+                cells += [float(values.mean()), spread, least, *quantiles, most]
+            cells += [None] * (6 + len(names) + 1 - len(cells))
+            rows.append([cell_text(cell) for cell in [*cells, place][: len(header)]])
     write_rows(path, header, rows)
 
 
@@ -123,7 +130,8 @@ def write_rows(path: Path, header: Sequence[str], rows: Sequence[Sequence[str]])
     write_whole(path, text.getvalue())
 
 
-def _cell(value: Any) -> str:
+def cell_text(value: Any) -> str:
+    """Text of a value in a table; empty where there is none."""
     if value is None:
         return ""
     return repr(value) if isinstance(value, float) else spoken(value)

@@ -122,14 +122,13 @@ class Content:
             )
 
     def scale(self, field: str) -> bytes:
-        """Colours for a field in all states as JSON, from the first and the last of them.
+        """Colours for a field in all states as JSON.
 
         `plain` has colours from dark to light for a range that the page chooses.
         """
         with self._lock:
             self._refresh()
-            ends = [self._state(0), self._state(len(self._matrix) - 1)]
-            look = colouring(ends, field)
+            look = colouring(map(self._state, range(len(self._matrix))), field)
             return json.dumps(
                 {
                     "label": look.label,
