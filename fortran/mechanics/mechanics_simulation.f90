@@ -279,7 +279,9 @@ contains
       integer(ik) :: i
 
       is_uncertain = doubtful(self%tip, self%rules%toughness)
-      if (.not. allocated(self%was_uncertain)) self%was_uncertain = spread(.false., 1, size(self%tip))
+      if (.not. allocated(self%was_uncertain)) then
+         self%was_uncertain = spread(.false., 1, size(self%tip))
+      end if
       do i = 1, size(self%tip, kind=ik)
          if (.not. is_uncertain(i)) cycle
          associate (tip => self%tip(i), toughness => self%rules%toughness)
