@@ -143,8 +143,7 @@ contains
       associate (fracture => problem%mesh%fracture)
          length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
          pressure = problem%fracture_pressure(state)
-         allocate (mean(maxval([size(scene%fractures, kind=ik), fracture%cell_fracture])), &
-                   source=0.0_rk)
+         allocate (mean(size(scene%fractures)), source=0.0_rk)
          do f = 1, size(mean, kind=ik)
             associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
                if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
@@ -225,7 +224,10 @@ contains
       real(rk), parameter :: of_slip_rate = 0.5_rk  ! cells slip in turn as their zone grows
 
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
-         self%row%max_opening = time(opening) + error_of_largest(fracture, jumps%n, jumps%error_n)
+         ! At a kink the faces may open by all of their slip across it.
+         self%row%max_opening = time(opening) &
+                                + max(error_of_largest(fracture, jumps%n, jumps%error_n), &
+                                      maxval(jumps%slip%kink*jumps%t) - row%max_opening)
          self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
          self%of_held = jumps%volume
          self%row%fracture_volume = time(volume) + jumps%volume
@@ -322,37 +324,55 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> Error in space of the pressure of each fracture cell [Pa].
+   !> Error in space of the pressure of each fracture cell by flow [Pa].
    pure function in_space(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk), allocatable :: error(:)
-      real(rk) :: share(size(self%fractures%value))
+
+      associate (p => self%fractures)
+         error = merge(0.0_rk, self%of_flow*abs(p%value - p%first), have_given_pressure(scene))
+      end associate
+      error = error(problem%mesh%fracture%cell_fracture)
+   end function in_space
+
+   !> Whether a well keeps a pressure in each fracture.
+   pure function have_given_pressure(scene) result(have)
+      type(scene_t), intent(in) :: scene
+      logical :: have(size(scene%fractures))
       integer :: w
 
-      share = self%of_flow
+      have = .false.
       do w = 1, size(scene%injections)
          associate (well => scene%injections(w))
             if (well%fracture == 0 .or. allocated(well%rate)) cycle
-            if (allocated(well%pressure)) share(well%fracture) = 0.0_rk
+            if (allocated(well%pressure)) have(well%fracture) = .true.
          end associate
       end do
-      associate (p => self%fractures)
-         share = share*abs(p%value - p%first)
-      end associate
-      error = share(problem%mesh%fracture%cell_fracture)
-   end function in_space
+   end function have_given_pressure
 
-   !> Error of the pressure of each fracture cell, in time and space [Pa].
-   pure function cell_pressure_errors(self, scene, problem) result(error)
+   !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
+   !! of the faces, which is that of the pressure beyond closure [Pa].
+   pure function cell_pressure_errors(self, scene, problem, jumps) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
+      type(jumps_in_space_t), intent(in) :: jumps
       real(rk), allocatable :: error(:)
+      logical :: own(problem%mesh%fracture%n_cells)
+      integer(ik) :: f
 
-      error = self%in_space(scene, problem) &
-              + self%fractures%error(problem%mesh%fracture%cell_fracture)
+      error = self%in_space(scene, problem)
+      associate (of_fracture => problem%mesh%fracture%cell_fracture, &
+                 has_given => have_given_pressure(scene))
+         do f = 1, size(has_given, kind=ik)
+            own = of_fracture == f
+            if (has_given(f) .or. .not. any(own)) cycle
+            where (own) error = max(error, sum(jumps%net_error, mask=own)/count(own))
+         end do
+         error = error + self%fractures%error(of_fracture)
+      end associate
    end function cell_pressure_errors
 
    !> Rate of leak-off in the last step, by magnitude [m2/s].
