@@ -23,7 +23,7 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: least, of_layers, of_well_in_rock
+   use twolevel_pressure_errors, only: least, of_layers, of_steps, of_well_in_rock
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -177,13 +177,14 @@ contains
       self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
+      self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
       call self%fractures%follow(self%step, mean_pressures(scene, problem, state))
       self%row = history_errors_t()
       self%of_length = 0.0_rk
       if (facts%has_estimate .and. row%fracture_length > 0.0_rk) then
          self%of_length = max(0.0_rk, stated%length)/row%fracture_length
       end if
-      self%of_rock = of_well_in_rock(problem, facts%since_switch)
+      self%of_rock = of_well_in_rock(scene, problem, facts%since_switch)
       if (problem%mesh%fracture%n_cells > 0) then
          call self%jumps_of(scene, problem, state, jumps)
          associate (s => problem%mesh%fracture%cell_s)
@@ -496,6 +497,7 @@ contains
       real(rk), intent(in) :: time  !< [s]
       real(rk), intent(in) :: rise  !< range of the pressures of the run so far [Pa]
       type(probe_row_t), intent(inout) :: row
+      type(followed_step_t) :: whole
       real(rk), allocatable :: values(:, :)
       real(rk) :: added(6)
       integer :: i
@@ -505,7 +507,9 @@ contains
       values(2:3, :) = row%displacement
       values(4:, :) = row%stress
       if (.not. allocated(self%probes%value)) call self%probes%begin(time, [values])
-      call self%probes%follow(self%step, [values])
+      whole = self%step
+      whole%left = 1.0_rk
+      call self%probes%follow(whole, [values])
       do i = 1, size(row%pressure)
          associate (p => self%probes, at => 6*(i - 1))
             added = p%error(at + 1:at + 6) + (least + self%of_length) &
