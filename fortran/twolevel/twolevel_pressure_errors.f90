@@ -15,13 +15,15 @@ module twolevel_pressure_errors
    use base_kinds, only: ik, pi, rk
    use base_plane, only: norm2
    use coarse_rock, only: solid_t
+   use coarse_state, only: state_t
    use mesh_geometry, only: cell_area, cell_centre, face_length
    use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
-   public :: least, of_layers, of_steps, of_well_in_rock, unresolved_depth
+   public :: have_given_pressure, least, mean_pressures, of_layers, of_steps, of_well_in_rock
+   public :: unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
@@ -137,5 +139,41 @@ contains
          end do
       end associate
    end function distance_of_side
+
+   !> Mean pressure of each fracture [Pa].
+   function mean_pressures(scene, problem, state) result(mean)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), allocatable :: mean(:)
+      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
+      integer(ik) :: f
+
+      associate (fracture => problem%mesh%fracture)
+         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
+         pressure = problem%fracture_pressure(state)
+         allocate (mean(size(scene%fractures)), source=0.0_rk)
+         do f = 1, size(mean, kind=ik)
+            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
+               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
+            end associate
+         end do
+      end associate
+   end function mean_pressures
+
+   !> Whether a well keeps a pressure in each fracture.
+   pure function have_given_pressure(scene) result(have)
+      type(scene_t), intent(in) :: scene
+      logical :: have(size(scene%fractures))
+      integer :: w
+
+      have = .false.
+      do w = 1, size(scene%injections)
+         associate (well => scene%injections(w))
+            if (well%fracture == 0 .or. allocated(well%rate)) cycle
+            if (allocated(well%pressure)) have(well%fracture) = .true.
+         end associate
+      end do
+   end function have_given_pressure
 
 end module twolevel_pressure_errors

@@ -23,7 +23,8 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: least, of_layers, of_steps, of_well_in_rock
+   use twolevel_pressure_errors, only: have_given_pressure, least, mean_pressures, of_layers, &
+                                       of_steps, of_well_in_rock
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -130,27 +131,6 @@ contains
       length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
       mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
    end function mean_pressure
-
-   !> Mean pressure of each fracture [Pa].
-   function mean_pressures(scene, problem, state) result(mean)
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk), allocatable :: mean(:)
-      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
-      integer(ik) :: f
-
-      associate (fracture => problem%mesh%fracture)
-         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
-         pressure = problem%fracture_pressure(state)
-         allocate (mean(size(scene%fractures)), source=0.0_rk)
-         do f = 1, size(mean, kind=ik)
-            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
-               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
-            end associate
-         end do
-      end associate
-   end function mean_pressures
 
    !> Errors of the row of an accepted state.
    subroutine note_state(self, scene, problem, state, row, stated, facts)
@@ -337,21 +317,6 @@ contains
       end associate
       error = error(problem%mesh%fracture%cell_fracture)
    end function in_space
-
-   !> Whether a well keeps a pressure in each fracture.
-   pure function have_given_pressure(scene) result(have)
-      type(scene_t), intent(in) :: scene
-      logical :: have(size(scene%fractures))
-      integer :: w
-
-      have = .false.
-      do w = 1, size(scene%injections)
-         associate (well => scene%injections(w))
-            if (well%fracture == 0 .or. allocated(well%rate)) cycle
-            if (allocated(well%pressure)) have(well%fracture) = .true.
-         end associate
-      end do
-   end function have_given_pressure
 
    !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
    !! of the faces, which is that of the pressure beyond closure [Pa].
