@@ -66,15 +66,12 @@ contains
          length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
          e%jump_n = jumps%error_n + errors%of_opening*abs(fields%jump_n)
          e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
-         e%pressure = errors%cell_pressure_errors(scene, problem) &
+         e%pressure = errors%cell_pressure_errors(scene, problem, jumps) &
                       + 0.5_rk*unevenness(fracture, fields%pressure) &
                       + of_solution*abs(fields%pressure) &
                       + of_drop*(largest_of(fracture, fields%pressure) &
                                  + largest_of(fracture, -fields%pressure))
-         e%flow = of_neighbours*unevenness(fracture, fields%flow) &
-                  + (errors%of_flow + errors%time_share())*abs(fields%flow) &
-                  + of_largest*largest_of(fracture, abs(fields%flow)) &
-                  + errors%of_flow*errors%leakoff_rate()*length/sum(length)
+         e%flow = of_neighbours*unevenness(fracture, fields%flow)
          do f = 1, maxval(fracture%cell_fracture)
             associate (first => findloc(fracture%cell_fracture, f, dim=1), &
                        last => findloc(fracture%cell_fracture, f, dim=1, back=.true.))
@@ -83,6 +80,9 @@ contains
                e%flow(last) = max(e%flow(last), abs(fields%flow(last)))
             end associate
          end do
+         e%flow = e%flow + (errors%of_flow + errors%time_share())*abs(fields%flow) &
+                  + of_largest*largest_of(fracture, abs(fields%flow)) &
+                  + errors%of_flow*errors%leakoff_rate()*length/sum(length)
       end associate
       call note_tractions(scene, problem, state, jumps%slip, fields)
    end subroutine find_fracture_errors
@@ -132,7 +132,7 @@ contains
       of_k = 0.0_rk
       if (size(of_pressure) == 0) return
       call errors%jumps_of(scene, problem, state, jumps)
-      of_pressure = errors%cell_pressure_errors(scene, problem)
+      of_pressure = errors%cell_pressure_errors(scene, problem, jumps)
       associate (fracture => problem%mesh%fracture, friction => problem%model%cells%law%friction, &
                  t => state%traction)
          rest = max(0.0_rk, -friction*0.5_rk*sum(t(1, :, :), dim=1) &

@@ -31,6 +31,7 @@ module twolevel_followed
       logical :: is_growing = .false.  !< tips have grown in it, in equilibrium
       logical :: is_first = .false.  !< wells or sides were switched at its start
       real(rk) :: diffusing = 1.0_rk  !< share of the fluid that diffuses [-]
+      real(rk) :: left = 1.0_rk  !< of the error of a step where chains divide it [-]
    end type followed_step_t
 
    !> Quantities, each in its unit.
@@ -96,6 +97,7 @@ contains
                if (self%n_steps == 2) self%of_step = self%of_step*(1.0_rk &
                                                                    - in_second*step%diffusing)
             end if
+            self%of_step = step%left*self%of_step
             self%linear = forget*self%linear
             ! Growth changes rates at once; and where steps become short the rates say little about
             ! the time before.

@@ -37,6 +37,8 @@ module twolevel_jump_errors
       type(jump_errors_t) :: slip, opening  !< of their zones
       real(rk), allocatable :: n(:), t(:)  !< mean opening, magnitude of the mean slip [m]
       real(rk), allocatable :: error_n(:), error_t(:)  !< their errors [m]
+      !> error of the uniform pressure that opens the faces like their openings [Pa]
+      real(rk), allocatable :: net_error(:)
       real(rk) :: volume = 0.0_rk  !< error of the sum of openings [m2]
       real(rk) :: slipped = 0.0_rk  !< error of the sum of slip [m2]
    contains
@@ -69,6 +71,10 @@ contains
          self%opening = relative_jump_errors(fracture, moves(n), finite_volumes)
          opened = compliance*self%opening%reach*facts%diffusing*facts%of_pressure
          where (.not. is_open) opened = 0.0_rk
+         allocate (self%net_error(size(n)), source=0.0_rk)
+         where (self%opening%reach > 0.0_rk)
+            self%net_error = self%opening%of_sum*n/(compliance*self%opening%reach)
+         end where
          slid = compliance*self%slip%reach*facts%of_pressure*problem%model%cells%law%friction
          where (cell_states(state) /= state_slip) slid = 0.0_rk
          self%error_t = (self%slip%of_slip + facts%of_length)*merge(moved, self%t, is_open) + slid &

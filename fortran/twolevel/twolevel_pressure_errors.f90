@@ -4,28 +4,33 @@
 !!   resolve them (coarse_layers; measured: 1.2 to 2.5 %), else by the distance sqrt(c t) of
 !!   diffusion since the last switch over the size of a cell, z: sqrt(pi)/(2 z), and below 0.15/z**2
 !!   (measured: 0.07/z**2).
-!! - The pressure of a well in the rock: Peaceman's index holds for steady flow, within 1 %, and
-!!   0.4 times the area of the cell over the squared distance of a side (measured: 2.6 and 4 % at
-!!   2 and 1.5 cells). With z the distance of diffusion over the root of the cell's
-!!   area 0.2/z**2 after a cell is filled, and 0.2/z before.
+!! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
+!!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
+!!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
+!!   error is that over ln(1.5 sqrt(A)/r_w), and 0.45 A over the squared distance of a side (measured:
+!!   2.6 to 4.2 % at 2 and 1.5 cells). Before, the rings around the well take in the flow
+!!   (coarse_well_rings), within 2 %; once the cell is filled this falls with the squared distance
+!!   of diffusion over A, the order of the cells.
 module twolevel_pressure_errors
    use base_kinds, only: ik, pi, rk
    use base_plane, only: norm2
    use coarse_rock, only: solid_t
+   use coarse_state, only: state_t
    use mesh_geometry, only: cell_area, cell_centre, face_length
+   use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
-   public :: least, of_layers, of_well_in_rock, unresolved_depth
+   public :: have_given_pressure, least, mean_pressures, of_layers, of_steps, of_well_in_rock
+   public :: unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
-   !> relative errors of the pressure of a well in the rock: in steady flow; at the time at which
-   !! the pressure has diffused over its cell [-]
-   real(rk), parameter :: steady_index = 0.01_rk, early_index = 0.2_rk
+   !> relative errors of a well in the rock: of the cell's radius; of the pressure by the rings [-]
+   real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
    !> the same by a side of the body, times the cell's area over its squared distance
-   real(rk), parameter :: by_side = 0.4_rk
+   real(rk), parameter :: by_side = 0.45_rk
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains
@@ -41,6 +46,23 @@ contains
       ratio = unresolved_depth(problem, time)
       error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
    end function of_layers
+
+   !> What is left of the error of a step in time of the pressures at faces and wells, as the layers
+   !! (coarse_chain) and the rings of wells (coarse_well_rings) take several steps within it. Layers
+   !! take a fourth, as far as they are not wider than their chain [-].
+   pure real(rk) function of_steps(problem) result(left)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), parameter :: of_rings = 0.125_rk
+      integer(ik) :: l
+
+      left = 1.0_rk
+      if (problem%mesh%fracture%n_cells == 0) left = of_rings
+      associate (layers => problem%model%layers)
+         if (layers%n == 0 .or. problem%mesh%fracture%n_cells == 0) return
+         if (.not. layers%chain(1)%dt > 0.0_rk) return
+         left = 1.0_rk - 0.75_rk*sum([(layers%chain(l)%scheme(2)%share, l=1, layers%n)])/layers%n
+      end associate
+   end function of_steps
 
    !> Height of the cells next to the fractures over the distance of diffusion in a time, where no
    !! layer resolves it; 0 without fractures [-].
@@ -80,10 +102,11 @@ contains
    end function diffusivity
 
    !> Relative error of the pressure of wells in the rock, a time after a switch; 0 without any [-].
-   real(rk) function of_well_in_rock(problem, time) result(error)
+   real(rk) function of_well_in_rock(scene, problem, time) result(error)
+      type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: time  !< [s]
-      real(rk) :: area, depth
+      real(rk) :: area, filled
       integer :: w
 
       error = 0.0_rk
@@ -92,13 +115,11 @@ contains
          associate (cell => problem%rock_cell(w))
             if (cell == 0) cycle
             area = cell_area(problem%mesh, cell)
-            depth = sqrt(diffusivity(problem, cell)*max(0.0_rk, time)/area)
-            if (depth >= 1.0_rk) then
-               error = max(error, steady_index + by_side*area/distance_of_side(problem, cell)**2, &
-                           early_index/depth**2)
-            else
-               error = max(error, min(1.0_rk, early_index/max(depth, early_index)))
-            end if
+            filled = max(1.0_rk, diffusivity(problem, cell)*time/area)
+            associate (radius => scene%injections(w)%radius)
+               error = max(error, of_rings/filled, of_radius/log(1.5_rk*sqrt(area)/radius) &
+                           + by_side*area/distance_of_side(problem, cell)**2)
+            end associate
          end associate
       end do
    end function of_well_in_rock
@@ -118,5 +139,41 @@ contains
          end do
       end associate
    end function distance_of_side
+
+   !> Mean pressure of each fracture [Pa].
+   function mean_pressures(scene, problem, state) result(mean)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), allocatable :: mean(:)
+      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
+      integer(ik) :: f
+
+      associate (fracture => problem%mesh%fracture)
+         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
+         pressure = problem%fracture_pressure(state)
+         allocate (mean(size(scene%fractures)), source=0.0_rk)
+         do f = 1, size(mean, kind=ik)
+            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
+               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
+            end associate
+         end do
+      end associate
+   end function mean_pressures
+
+   !> Whether a well keeps a pressure in each fracture.
+   pure function have_given_pressure(scene) result(have)
+      type(scene_t), intent(in) :: scene
+      logical :: have(size(scene%fractures))
+      integer :: w
+
+      have = .false.
+      do w = 1, size(scene%injections)
+         associate (well => scene%injections(w))
+            if (well%fracture == 0 .or. allocated(well%rate)) cycle
+            if (allocated(well%pressure)) have(well%fracture) = .true.
+         end associate
+      end do
+   end function have_given_pressure
 
 end module twolevel_pressure_errors

@@ -23,7 +23,8 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: least, of_layers, of_well_in_rock
+   use twolevel_pressure_errors, only: have_given_pressure, least, mean_pressures, of_layers, &
+                                       of_steps, of_well_in_rock
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -131,28 +132,6 @@ contains
       mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
    end function mean_pressure
 
-   !> Mean pressure of each fracture [Pa].
-   function mean_pressures(scene, problem, state) result(mean)
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk), allocatable :: mean(:)
-      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
-      integer(ik) :: f
-
-      associate (fracture => problem%mesh%fracture)
-         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
-         pressure = problem%fracture_pressure(state)
-         allocate (mean(maxval([size(scene%fractures, kind=ik), fracture%cell_fracture])), &
-                   source=0.0_rk)
-         do f = 1, size(mean, kind=ik)
-            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
-               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
-            end associate
-         end do
-      end associate
-   end function mean_pressures
-
    !> Errors of the row of an accepted state.
    subroutine note_state(self, scene, problem, state, row, stated, facts)
       class(value_errors_t), intent(inout) :: self
@@ -178,13 +157,14 @@ contains
       self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
+      self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
       call self%fractures%follow(self%step, mean_pressures(scene, problem, state))
       self%row = history_errors_t()
       self%of_length = 0.0_rk
       if (facts%has_estimate .and. row%fracture_length > 0.0_rk) then
          self%of_length = max(0.0_rk, stated%length)/row%fracture_length
       end if
-      self%of_rock = of_well_in_rock(problem, facts%since_switch)
+      self%of_rock = of_well_in_rock(scene, problem, facts%since_switch)
       if (problem%mesh%fracture%n_cells > 0) then
          call self%jumps_of(scene, problem, state, jumps)
          associate (s => problem%mesh%fracture%cell_s)
@@ -225,7 +205,10 @@ contains
       real(rk), parameter :: of_slip_rate = 0.5_rk  ! cells slip in turn as their zone grows
 
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
-         self%row%max_opening = time(opening) + error_of_largest(fracture, jumps%n, jumps%error_n)
+         ! At a kink the faces may open by all of their slip across it.
+         self%row%max_opening = time(opening) &
+                                + max(error_of_largest(fracture, jumps%n, jumps%error_n), &
+                                      maxval(jumps%slip%kink*jumps%t) - row%max_opening)
          self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
          self%of_held = jumps%volume
          self%row%fracture_volume = time(volume) + jumps%volume
@@ -322,37 +305,40 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> Error in space of the pressure of each fracture cell [Pa].
+   !> Error in space of the pressure of each fracture cell by flow [Pa].
    pure function in_space(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk), allocatable :: error(:)
-      real(rk) :: share(size(self%fractures%value))
-      integer :: w
 
-      share = self%of_flow
-      do w = 1, size(scene%injections)
-         associate (well => scene%injections(w))
-            if (well%fracture == 0 .or. allocated(well%rate)) cycle
-            if (allocated(well%pressure)) share(well%fracture) = 0.0_rk
-         end associate
-      end do
       associate (p => self%fractures)
-         share = share*abs(p%value - p%first)
+         error = merge(0.0_rk, self%of_flow*abs(p%value - p%first), have_given_pressure(scene))
       end associate
-      error = share(problem%mesh%fracture%cell_fracture)
+      error = error(problem%mesh%fracture%cell_fracture)
    end function in_space
 
-   !> Error of the pressure of each fracture cell, in time and space [Pa].
-   pure function cell_pressure_errors(self, scene, problem) result(error)
+   !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
+   !! of the faces, which is that of the pressure beyond closure [Pa].
+   pure function cell_pressure_errors(self, scene, problem, jumps) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
+      type(jumps_in_space_t), intent(in) :: jumps
       real(rk), allocatable :: error(:)
+      logical :: own(problem%mesh%fracture%n_cells)
+      integer(ik) :: f
 
-      error = self%in_space(scene, problem) &
-              + self%fractures%error(problem%mesh%fracture%cell_fracture)
+      error = self%in_space(scene, problem)
+      associate (of_fracture => problem%mesh%fracture%cell_fracture, &
+                 has_given => have_given_pressure(scene))
+         do f = 1, size(has_given, kind=ik)
+            own = of_fracture == f
+            if (has_given(f) .or. .not. any(own)) cycle
+            where (own) error = max(error, sum(jumps%net_error, mask=own)/count(own))
+         end do
+         error = error + self%fractures%error(of_fracture)
+      end associate
    end function cell_pressure_errors
 
    !> Rate of leak-off in the last step, by magnitude [m2/s].
@@ -476,6 +462,7 @@ contains
       real(rk), intent(in) :: time  !< [s]
       real(rk), intent(in) :: rise  !< range of the pressures of the run so far [Pa]
       type(probe_row_t), intent(inout) :: row
+      type(followed_step_t) :: whole
       real(rk), allocatable :: values(:, :)
       real(rk) :: added(6)
       integer :: i
@@ -485,7 +472,9 @@ contains
       values(2:3, :) = row%displacement
       values(4:, :) = row%stress
       if (.not. allocated(self%probes%value)) call self%probes%begin(time, [values])
-      call self%probes%follow(self%step, [values])
+      whole = self%step
+      whole%left = 1.0_rk
+      call self%probes%follow(whole, [values])
       do i = 1, size(row%pressure)
          associate (p => self%probes, at => 6*(i - 1))
             added = p%error(at + 1:at + 6) + (least + self%of_length) &

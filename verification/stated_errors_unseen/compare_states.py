@@ -161,8 +161,7 @@ def of_tip(row: Row) -> Reference:
     """Values of a tip of the finer run by its corrected K."""
     keq, g = float(row["keq_pa_sqrtm"]), float(row["g_j_m2"])
     k = [float(row[f"k{i}_corrected_pa_sqrtm"]) for i in (1, 2)]
-    k[0] = max(0.0, k[0])
-    equivalent, angle = criterion(k[0], k[1])
+    equivalent, angle = criterion(max(0.0, k[0]), k[1])
     compliance = g / keq**2 if keq > 0.0 else 0.0
     found = {
         "keq_pa_sqrtm": equivalent,
@@ -269,7 +268,7 @@ def state(family: str, seed: str, i: int, solver: Path) -> list[tuple[str, float
     if scene is None:
         print(label, "did not end", flush=True)
         return []
-    coarse, fine = solve(solver, scene, 60.0), solve(solver, finer(scene), 240.0, again=False)
+    coarse, fine = solve(solver, scene, 120.0), solve(solver, finer(scene), 480.0, again=False)
     if coarse is None or fine is None:
         print(label, "not run", coarse, fine, flush=True)
         return []
