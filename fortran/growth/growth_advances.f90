@@ -17,8 +17,9 @@
 !!
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
-!! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
-!! given share of the error (`slack`), and above it by the same, up to three times the tolerance.
+!! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error
+!! (two fifths of `slack`; all of it after two rejected proposals), and above it by the same, up to
+!! three times the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -59,7 +60,8 @@ module growth_advances
       real(rk), private :: radius = 1.0_rk
       integer, private :: rejected = 0  !< number of proposals rejected in succession
       integer, private :: rejected_in_all = 0
-      !> (tips) lack of toughness between the bounds at which a search that has stalled ends [-]
+      !> (tips) lack of toughness between the bounds at which a search that has stalled ends; a
+      !! share of it ends others [-]
       real(rk), allocatable :: slack(:)
       ! Bracket of each tip in the monotone search.
       real(rk), allocatable, private :: near(:)  !< farthest position with K_eq > K_IC [m]
@@ -142,10 +144,12 @@ contains
       class(advances_t), intent(in) :: self
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       integer, parameter :: stalled = 2  ! rejected proposals
+      real(rk), parameter :: at_once = 0.4_rk  ! share of `slack` before
       real(rk) :: lack(size(self%place))
 
       lack = tolerance
       if (.not. allocated(self%slack)) return
+      lack = max(tolerance, at_once*self%slack)
       if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
    end function allowed
 
