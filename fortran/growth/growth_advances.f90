@@ -19,7 +19,7 @@
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
 !! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error
 !! (two fifths of `slack`; all of it after two rejected proposals), and above it by the same, up to
-!! three times the tolerance.
+!! three times the tolerance. Over short advances a change of K_eq within the slack is no slope.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -27,7 +27,7 @@ module growth_advances
    implicit none(type, external)
    private
 
-   public :: advances_t, in_equilibrium
+   public :: advances_t, in_equilibrium, short
 
    !> Shortest change of a position, over the distance between its bounds [-]. The excess has been
    !! seen to change by 33 over a segment, so that this is worth 3e-3 of K_IC.
@@ -36,6 +36,10 @@ module growth_advances
    !> Slope of the excess, times the distance between the bounds, below which no equilibrium of a
    !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
+
+   !> Advances of all tips, over the distances between their bounds, up to which a change of K_eq
+   !! within the slack is an error of the meshes, and no slope [-].
+   real(rk), parameter :: short = 0.1_rk
 
    !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
    !! tolerance [-].
@@ -199,7 +203,7 @@ contains
    pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
-      real(rk) :: scaled(size(excess), size(excess))
+      real(rk) :: change(size(excess)), predicted(size(excess)), scaled(size(excess), size(excess))
       integer :: j
 
       ! The excess at nearly the same position shows nothing but the error of the mesh.
@@ -208,7 +212,12 @@ contains
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
          end do
-         call broyden_update(scaled, (self%place - self%best)/length, excess - self%excess)
+         change = excess - self%excess
+         if (allocated(self%slack) .and. all(abs(self%place - self%best) <= short*length)) then
+            predicted = matmul(scaled, (self%place - self%best)/length)
+            where (abs(change - predicted) <= self%slack) change = predicted
+         end if
+         call broyden_update(scaled, (self%place - self%best)/length, change)
          do j = 1, size(excess)
             self%matrix(:, j) = scaled(:, j)/length(j)
          end do
