@@ -17,8 +17,9 @@
 !!
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
-!! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
-!! given share of the error (`slack`), and above it by the same, up to three times the tolerance.
+!! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error
+!! (two fifths of `slack`; all of it after two rejected proposals), and above it by the same, up to
+!! three times the tolerance. Over short advances a change of K_eq within the slack is no slope.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -26,7 +27,7 @@ module growth_advances
    implicit none(type, external)
    private
 
-   public :: advances_t, in_equilibrium
+   public :: advances_t, in_equilibrium, short
 
    !> Shortest change of a position, over the distance between its bounds [-]. The excess has been
    !! seen to change by 33 over a segment, so that this is worth 3e-3 of K_IC.
@@ -35,6 +36,10 @@ module growth_advances
    !> Slope of the excess, times the distance between the bounds, below which no equilibrium of a
    !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
+
+   !> Advances of all tips, over the distances between their bounds, up to which a change of K_eq
+   !! within the slack is an error of the meshes, and no slope [-].
+   real(rk), parameter :: short = 0.1_rk
 
    !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
    !! tolerance [-].
@@ -59,7 +64,8 @@ module growth_advances
       real(rk), private :: radius = 1.0_rk
       integer, private :: rejected = 0  !< number of proposals rejected in succession
       integer, private :: rejected_in_all = 0
-      !> (tips) lack of toughness between the bounds at which a search that has stalled ends [-]
+      !> (tips) lack of toughness between the bounds at which a search that has stalled ends; a
+      !! share of it ends others [-]
       real(rk), allocatable :: slack(:)
       ! Bracket of each tip in the monotone search.
       real(rk), allocatable, private :: near(:)  !< farthest position with K_eq > K_IC [m]
@@ -142,10 +148,12 @@ contains
       class(advances_t), intent(in) :: self
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       integer, parameter :: stalled = 2  ! rejected proposals
+      real(rk), parameter :: at_once = 0.4_rk  ! share of `slack` before
       real(rk) :: lack(size(self%place))
 
       lack = tolerance
       if (.not. allocated(self%slack)) return
+      lack = max(tolerance, at_once*self%slack)
       if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
    end function allowed
 
@@ -195,7 +203,7 @@ contains
    pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
-      real(rk) :: scaled(size(excess), size(excess))
+      real(rk) :: change(size(excess)), predicted(size(excess)), scaled(size(excess), size(excess))
       integer :: j
 
       ! The excess at nearly the same position shows nothing but the error of the mesh.
@@ -204,7 +212,12 @@ contains
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
          end do
-         call broyden_update(scaled, (self%place - self%best)/length, excess - self%excess)
+         change = excess - self%excess
+         if (allocated(self%slack) .and. all(abs(self%place - self%best) <= short*length)) then
+            predicted = matmul(scaled, (self%place - self%best)/length)
+            where (abs(change - predicted) <= self%slack) change = predicted
+         end if
+         call broyden_update(scaled, (self%place - self%best)/length, change)
          do j = 1, size(excess)
             self%matrix(:, j) = scaled(:, j)/length(j)
          end do
