@@ -15,6 +15,7 @@ module twolevel_pace
 
    type :: pace_t
       real(rk) :: recorded = 0.0_rk  !< length of the recorded step [s]
+      real(rk) :: recorded_end = 0.0_rk  !< and its end [s]
       real(rk) :: since = 0.0_rk  !< time since the wells were switched, at the start of the step [s]
       real(rk) :: recorded_since = 0.0_rk  !< the same in the record [s]
       logical :: is_bound = .false.  !< the tips decide about the length of the step
