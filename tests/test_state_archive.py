@@ -96,6 +96,8 @@ STORED = {
     "collection_t": ("report_snapshots:visit",),
     "network_record_t": ("report_network:visit",),
     "journal_t": ("app_run:visit",),
+    "tape_t": ("base_tape:visit",),
+    "pace_t": ("twolevel_pace:visit",),
 }
 
 _RULE = "follows from the scene, the mesh and what is stored, and is made again"
@@ -145,6 +147,7 @@ MADE_AGAIN = {
     "body_t": {"model": _RULE, "probe": _RULE},
     "programme_t": {"ends": _RULE, "steps": _RULE},
     "run_output_t": _each("place keeps_earlier_run log_written clock_begin last_flush", _FILES)
+    | {"record_written": _FILES}
     | {"flush_cost": _FILES, "writes_vtu": _RULE, "interval": _RULE},
     "tables_t": {"probe_names": _RULE, "pressure_names": _RULE},
     "series_t": _each("path written", _FILES)
@@ -152,6 +155,9 @@ MADE_AGAIN = {
     "snapshots_t": {"directory": _FILES, "material": _RULE, "counts": _RULE},
     "collection_t": {"path": _FILES, "is_falling": _RULE},
     "network_record_t": {"path": _FILES, "names": _RULE, "clock": _RULE},
+    "tape_t": _each("own own_mark taken_mark", _EMPTY) | {"is_recording": _RULE},
+    "pace_t": _each("recorded recorded_end since recorded_since is_bound has_joined misfit", _EMPTY)
+    | _each("why_not tries last_dt last_misfit", _EMPTY),
     "journal_t": {"progress": _FILES, "shown": _FILES, "checkpoints": _FILES},
 }
 

@@ -18,7 +18,10 @@ import pytest
 from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied
 
 import wingcrack
+from wingcrack.runner.task import run_task
 from wingcrack.runs.checkpoint import read_checkpoint
+from wingcrack.studies.running import tasks_of
+from wingcrack.studies.study import read_study
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -249,3 +252,33 @@ def test_a_checkpoint_is_read_in_python(ended: Path) -> None:
     damaged(ended / "checkpoint.bin", 100)
     with pytest.raises(wingcrack.RunError, match="is damaged"):
         read_checkpoint(ended / "checkpoint.bin")
+
+
+def test_forks_of_a_state_are_as_runs_from_the_start(ended: Path, tmp_path: Path) -> None:
+    """Two schedules from one history, one of them as a study."""
+    run = wingcrack.open(ended)
+    state = run.at(7200.0)
+    assert state.directory == ended / "states" / "7200"
+    written = (state.directory / "run.json").stat().st_mtime_ns
+    for end in (9000.0, 16200.0):
+        (tmp_path / "whole.nml").write_text(
+            FINE.replace("end = 14400.0", f"end = {end}") + EVERY_STATE
+        )
+        whole = tmp_path / f"whole_{end}"
+        assert solver("run", tmp_path / "whole.nml", "--out", whole, "--quiet").returncode == 0
+        run.at(7200.0).fork(tmp_path / f"fork_{end}", {"injection.1.end": end})
+        assert_same(tmp_path / f"fork_{end}", whole)
+    assert (state.directory / "run.json").stat().st_mtime_ns == written
+    assert run.at(18000.0).directory == ended
+    (tmp_path / "study.toml").write_text(
+        f"title = 'Shut-in'\nfrom = '{ended}'\nat = 7200.0\n"
+        "over = { 'injection.1.end' = [9000.0, 16200.0] }\n"
+        "[[quantity]]\nname = 'last'\nunit = 'Pa'\nfile = 'history.csv'\n"
+        "column = 'well_pressure_pa'\ntake = 'last'\n"
+    )
+    study = read_study(tmp_path / "study.toml")
+    tasks = tasks_of(study, SOLVER.parents[2], tmp_path / "study")
+    assert [run_task(task).status for task in tasks.values()] == ["finished"] * 2
+    for task, end in zip(tasks.values(), (9000.0, 16200.0), strict=True):
+        one = (task.folder / "output" / "history.csv").read_bytes()
+        assert one == (tmp_path / f"fork_{end}" / "history.csv").read_bytes()

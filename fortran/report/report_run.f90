@@ -135,7 +135,9 @@ contains
          else
             call self%snapshots%clear(0)
          end if
-         if (scene%output%vtu) call self%snapshots%make_folder(error)
+         if (scene%output%vtu .or. self%snapshots%n_written > 0) then
+            call self%snapshots%make_folder(error)
+         end if
          if (.not. (allocated(error) .or. is_same)) call self%snapshots%copy_from(origin, error)
       end associate
    end subroutine continue_run

@@ -4,6 +4,7 @@
 !! else the one with the largest K_eq/K_IC, where this rises in the step. Other steps, jumps among
 !! them, are as long as those of the record, in proportion to the time since the wells were switched.
 module twolevel_pace
+   use base_archive, only: archive_t
    use base_kinds, only: pi, rk
    use base_number, only: brief_text
    use base_tape, only: tape_t
@@ -14,6 +15,7 @@ module twolevel_pace
 
    type :: pace_t
       real(rk) :: recorded = 0.0_rk  !< length of the recorded step [s]
+      real(rk) :: recorded_end = 0.0_rk  !< and its end [s]
       real(rk) :: since = 0.0_rk  !< time since the wells were switched, at the start of the step [s]
       real(rk) :: recorded_since = 0.0_rk  !< the same in the record [s]
       logical :: is_bound = .false.  !< the tips decide about the length of the step
@@ -22,8 +24,10 @@ module twolevel_pace
       real(rk) :: misfit = 0.0_rk
       character(len=:), allocatable :: why_not  !< reason why the record does not apply
       integer :: tries = 0
+      real(rk) :: rise = 0.2_rk  !< d misfit/d ln t in the last step [-]
       real(rk) :: last_dt = 0.0_rk, last_misfit = 0.0_rk  !< of the try before [s], [-]
    contains
+      procedure :: visit
       procedure :: begin_try
       procedure :: see_joints
       procedure :: see_end
@@ -38,9 +42,17 @@ module twolevel_pace
    real(rk), parameter :: least_load = 0.1_rk, least_rise = 0.02_rk
 
    !> Misfit that is rounding, and the one at which a search that does not improve ends [-].
-   real(rk), parameter :: rounding = 1.0e-11_rk, small = 1.0e-7_rk
+   real(rk), parameter :: rounding = 3.0e-10_rk, small = 1.0e-7_rk
 
 contains
+
+   !> What is known from earlier steps.
+   subroutine visit(self, archive)
+      class(pace_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+
+      call archive%item("rise", self%rise)
+   end subroutine visit
 
    subroutine begin_try(self)
       class(pace_t), intent(inout) :: self
@@ -114,7 +126,6 @@ contains
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_found
       integer, parameter :: tries_max = 15
-      real(rk), parameter :: usual_rise = 0.2_rk  ! of ln K with ln t [-]
       real(rk), parameter :: longest = 0.1_rk, shortest = 1.0e-6_rk  ! first change [-]
       real(rk), parameter :: most = 8.0_rk  ! change of the recorded length [-]
       real(rk) :: change, misfit_change
@@ -126,10 +137,11 @@ contains
       self%tries = self%tries + 1
       misfit_change = self%misfit - self%last_misfit
       if (self%tries == 1 .or. .not. abs(misfit_change) > 0.0_rk) then
-         change = min(longest*dt, abs(self%misfit)*(self%since + dt)/usual_rise)
+         change = min(longest*dt, abs(self%misfit)*(self%since + dt)/self%rise)
          change = -sign(max(shortest*dt, change), self%misfit)
       else
          change = -self%misfit*(dt - self%last_dt)/misfit_change
+         self%rise = max(least_rise, abs(misfit_change/(dt - self%last_dt))*(self%since + dt))
          change = max(-0.8_rk*dt, min(4.0_rk*dt, change))
       end if
       self%last_dt = dt

@@ -6,13 +6,12 @@ submodule(twolevel_state:twolevel_steps) twolevel_replay
 
 contains
 
-   module subroutine keep_try(self, is_last, may_jump, ends_at_switch)
+   module subroutine keep_try(self, is_last, may_jump)
       class(two_levels_t), intent(inout) :: self
       logical, intent(inout) :: is_last, may_jump
-      logical, intent(out) :: ends_at_switch
       type(refinement_t), allocatable :: none(:)
       integer(ik) :: cells(3), recorded_cells(3)
-      real(rk) :: recorded(2), times(2)
+      real(rk) :: recorded(3), times(3)
 
       allocate (none(0))
       call keep_refinements(self%tape, none)
@@ -22,16 +21,15 @@ contains
          cells = [self%problem%mesh%n_cells, fracture%n_cells, size(self%tip, kind=ik)]
          call self%tape%compare("cells", cells, recorded_cells)
          if (any(cells /= recorded_cells)) self%pace%why_not = "the mesh is another one"
-         times = [time - last_switch(self%scene, time), dt]
+         times = [time, time - last_switch(self%scene, time), dt]
          call self%tape%compare("times", times, recorded)
-         ends_at_switch = next_switch(self%scene, time) <= (time + dt)*(1.0_rk + same_time)
       end associate
-      self%pace%since = times(1)
-      self%pace%recorded_since = recorded(1)
-      self%pace%recorded = recorded(2)
+      self%pace%since = times(2)
+      self%pace%recorded_since = recorded(2)
+      self%pace%recorded = recorded(3)
+      self%pace%recorded_end = recorded(1) + recorded(3)
       call self%tape%keep("is_last", is_last)
       call self%tape%keep("may_jump", may_jump)
-      call self%tape%keep("ends_at_switch", ends_at_switch)
    end subroutine keep_try
 
    module subroutine replay_step(self, trial, timers, error)
@@ -55,7 +53,9 @@ contains
       self%step%dt = 0.0_rk
       do
          call self%tape%rewind()
-         call keep_try(self, is_last, may_jump, ends_at_switch)
+         call keep_try(self, is_last, may_jump)
+         ends_at_switch = abs(self%pace%recorded_end - self%before%time - left) &
+                          <= same_time*self%pace%recorded_end
          if (.not. self%step%dt > 0.0_rk) then
             self%step%dt = self%pace%recorded
             associate (since => self%pace%recorded_since)

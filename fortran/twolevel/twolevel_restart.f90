@@ -153,6 +153,7 @@ contains
       call archive%leave()
       call archive%item("begins_stage", self%begins_stage)
       call visit_stepper(archive, "stepper", self%stepper)
+      call self%pace%visit(archive)
       call self%notes%visit(archive)
       call self%stimulation%visit(archive)
       call self%well_results%visit(archive)

@@ -32,11 +32,10 @@ submodule(twolevel_state) twolevel_steps
 
    interface
       !> Record how a step is tried, or take it from the record.
-      module subroutine keep_try(self, is_last, may_jump, ends_at_switch)
+      module subroutine keep_try(self, is_last, may_jump)
          implicit none(type, external)
          class(two_levels_t), intent(inout) :: self
          logical, intent(inout) :: is_last, may_jump
-         logical, intent(out) :: ends_at_switch  !< a switch is reached
       end subroutine keep_try
 
       !> Find the step that the record has next; where it does not apply, the step is to be found
@@ -199,7 +198,7 @@ contains
       logical, intent(out) :: is_unstable
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      logical :: ends_at_switch, is_last, is_too_short, may_jump
+      logical :: is_last, is_too_short, may_jump
 
       wanted = 0.0_rk
       is_unstable = .false.
@@ -218,7 +217,7 @@ contains
                  self%step%dt <= moment(self%scene, self%before%time)
       do
          call self%tape%rewind()
-         call keep_try(self, is_last, may_jump, ends_at_switch)
+         call keep_try(self, is_last, may_jump)
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
          if (trial%needs_windows()) then

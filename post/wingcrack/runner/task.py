@@ -106,12 +106,14 @@ class Task:
     tables: tuple[Path, ...]  # files that the scene names, to be put next to it
     time_limit_s: float  # a run that takes longer is ended, and has crashed [s]
     code: str = ""  # hash of the modules that decided what is run
+    origin: Path | None = None  # folder with the checkpoint from which the run goes on
 
     @cached_property
     def folder(self) -> Path:
         """Its folder, named by the label and a hash of all that the run's files depend on."""
         limit = str(self.time_limit_s)
-        tables = (_file_hash(table) for table in self.tables if table.is_file())
+        files = (*self.tables, *([self.origin / "checkpoint.bin"] if self.origin else ()))
+        tables = (_file_hash(table) for table in files if table.is_file())
         parts = (_file_hash(self.program), self.code + _own_hash(), limit, self.text or "")
         content = "\0".join((*parts, *self.args, *tables))
         return self.parent / f"{slug(self.label)}-{hash_of(content.encode())[:16]}"
@@ -175,7 +177,8 @@ def _command(task: Task) -> list[str]:
     (task.folder / "input.nml").write_text(task.text, encoding="utf-8")
     copy_tables(task, task.folder)
     run = ("run", "../input.nml", "--out", ".", "--quiet")
-    return [*_bound(), str(task.program), *run]
+    origin = () if task.origin is None else ("--restart", str(task.origin.resolve()))
+    return [*_bound(), str(task.program), *run, *origin]
 
 
 @lru_cache(maxsize=1)

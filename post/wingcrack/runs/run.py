@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wingcrack.errors import RunError, RunFailedError, SceneError
 from wingcrack.figures.choices import DEFAULT_FORMATS
+from wingcrack.runs.checkpoint import read_checkpoint
 from wingcrack.runs.parameter_table import solver
 from wingcrack.runs.results import Results
 from wingcrack.runs.scene_files import SceneFile
@@ -115,12 +118,56 @@ class Run(Results):
         --------
         >>> run.continue_with("out/longer", end=2.0 * run.scene["time.end"])  # doctest: +SKIP
         """
+        scene = self._changed(changes, end)
+        return scene.run(out, threads=threads, quiet=quiet, restart=self.directory)
+
+    def at(self, time: float, *, threads: int = 1, quiet: bool = True) -> State:
+        """Give the state of this run at a time, from which other runs go on.
+
+        The state at the end of the run is there. Another one is computed once, in ``states`` in
+        the run's folder: after the end from there, else from the beginning.
+
+        Parameters
+        ----------
+        time : float
+            Time of the state [s].
+        threads : int
+            For windows side by side and loops.
+        quiet : bool
+            No progress on the terminal.
+
+        Raises
+        ------
+        SceneError
+            If the scene cannot end at this time.
+        RunFailedError
+            If the run does not reach it.
+
+        Examples
+        --------
+        >>> injected = run.at(3600.0)  # doctest: +SKIP
+        >>> for hours in (2, 3):  # doctest: +SKIP
+        ...     injected.fork(f"out/{hours}", {"injection.well.end": 3600.0 * hours})
+        """
+        last = _last_checkpoint(self.directory)
+        if _is_same(last, time):
+            return State(self, self.directory)
+        folder = self.directory / "states" / f"{time:.12g}"
+        if not _is_same(_last_checkpoint(folder), time):
+            restart = self.directory if 0.0 < last < time else None
+            self._changed({}, time).run(folder, threads=threads, quiet=quiet, restart=restart)
+        if not _is_same(_last_checkpoint(folder), time):
+            reached = _last_checkpoint(folder)
+            raise RunFailedError(f"the run ends at {reached:g} s, before {time:g} s", folder, 1)
+        return State(self, folder)
+
+    def _changed(self, changes: Mapping[str, Any] | None, end: float | None) -> Scene:
         scene = Scene.read(self._scene_file)
         for address, value in (changes or {}).items():
             scene[address] = value
         if end is not None:
             scene["time.end"] = end
-        return scene.run(out, threads=threads, quiet=quiet, restart=self.directory)
+        return scene
 
     # Figures
 
@@ -295,6 +342,37 @@ class Run(Results):
         from wingcrack.runs.pictures import write_movie
 
         return write_movie(self, Path(path), field, frames_per_second, size, progress=progress)
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of a run, from which other runs go on: `Run.at`."""
+
+    run: Run
+    directory: Path  # has a checkpoint of the state
+
+    def fork(
+        self,
+        out: str | Path,
+        changes: Mapping[str, Any] | None = None,
+        *,
+        end: float | None = None,
+        threads: int = 1,
+        quiet: bool = True,
+    ) -> Run:
+        """Go on in another folder, with what a restart can change; as `Run.continue_with`."""
+        scene = self.run._changed(changes, end)
+        return scene.run(out, threads=threads, quiet=quiet, restart=self.directory)
+
+
+def _last_checkpoint(folder: Path) -> float:
+    """Time of the newest checkpoint [s]; 0: there is none."""
+    file = folder / "checkpoint.bin"
+    return float(read_checkpoint(file)["about/time"]) if file.is_file() else 0.0
+
+
+def _is_same(a: float, b: float) -> bool:
+    return math.isclose(a, b, rel_tol=1e-9)
 
 
 class Scene(SceneFile):

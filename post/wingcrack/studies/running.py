@@ -16,9 +16,16 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from wingcrack.errors import CaseError, EnvironmentLacksError
+from wingcrack.errors import (
+    CaseError,
+    EnvironmentLacksError,
+    RunError,
+    RunFailedError,
+    SceneError,
+)
 from wingcrack.runner.pool import Pool
 from wingcrack.runner.task import ONE_THREAD, Outcome, Task, copy_tables, read_outcome, tables_of
+from wingcrack.runs.run import open_run
 from wingcrack.studies import TOP, remote
 from wingcrack.studies.cluster import Cluster, connect
 from wingcrack.studies.study import Study, StudyRun
@@ -39,14 +46,29 @@ def tasks_of(study: Study, build: Path, out: Path) -> dict[int, Task]:
     if not solver.is_file():
         raise EnvironmentLacksError(f"not built: {solver} is missing")
     found = {}
+    start = state_of(study)
     for run in study.runs:
         tables = tables_of(study.scene.resolve(), run.text)
         limit = study.time_limit_s
         place = out / RUNS
         found[run.number] = Task(
-            run.label, place, solver, run.text, (), tables, limit, scene_hash()
+            run.label, place, solver, run.text, (), tables, limit, scene_hash(), start
         )
     return found
+
+
+def state_of(study: Study) -> Path | None:
+    """Folder with the state from which the runs go on; it is computed if it is not there.
+
+    Raises `CaseError` if there is no such run, or it does not reach the state.
+    """
+    if study.origin is None:
+        return None
+    try:
+        run = open_run(study.origin.run)
+        return run.directory if study.origin.at is None else run.at(study.origin.at).directory
+    except (RunError, RunFailedError, SceneError) as error:
+        raise CaseError(f"from: {error}") from None
 
 
 def done_before(tasks: Mapping[int, Task]) -> dict[int, Outcome]:

@@ -83,6 +83,14 @@ class StudyRun:
 
 
 @dataclass(frozen=True)
+class Origin:
+    """The state from which all runs go on."""
+
+    run: Path  # folder of the run
+    at: float | None  # [s]; none: the end of the run
+
+
+@dataclass(frozen=True)
 class Study:
     """Everything that a study's file says."""
 
@@ -91,6 +99,7 @@ class Study:
     parameters: tuple[Parameter, ...]
     runs: tuple[StudyRun, ...]
     drawn: bool
+    origin: Origin | None
     time_limit_s: float
     constants: Mapping[str, float]
     quantities: tuple[Quantity, ...]
@@ -131,7 +140,9 @@ class _StudyFile(Entry):
 
     title: Text
     about: Text = ""
-    scene: Text
+    scene: Text = ""
+    origin: Text = Field(default="", alias="from")
+    at: Positive | None = None
     quick: _Quick | None = None
     set: Table = Field(default_factory=dict)
     unset: Texts = ()
@@ -149,6 +160,10 @@ class _StudyFile(Entry):
     def _judge(self) -> Self:
         if self.quick and self.quick.count and self.draw is None:
             raise ValueError("quick: 'count' is for a study with [draw]")
+        if not self.scene and not self.origin:
+            raise ValueError("'scene' is missing, or 'from' with the folder of a run")
+        if self.at is not None and not self.origin:
+            raise ValueError("'at' is for a study with 'from'")
         shares = self.quantiles or ()
         if any(not 0.0 <= one <= 1.0 for one in shares) or sorted(set(shares)) != list(shares):
             raise ValueError("'quantiles' must be numbers from 0 to 1 that increase")
@@ -164,7 +179,7 @@ def read_study(path: Path, quick: bool = False) -> Study:
     form that ``[quick]`` tells.
     """
     said = read_entry(_StudyFile, read_toml(path), path.name)
-    scene = path.parent / said.scene
+    scene = path.parent / (said.scene or f"{said.origin}/scene.nml")
     if not is_file(scene):
         raise CaseError(f"{path.name}: there is no scene file {scene}")
     if quick and said.quick is None:
@@ -180,6 +195,7 @@ def read_study(path: Path, quick: bool = False) -> Study:
         parameters=_parameters(runs, changes, said.units, path.name),
         runs=runs,
         drawn=said.draw is not None,
+        origin=Origin(path.parent / said.origin, said.at) if said.origin else None,
         time_limit_s=said.time_limit_s,
         constants=said.constants,
         quantities=said.quantity,
