@@ -1,4 +1,4 @@
-"""`check --stress`: pressures of slip, opening and growth in closed form, cost, table and figure."""
+"""`check --stress`: pressures in closed form, cost, table and figure."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from system_scene import SCENE, SOLVER, TOP
+
 from wingcrack.figures import mohr
 
 pytestmark = pytest.mark.usefixtures("program")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import numbers, rows, run
+from system_scene import SOLVER, numbers, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -134,3 +135,31 @@ def test_fluid_flows_between_fractures_after_shut_in(tmp_path: Path) -> None:
     end = [row for row in history if float(row["time_s"]) >= 10.0]
     held = [float(row["fracture_fluid_m2"]) for row in end]
     assert held == pytest.approx([1e-4] * len(held), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "others",
+    [
+        "&injection name = 'B', fracture = 'a', 'b', rate = 1e-5 /",
+        "&injection name = 'B', fracture = 'a', 'c', pressure = 2e6 /",
+        "&injection name = 'B', fracture = 'a', pressure = 1e6 /",
+        "&injection name = 'B', fracture = 'b', 'c', rate = 1e-5 /\n"
+        "&injection name = 'C', fracture = 'c', 'a', rate = 1e-5 /",
+    ],
+)
+def test_meeting_entries_without_losses_are_refused(others: str, tmp_path: Path) -> None:
+    """Flow round through wells is not determined; with a loss in each loop it is."""
+    control = "pressure = 1e6" if "pressure" in others else "rate = 1e-5"
+    first = f"&injection name = 'A', fracture = 'a', 'b', {control} /"
+    (tmp_path / "meet.nml").write_text(f"{BODY}&time end = 1 /\n{first}\n{others}\n")
+    words = [SOLVER, "check", tmp_path / "meet.nml"]
+    told = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert told.returncode == 2
+    # the well with entries; of several the last one
+    last = 12 if "fracture = 'a', pressure" in others else 12 + len(others.splitlines())
+    assert f"meet.nml:{last}: &injection: fracture '" in told.stderr
+    assert "give entry_loss, or other points" in told.stderr
+    lossy = first.replace(" /", ", entry_loss = 1e16 /")
+    if "pressure" in others:
+        lossy = lossy.replace("pressure", "friction = 1e9, pressure")
+    run(tmp_path, f"{BODY}&time end = 1 /\n{lossy}\n{others}\n")

@@ -36,7 +36,7 @@ ROCK = """\
 &side name = 'bottom', y_displacement = 0 /
 &injection name = 'w', x = 0.3, y = 0.2, radius = 0.1, rate = 1e-5, 0.0, time = 0, 3600 /
 &time end = 36000, tolerance = 1e-4 /
-&coarse size_boundary = 2.0 /
+&coarse size_boundary = 1.4 /
 """
 
 
@@ -64,10 +64,25 @@ def test_fall_off_of_a_fracture_gives_its_leak_off_area(tmp_path: Path) -> None:
 
 
 def test_fall_off_of_a_well_in_rock_gives_its_permeability(tmp_path: Path) -> None:
-    """Permeability within its error, which is large: cells of 2 m are half the reach of flow."""
+    """Permeability within 3 % and its error.
+
+    The line begins where flow has reached 2 sqrt(c t) = 7 m, five cells. With cells of 2 m a line
+    that is even by chance begins at 3 m, and k h is 6 % off.
+    """
     _, row, _ = _analysed(tmp_path, ROCK)
-    assert float(row["k_h"]) == pytest.approx(1e-16, rel=0.1)
+    assert float(row["k_h"]) == pytest.approx(1e-16, rel=0.03)
     assert abs(float(row["k_h"]) - 1e-16) < float(row["k_h_error"])
+
+
+def test_a_region_at_the_well_is_named(tmp_path: Path) -> None:
+    region = "&region name = 'clay', x = -5, 5, 5, -5, y = -5, -5, 5, 5, permeability = 1e-19 /\n"
+    elsewhere = region.replace("-5, 5, 5, -5", "35, 45, 45, 35").replace("clay", "sand")
+    text = FRACTURE.replace("fracture = 'c', rate", "fracture = 'c', x = 0, y = 0, rate")
+    run(tmp_path, text.replace("60600", "6060") + region + elsewhere)
+    done = call(tmp_path, "analyse", "out")
+    assert done.returncode == 0, done.stderr
+    assert "well at (0, 0) m may be that of the region 'clay', but" in done.stderr
+    assert "sand" not in done.stderr
 
 
 def test_run_without_a_shut_in_is_refused(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ module scene_check
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_tolerances, only: round_off
+   use scene_check_entries, only: check_meetings
    use scene_check_fluid, only: check_fluid, check_given_fluid, check_given_wells, check_wells
    use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
@@ -66,6 +67,7 @@ contains
       if (.not. allocated(error)) call check_faces(sheet, scene, error)
       if (.not. allocated(error)) call check_fractures(sheet, scene, error)
       if (.not. allocated(error)) call check_wells(sheet, scene, error)
+      if (.not. allocated(error)) call check_meetings(sheet, scene, error)
       if (.not. allocated(error)) call check_probes(sheet, scene, error)
       if (.not. allocated(error)) call check_levels(sheet, scene, error)
    end subroutine check_scene

@@ -1,12 +1,13 @@
 !> Divides the text of a scene file into tokens with their lines, and evaluates expressions:
-!! numbers, named values, + - * / ^ and brackets. A name must be defined before it is used, so no
+!! numbers, named values, + - * / ^, brackets, sqrt, sin, cos and tan of radians, sind, cosd and tand
+!! of degrees, and pi. A name must be defined before it is used, so no
 !! name can depend on itself.
 !!
 !! The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
 !! end of the line, texts in single or double quotes in which a doubled quote stands for one.
 module scene_expression
    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, radians, rk
    use base_number, only: integer_text
    use scene_words, only: lower_case
    implicit none(type, external)
@@ -246,8 +247,8 @@ contains
       if (status /= 0) reading%fault = "'"//reading%text(first:last)//"' is no number"
    end subroutine read_number
 
-   !> The value of a name.
-   pure subroutine read_name(reading, constants, value)
+   !> The value of a name, or of a function of what follows in brackets.
+   pure recursive subroutine read_name(reading, constants, value)
       type(reading_t), intent(inout) :: reading
       type(constant_t), intent(in) :: constants(:)
       real(rk), intent(out) :: value
@@ -260,13 +261,50 @@ contains
       name = reading%text(first:first + k - 1)
       reading%position = first + k
       value = 0.0_rk
+      if (next(reading) == "(") then
+         call read_operand(reading, constants, value)
+         if (.not. allocated(reading%fault)) call apply_function(reading, name, value)
+         return
+      end if
       do k = 1, size(constants)
          if (constants(k)%name /= name) cycle
          value = constants(k)%value
          return
       end do
-      reading%fault = "there is no value '"//name//"' of &define before it"
+      if (name == "pi") then
+         value = pi
+      else
+         reading%fault = "there is no value '"//name//"' of &define before it"
+      end if
    end subroutine read_name
+
+   !> Apply a function to a value.
+   pure subroutine apply_function(reading, name, value)
+      type(reading_t), intent(inout) :: reading
+      character(len=*), intent(in) :: name
+      real(rk), intent(inout) :: value
+
+      select case (name)
+      case ("sqrt")
+         if (value < 0.0_rk) reading%fault = "the root of a negative number is none"
+         value = sqrt(abs(value))
+      case ("sin")
+         value = sin(value)
+      case ("cos")
+         value = cos(value)
+      case ("tan")
+         value = tan(value)
+      case ("sind")
+         value = sin(value*radians)
+      case ("cosd")
+         value = cos(value*radians)
+      case ("tand")
+         value = tan(value*radians)
+      case default
+         reading%fault = "there is no function '"//name//"' (there are sqrt, sin, cos, tan of "// &
+                         "radians, and sind, cosd, tand of degrees)"
+      end select
+   end subroutine apply_function
 
    !> Cut a source into tokens.
    pure subroutine tokenize(source, tokens, fault, fault_line)

@@ -45,6 +45,11 @@ contains
       call expect_value("1d-3+2.5e+3", 2500.001_rk)
       call expect_value("A/b_2--1", 1251.0_rk)
       call expect_value("4^0.5", 2.0_rk)
+      call expect_value("sqrt(a)/2 + 1", 26.0_rk)
+      call expect_value("2*Sind(30) + cosd(60)*tand(45)", 1.5_rk)
+      call expect_value("sin(pi/6)^2 + cos(pi/6)^2", 1.0_rk)
+      call expect_value("tan(pi/4)*sqrt(sqrt(16))", 2.0_rk)
+      call expect_value("-cosd (-(60))", -0.5_rk)
    end subroutine check_arithmetic
 
    subroutine expect_value(expression, expected)
@@ -69,6 +74,15 @@ contains
       call expect_fault("1/0", "it divides by zero")
       call expect_fault("1/(2-2)", "it divides by zero")
       call expect_fault("depth", "there is no value 'depth' of &define before it")
+      call expect_fault("sin", "there is no value 'sin' of &define before it")
+      call expect_fault("sin(", "it ends where a number or a name is expected")
+      call expect_fault("cosd(1", "a bracket is not closed")
+      call expect_fault("sqrt(1-2)", "the root of a negative number is none")
+      call expect_fault("ln(2)", "there is no function 'ln' (there are sqrt, sin, cos, tan of "// &
+                        "radians, and sind, cosd, tand of degrees)")
+      call expect_fault("a(2)", "there is no function 'a' (there are sqrt, sin, cos, tan of "// &
+                        "radians, and sind, cosd, tand of degrees)")
+      call expect_fault(repeat("sin(", 60)//"1"//repeat(")", 60), "it is nested too deeply")
       call expect_fault("1e999", "the result is no finite number")
       call expect_fault("(-1)^0.5", "the result is no finite number")
       call expect_fault("1e", "'1e' is no number")

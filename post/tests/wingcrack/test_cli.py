@@ -227,7 +227,7 @@ def test_missing_directory() -> None:
         (["plot"], "plot needs the directory of a run"),
         (
             ["plot", "d", "--only", "map"],
-            "'map' is none of summary, story, network, maps, fractures, tips, wells, probes, view,",
+            "'map' is none of summary, story, network, maps, fractures, tips, wells, seismicity,",
         ),
         (["plot", "d", "--format", "svg"], "'svg' is none of png, pdf"),
         (["plot", "d", "--times", "noon"], "'noon' is no time"),

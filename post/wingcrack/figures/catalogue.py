@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError
 from wingcrack.figures.choices import ALL, DEFAULT_FORMATS
 from wingcrack.figures.read import Run, read_run
+from wingcrack.figures.slip import has_seismic
 from wingcrack.figures.states import grows, slips_or_opens
 from wingcrack.figures.unchanged import Drawn, fields_of, fingerprint_of, program, tables_of
 
@@ -90,6 +91,7 @@ _FIGURES = (
     _Figures("tips", "development", "history:development", shown=slips_or_opens),
     _Figures("tips", "balance", "history:balance", shown=_on_request),
     _Figures("wells", "wells", "wells:well_histories", shown=_changing_wells),
+    _Figures("seismicity", "seismicity", "seismicity:seismicity", shown=has_seismic),
     _Figures("probes", "probes", "probes:probe_histories"),
     _Figures("view", "view", "view:view", of_fields=True, shown=_on_request),
 )

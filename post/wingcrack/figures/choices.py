@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-GROUPS = ("summary", "story", "network", "maps", "fractures", "tips", "wells", "probes", "view")
+GROUPS = (
+    *("summary", "story", "network", "maps", "fractures", "tips", "wells", "seismicity", "probes"),
+    "view",
+)
 ALL = "all"
 FORMATS = ("png", "pdf")
 DEFAULT_FORMATS = ("png",)

@@ -12,6 +12,7 @@ from urllib.parse import quote
 from wingcrack.figures.facts import Facts, gather_facts
 from wingcrack.figures.read import Run
 from wingcrack.figures.report import Cell, report_rows, write_report
+from wingcrack.figures.slip import write_points
 from wingcrack.figures.text_files import read_json, write_whole
 
 NAME = "index.html"
@@ -94,7 +95,8 @@ def write_page(run: Run, folder: Path, order: Sequence[str]) -> list[Path]:
         figures="\n".join(_figures(folder, pictures)),
     )
     folder.mkdir(parents=True, exist_ok=True)
-    return [*write_report(rows, folder), write_whole(folder / NAME, text)]
+    points = write_points(run, folder)
+    return [*write_report(rows, folder), *points, write_whole(folder / NAME, text)]
 
 
 def _report(rows: Sequence[Mapping[str, Cell]]) -> str:

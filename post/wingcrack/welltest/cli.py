@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import csv
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 from wingcrack.errors import AbsentError, RunError
 from wingcrack.welltest.record import read_record, records_of_run
 from wingcrack.welltest.results import Cell, Rock, evaluate, rock_of_scene
+
+if TYPE_CHECKING:
+    from wingcrack.figures.scene import Scene
 
 _SHOWN = (  # column, its error, factor, unit and label of the lines on the terminal
     ("isip_pa", "isip_error_pa", 1e-6, "MPa", "instantaneous shut-in pressure"),
@@ -36,7 +41,10 @@ def analyse(given: SimpleNamespace) -> int:
     try:
         if path.is_dir():
             out = given.out or path
-            records, rock = records_of_run(read_run(path)), rock_of_scene(path / "scene.nml")
+            run = read_run(path)
+            records, rock = records_of_run(run), rock_of_scene(path / "scene.nml")
+            for words in _other_rock(run.scene):
+                print(f"wingcrack analyse: {words}", file=sys.stderr)
         else:
             out = given.out or Path("out") / path.stem
             records, rock = [read_record(path, given.columns)], Rock(given.viscosity, given.storage)
@@ -63,6 +71,26 @@ def analyse(given: SimpleNamespace) -> int:
     if not given.quiet:
         print(table)
     return 0
+
+
+def _other_rock(scene: Scene | None) -> Iterator[str]:
+    """Warn of regions at wells, whose rock differs from that of the analysis."""
+    from matplotlib.path import Path as Outline
+
+    for well in scene.wells if scene else ():
+        inside = [
+            region.name
+            for region in (scene.regions if scene else ())
+            if well.place_m is None or Outline(region.corners).contains_point(well.place_m)
+        ]
+        if inside:
+            where = f"in '{well.fracture}'"
+            if well.place_m:
+                where = f"at ({well.place_m[0]:g}, {well.place_m[1]:g}) m"
+            yield (
+                f"warning: the rock of the well {where} may be that of the region '{inside[-1]}',"
+                " but the analysis uses that of &material"
+            )
 
 
 def _words(row: dict[str, Cell]) -> str:
