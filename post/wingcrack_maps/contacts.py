@@ -17,9 +17,7 @@ _EXACT = 5e-14
 """The mesher takes places for one that differ by less: distance over the largest coordinate."""
 
 
-def weld(
-    lines: Sequence[Line], body: Polygon | None, same: float
-) -> tuple[list[Line], int, float]:
+def weld(lines: Sequence[Line], body: Polygon | None, same: float) -> tuple[list[Line], int, float]:
     """Move vertices that are one place onto each other, and let segments go through them.
 
     Returns

@@ -111,7 +111,7 @@ def _angles_deg(a: Points, b: Points) -> Points:
     """(n, m) angles between undirected segments [degree]."""
     p, q = (a[:, 1] - a[:, 0])[:, None], (b[:, 1] - b[:, 0])[None]
     sine = np.abs(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0])
-    return np.degrees(np.arctan2(sine, np.abs((p * q).sum(axis=-1))))
+    return np.asarray(np.degrees(np.arctan2(sine, np.abs((p * q).sum(axis=-1)))))
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,9 @@ class Search:
         """All faults of a network, in the order of `KINDS`."""
         self._update(lines)
         found = [
-            replace(fault, lines=(i,)) for i, line in enumerate(lines) for fault in self._alone[line]
+            replace(fault, lines=(i,))
+            for i, line in enumerate(lines)
+            for fault in self._alone[line]
         ]
         for i, line in enumerate(lines):
             for other, pair in self._pairs[line].items():
@@ -198,7 +200,7 @@ class Search:
     def _of_one(self, line: Line) -> Iterator[Fault]:
         points, limits, shape = line.points, self.limits, self.shapes[line]
         gaps = np.hypot(*np.diff(points, axis=0).T)
-        for k in np.nonzero(gaps < limits.near)[0]:
+        for k in np.flatnonzero(gaps < limits.near).tolist():
             if gaps[k] <= limits.same:
                 yield _fault("repeated vertex", (0,), points[k + 1], gaps[k], k + 1)
             elif len(points) > 2:
@@ -297,7 +299,7 @@ class Search:
         limits, points = self.limits, lines[own].points
         last = len(points) - 1
         roles = (own, 1 - own)
-        for k in np.nonzero((near[own] > limits.same) & (near[own] < limits.near))[0]:
+        for k in np.flatnonzero((near[own] > limits.same) & (near[own] < limits.near)).tolist():
             if k not in (0, last):
                 yield _fault("near vertex", roles, points[k], near[own][k], k)
         for k in (0, last):
@@ -307,11 +309,17 @@ class Search:
             stub = self._stub(lines[own], pair.along[own], is_start=k == 0)
             if limits.same < stub < limits.near:
                 yield _fault("end past", roles, points[k], stub, k)
-            elif gap < limits.near and not (own == 0 and self._is_told(lines, pair, points[k], near)):
+            elif gap < limits.near and not (
+                own == 0 and self._is_told(lines, pair, points[k], near)
+            ):
                 yield _fault("near end", roles, points[k], gap, k)
 
     def _is_told(
-        self, lines: tuple[Line, Line], pair: _Pair, end: Points, near: Sequence[NDArray[np.float64]]
+        self,
+        lines: tuple[Line, Line],
+        pair: _Pair,
+        end: Points,
+        near: Sequence[NDArray[np.float64]],
     ) -> bool:
         """Two ends that are near to each other are told once, as of the later fracture."""
         gaps = np.hypot(*(lines[1].points[[0, -1]] - end).T)
@@ -349,8 +357,8 @@ def _flat_meeting(
 ) -> Points | None:
     """One of the places, at which two lines meet at less than the angle, however short."""
     points = shapely.points(places)
-    is_met = shapely.dwithin(points, line, limits.same) & shapely.dwithin(points, other, limits.same)
-    for place in places[is_met]:
+    near_both = [shapely.dwithin(points, shape, limits.same) for shape in (line, other)]
+    for place in places[near_both[0] & near_both[1]]:
         ways = [_ways_from(place, shape, limits.same) for shape in (line, other)]
         sine = ways[0][:, None, 0] * ways[1][None, :, 1] - ways[0][:, None, 1] * ways[1][None, :, 0]
         angles = np.degrees(np.arctan2(np.abs(sine), ways[0] @ ways[1].T))
@@ -379,7 +387,7 @@ def _fault(
     lines: tuple[int, ...],
     place: Sequence[float] | Points,
     size: float,
-    vertex: int | np.integer = -1,
+    vertex: int = -1,
 ) -> Fault:
     where = (float(place[0]), float(place[1]))
-    return Fault(kind, lines, where, float(size), int(vertex))
+    return Fault(kind, lines, where, float(size), vertex)

@@ -9,7 +9,7 @@ from wingcrack.errors import EnvironmentLacksError
 
 
 def needed(package: str) -> Any:
-    """Give a package of requirements_maps_gis.txt, which the launcher installs at the first need."""
+    """Give a package of requirements_maps_gis.txt; the launcher installs it when needed."""
     try:
         return import_module(package)
     except ImportError:

@@ -19,9 +19,7 @@ OF_GDAL = (".shp", ".gpkg", ".dxf", ".fgb", ".gml", ".kml")
 _GEOJSON = (".geojson", ".json")
 
 
-def read_map(
-    path: Path, unit: str | None, crs: str | None = None, layer: str | None = None
-) -> Map:
+def read_map(path: Path, unit: str | None, crs: str | None = None, layer: str | None = None) -> Map:
     """Read a map in metres.
 
     Raises `SceneError` if the file cannot be read or understood; nothing is guessed.

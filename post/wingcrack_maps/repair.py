@@ -117,7 +117,9 @@ class _Network:
         tries = max(self.tries.get(self.lines[i], 0) for i in fault.lines)
         if tries > 2 * _PATIENCE:
             return self._remove_shorter
-        return self._cut_out if tries > _PATIENCE and fault.kind in _MOVED else self.ways[fault.kind]
+        if tries > _PATIENCE and fault.kind in _MOVED:
+            return self._cut_out
+        return self.ways[fault.kind]
 
     def _whole(self, indices: Sequence[int]) -> float:
         return sum(line.length for i in indices for line in self.after.get(i, [self.lines[i]]))

@@ -33,9 +33,8 @@ def project(content: Map, system: str, wanted: str, path: str) -> None:
     places = np.vstack([item.points for item in content.features])
     if wanted.lower() == "utm":
         if not source.is_geographic:
-            places = np.stack(
-                pyproj.Transformer.from_crs(source, "EPSG:4326", always_xy=True).transform(*places.T)
-            ).T
+            to_degrees = pyproj.Transformer.from_crs(source, "EPSG:4326", always_xy=True)
+            places = np.stack(to_degrees.transform(*places.T), axis=1)
         wanted = utm_zone(places)
     target = _system(wanted, "--crs")
     if not target.is_projected or target.axis_info[0].unit_conversion_factor != 1.0:

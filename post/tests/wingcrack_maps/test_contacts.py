@@ -19,16 +19,16 @@ SAME = 2.0**-50 * UTM[1]
 
 
 def snapped_network(seed: int, offset: np.ndarray) -> list[np.ndarray]:
-    """Polylines around a place; each one ends on one that is there, as far as numbers can say so."""
+    """Polylines around a place; each ends on the first one, as far as numbers can say so."""
     numbers = random.Random(seed)
     lines = [offset + np.array([[-40.0, 1.3], [3.7, -2.1], [44.0, 0.7]])]
     for k in range(12):
         x, side = -36.0 + 6.1 * k, (-1.0) ** k
-        free = offset + (x + numbers.uniform(0.0, 3.0), side * numbers.uniform(8.0, 20.0))
-        middle = offset + (x + numbers.uniform(0.0, 2.0), side * numbers.uniform(4.0, 6.0))
+        free = np.array([x + numbers.uniform(0.0, 3.0), side * numbers.uniform(8.0, 20.0)])
+        middle = np.array([x + numbers.uniform(0.0, 2.0), side * numbers.uniform(4.0, 6.0)])
         parent = shapely.LineString(lines[0])
-        end = parent.interpolate(parent.project(shapely.Point(offset + (x, 0.0))))
-        lines.append(np.array([free, middle, end.coords[0]]))
+        end = parent.interpolate(parent.project(shapely.Point(offset + np.array([x, 0.0]))))
+        lines.append(np.array([offset + free, offset + middle, end.coords[0]]))
     return lines
 
 
@@ -51,9 +51,10 @@ def test_snapped_ends_meet_after_a_shift(seed: int) -> None:
     assert 0.0 < largest <= SAME
     assert [line.name for line in welded] == [line.name for line in lines]
     for new, old in zip(welded, lines, strict=True):
-        assert shapely.LineString(new.points).hausdorff_distance(
-            shapely.LineString(old.points)
-        ) <= 2.0 * SAME
+        assert (
+            shapely.LineString(new.points).hausdorff_distance(shapely.LineString(old.points))
+            <= 2.0 * SAME
+        )
     again, number, _ = weld(welded, None, SAME)
     assert number == 0
     assert again == welded
