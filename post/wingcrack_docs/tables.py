@@ -13,7 +13,7 @@ from wingcrack_docs.places import DOCS
 
 _PAGES = Path(__file__).with_name("pages")
 _WIDTH = 110
-# Names that scenes rarely need, in a section of their own: numerics, and the growth law of the thesis.
+# Names that scenes rarely need, in a section of their own: numerics, the thesis' growth law.
 _EXPERT = {
     "time": {"growth_factor"},
     "coarse": {"newton_max", "newton_tolerance", "condensation"},
