@@ -148,7 +148,7 @@ _FORMATS = Parameter(
     about="""\
 Without --only, the figures in which something happens are drawn, and those that were drawn before:
 network and stress intensities where tips grow, maps, profiles, lengths and states where a fracture
-slips or opens, wells where there are several or stages; balance and view only on request.
+slips or opens, wells where there are several or stages; balance, view and mesh only on request.
 
 groups of figures (--only), written to DIR/figures:
   summary    any run on one page: body and loads, network by state, pressure or load, length,
@@ -165,6 +165,7 @@ groups of figures (--only), written to DIR/figures:
   wells      pressures, flow, volume and injectivity of each well
   probes     pressure, displacement and stress at the probe points
   view       the deformed body, its displacements drawn larger than they are
+  mesh       the mesh of the body, and around the fractures with the windows of the tips
 
 A figure whose files are there and would come out the same is not drawn again.
 """,

@@ -31,6 +31,7 @@ _ABOUT = {
     "balance": "Where the injected fluid is, and the error of its balance.",
     "wells": "Pressure, flow, volume and injectivity of the wells.",
     "probes": "Pressure, displacement and stress at the probe points.",
+    "mesh": "Mesh of the body, and around the fractures with the windows of the tips.",
     "view": "Deformed body, displacements enlarged.",
 }
 _GROUPS = ("material", "fluid", "injection", "fracture")

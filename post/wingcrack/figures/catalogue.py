@@ -98,6 +98,7 @@ _FIGURES = (
     _Figures("wells", "wells", "wells:well_histories", shown=_changing_wells),
     _Figures("probes", "probes", "probes:probe_histories"),
     _Figures("view", "view", "view:view", of_fields=True, shown=_on_request),
+    _Figures("mesh", "mesh", "mesh:mesh_figure", of_fields=True, shown=_on_request),
 )
 
 

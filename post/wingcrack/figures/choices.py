@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-GROUPS = ("summary", "story", "network", "maps", "fractures", "tips", "wells", "probes", "view")
+GROUPS = (
+    "summary",
+    "story",
+    "network",
+    "maps",
+    "fractures",
+    "tips",
+    "wells",
+    "probes",
+    "view",
+    "mesh",
+)
 ALL = "all"
 FORMATS = ("png", "pdf")
 DEFAULT_FORMATS = ("png",)
