@@ -19,7 +19,7 @@ def test_run_solves_and_then_draws(ready_tree: Tree) -> None:
     assert done.stdout.splitlines() == [
         f"solver run {scene} --out out/wing_crack",
         "threads 1",
-        "post plot out/wing_crack",
+        "post plot out/wing_crack --quiet",
     ]
 
 
@@ -198,7 +198,7 @@ def test_ranks_are_started_by_mpiexec(ranks_tree: Tree, options: list[str]) -> N
         "mpiexec -n 3",
         f"solver run {scene} --out here",
         "threads 2",
-        "post plot here",
+        "post plot here --quiet",
     ]
 
 

@@ -37,6 +37,7 @@ contains
          row%strain_energy = body%model%strain_energy(body%displacement)
          row%fracture_length = total_length(simulation%network)
          row%seismic_moment = simulation%seismic_moment()
+         row%n_unknowns = body%model%constraints%n_dofs
          row%n_tips = fracture%n_tips
          row%n_intersections = count([(all(fracture%point_kind(i) /= &
                                            [point_interior, point_tip, point_boundary]), &

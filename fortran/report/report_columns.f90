@@ -136,7 +136,10 @@ module report_columns
       column_t("connected_stimulated_error_m", "m", with_wells, &
          "Estimated error of connected_stimulated_m", an_error), &
       column_t("max_slip_rate_error_m_s", "m/s", with_fluid, &
-         "Estimated error of max_slip_rate_m_s", an_error)]
+         "Estimated error of max_slip_rate_m_s", an_error), &
+      column_t("unknowns", "-", always, &
+         "Unknowns of the body, with a fluid of the coarse level: the sum of dofs in run.json "// &
+         "without the windows, for the mesh of the step", counted)]
 
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv", chosen), &

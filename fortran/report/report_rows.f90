@@ -69,6 +69,7 @@ module report_rows
       real(rk) :: fracture_length = 0.0_rk  !< [m]
       integer(ik) :: n_tips = 0
       integer(ik) :: n_intersections = 0
+      integer(ik) :: n_unknowns = 0  !< of the body, with a fluid of the coarse level
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness, cumulative [N m]
       real(rk) :: length_error = 0.0_rk  !< estimated error of fracture_length; -1: none [m]
       real(rk) :: well_pressure_error = 0.0_rk  !< estimated error of well_pressure; -1: none [Pa]

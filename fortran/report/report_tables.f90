@@ -125,6 +125,7 @@ contains
          call table%put("dimensionless_toughness", row%dimensionless_toughness)
          call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
          call put_errors(table, row%error)
+         call table%put("unknowns", row%n_unknowns)
          call table%end_row()
       end associate
    end subroutine history_row

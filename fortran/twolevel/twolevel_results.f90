@@ -66,6 +66,7 @@ contains
          row%prefilled = totals%prefilled
          row%outflow = totals%outflow
          row%fracture_length = total_length(front%network)
+         row%n_unknowns = unknowns_of(problem)
          row%n_tips = count(front%tip%is_free)
          if (problem%mesh%fracture%n_cells > 0) then
             fracture = problem%mesh%fracture
@@ -84,6 +85,16 @@ contains
          row%mass_error_relative = abs(totals%mass_error)/fluid
       end associate
    end function history_of_levels
+
+   !> Unknowns of the coarse level, without the windows.
+   pure integer(ik) function unknowns_of(problem) result(n)
+      type(coarse_problem_t), intent(in) :: problem
+
+      associate (mesh => problem%mesh, model => problem%model)
+         n = 3*mesh%n_cells + 7*mesh%fracture%n_cells + size(model%connections, 2, ik) &
+             + model%joints%branch_count() + model%joints%n
+      end associate
+   end function unknowns_of
 
    !> Fluid volume that the pressures, including those in situ, would store in unstrained rock [m2].
    pure real(rk) function content_in_situ(problem, state) result(content)

@@ -68,14 +68,24 @@ def _go_on(given: SimpleNamespace) -> int:
 
 def _drawn(status: int, out: str, given: SimpleNamespace) -> int:
     """Draw the figures of a run that has ended with this status; give the exit status."""
-    quiet = ["--quiet"] if given.quiet else []
-    if status == 0 and not given.no_plot:
+    if status != 0:
+        return status
+    if not given.quiet:
+        from wingcrack.closing import closing_lines
+
+        for line in closing_lines(Path(out)):
+            print(line, flush=True)
+    if not given.no_plot:
         # Figures are an extra: without them the run is still done.
-        drawn, _ = _call([LAUNCHER, "plot", out, *quiet])
+        drawn, _ = _call([LAUNCHER, "plot", out, "--quiet"])
         if drawn in (130, 143):
             return drawn
+        page = Path(out) / "figures" / "index.html"
         if drawn != 0:
             _say(f"the run is done, but drawing its figures failed; try ./wingcrack plot {out}")
+        elif not given.quiet and page.is_file():
+            count = len(list(page.parent.glob("[!.]*.png")))
+            print(f"{count} figures and {page}", flush=True)
     return status
 
 

@@ -28,6 +28,7 @@ _PAGES = {
 _ALONE = ("LICENSE", "CITATION.cff")  # files that are offered as they are
 _FOLDERS = ("inputs", "packaging")
 _FORTRAN = "fortran/index.html"
+_BOOST = 0.2  # of cases, scenes and the changelog in the search, the manual has 1
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
@@ -59,6 +60,9 @@ def on_page_markdown(markdown: str, *, page: Page, config: MkDocsConfig, files: 
     """Let links lead to the places in the site, and lists be lists."""
     del config, files
     place = PurePosixPath(page.file.src_uri)
+    # the manual is what is looked for; of what is in the tree as it is every word is found, too
+    if place.parts[0] in ("cases", "inputs") or place.name == "changelog.md":
+        page.meta["search"] = {"boost": _BOOST}
     source = _source(place)
     if source is not None:
         markdown = change_links(markdown, lambda target: _relinked(source, place, target))

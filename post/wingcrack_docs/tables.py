@@ -13,11 +13,23 @@ from wingcrack_docs.places import DOCS
 
 _PAGES = Path(__file__).with_name("pages")
 _WIDTH = 110
+# Names that scenes rarely need, in a section of their own: numerics, the thesis' growth law.
+_EXPERT = {
+    "time": {"growth_factor"},
+    "coarse": {"newton_max", "newton_tolerance", "condensation"},
+    "growth": {"exponent", "threshold"},
+}
 
 
 def pages() -> dict[Path, str]:
     """Text of each page, as it should be."""
-    tables = {"groups": _groups(), "files": _files(), "limits": _limits(), "checks": _checks()}
+    tables = {
+        "groups": _groups(),
+        "expert": _expert(),
+        "files": _files(),
+        "limits": _limits(),
+        "checks": _checks(),
+    }
     found = {}
     for page in sorted(_PAGES.glob("*.md")):
         text = page.read_text(encoding="utf-8")
@@ -49,9 +61,22 @@ def _groups() -> str:
             (
                 (f"`{p.name}`", p.kind, p.unit, p.default, p.allowed, p.meaning)
                 for p in group.parameters.values()
+                if p.name not in _EXPERT.get(group.name, ())
             ),
         )
         for group in groups().values()
+    )
+
+
+def _expert() -> str:
+    return _rows(
+        "group, name, kind, unit, default, allowed, meaning",
+        (
+            (f"`&{name}`", f"`{p.name}`", p.kind, p.unit, p.default, p.allowed, p.meaning)
+            for name, group in groups().items()
+            for p in group.parameters.values()
+            if p.name in _EXPERT.get(name, ())
+        ),
     )
 
 

@@ -23,7 +23,8 @@ POST = Path(__file__).resolve().parents[2]
 @pytest.mark.usefixtures("full_size")
 def test_all_figures_of_some_groups(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", str(own_run), "--only", "maps,fractures,tips,probes"]) == 0
-    names = ["pressure_maps", "fracture_1", "intensities", "development", "balance", "probes"]
+    names = ["pressure_maps", "jump_maps", "fracture_1", "intensities", "development"]
+    names += ["balance", "probes"]
     files = [own_run / "figures" / f"{name}.png" for name in names]
     out = capsys.readouterr().out.splitlines()
     assert [line for line in out if "left out" not in line] == [str(file) for file in files]
@@ -47,7 +48,10 @@ def test_same_run_gives_the_same_bytes(own_run: Path) -> None:
         shutil.rmtree(own_run / "figures", ignore_errors=True)
         assert main(["plot", str(own_run), "--only", "maps", "--format", "png,pdf"]) == 0
         drawn = sorted((own_run / "figures").glob("[!.]*"))
-        assert [file.name for file in drawn] == ["pressure_maps.pdf", "pressure_maps.png"]
+        names = [
+            f"{name}.{form}" for name in ("jump_maps", "pressure_maps") for form in ("pdf", "png")
+        ]
+        assert [file.name for file in drawn] == names
         contents.append([file.read_bytes() for file in drawn])
     assert contents[0] == contents[1]
     assert contents[0][0].startswith(b"%PDF")
@@ -150,6 +154,7 @@ def test_running_run_draws_what_is_there(own_run: Path, capsys: pytest.CaptureFi
     assert "intensities: left out: the run has no tips.csv (stress intensity factors).\n" in out
     figures = sorted(path.name for path in (own_run / "figures").glob("[!.]*"))
     assert figures == [
+        "captions.txt",
         "development.png",
         "fracture_1.png",
         "index.html",
@@ -272,3 +277,13 @@ def _called(*arguments: str) -> subprocess.CompletedProcess[str]:
         text=True,
         check=False,
     )
+
+
+def test_captions_name_the_scene_and_its_parameters(own_run: Path) -> None:
+    assert main(["plot", str(own_run), "--only", "summary,probes", "--quiet"]) == 0
+    text = (own_run / "figures" / "captions.txt").read_text(encoding="utf-8")
+    paragraphs = text.split("\n\n")
+    assert [words.partition(":")[0] for words in paragraphs[:-1]] == ["summary", "probes"]
+    assert paragraphs[-1].startswith("Parameters")
+    assert "young = " in paragraphs[-1]
+    assert " Pa" in paragraphs[-1]

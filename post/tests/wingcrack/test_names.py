@@ -104,7 +104,7 @@ def test_of_many_fractures_some_get_a_figure_unless_all_are_asked_for(
         return sorted(file.name for file in (own_run / "figures").glob("fracture*"))
 
     assert main(call) == 0
-    assert "1 of 3 fractures: they have no well" in capsys.readouterr().out
+    assert "1 of 3 fractures: they stick without a well" in capsys.readouterr().out
     assert pictures() == ["fracture_1.png", "fracture_2.png"]
     assert main([*call, "--only", "fractures"]) == 0
     assert pictures() == ["fracture_1.png", "fracture_2.png", "fracture_3.png"]

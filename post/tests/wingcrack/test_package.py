@@ -204,3 +204,28 @@ def test_importing_brings_nothing_else() -> None:
     assert done.returncode == 0
     with pytest.raises(AttributeError, match="no attribute 'opens'"):
         _ = wingcrack.opens
+
+
+def test_a_run_shows_itself_in_a_notebook(wet_run: Path) -> None:
+    text = wingcrack.open(wet_run)._repr_html_()
+    assert text.startswith("<table>")
+    assert "status" in text
+    assert str(wet_run) in text
+
+
+def test_histories_as_a_dataset(wet_run: Path) -> None:
+    pytest.importorskip("xarray")
+    run = wingcrack.open(wet_run)
+    data = run.to_xarray()
+    assert data["time_s"].values.tolist() == run.moments.tolist()
+    assert data["injected_m2"].attrs["units"] == "m2"
+    assert data["injected_m2"].values.tolist() == run.column("injected_m2").tolist()
+
+
+def test_rock_as_a_mesh(own_run: Path) -> None:
+    pytest.importorskip("pyvista")
+    run = wingcrack.open(own_run)
+    fields = run.fields(0.0)
+    mesh = run.mesh(0.0)
+    assert mesh.n_cells == len(fields.triangles)
+    assert mesh.cell_data["pressure"] == pytest.approx(fields.rock["pressure"])

@@ -13,6 +13,7 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib import pyplot
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
@@ -272,3 +273,20 @@ def test_a_movie_without_a_display(own_run: Path, tmp_path: Path) -> None:
     assert imread(tmp_path / "scene.png").shape[:2] == (720, 960)
     assert sorted(path.name for path in tmp_path.glob("*")) != []
     assert not list(tmp_path.glob(".movie*"))
+
+
+def test_fractures_of_a_map_by_slip(wet_run: Path) -> None:
+    run = wingcrack.open(wet_run)
+    axes = run.plot_map(fractures_by="slip")
+    fields = run.fields()
+    lines = next(
+        item
+        for item in axes.collections
+        if isinstance(item, LineCollection) and item.get_array() is not None
+    )
+    slip = np.abs(fields.fractures["jump"][:, 1])
+    drawn = np.asarray(lines.get_array())
+    assert np.all(np.diff(drawn) >= 0.0)  # the largest on top
+    assert drawn.max() / drawn.sum() == pytest.approx(slip.max() / slip.sum())
+    with pytest.raises(wingcrack.RunError, match="fractures_by 'colour' cannot be drawn"):
+        run.plot_map(fractures_by="colour")

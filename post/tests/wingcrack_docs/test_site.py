@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import threading
 import urllib.request
@@ -82,6 +83,21 @@ def test_links_of_the_site_lead_somewhere(pages: dict[Path, _Page]) -> None:
             assert meant.exists(), f"{file.name}: {link}"
             if anchor and meant in pages and anchor != "__skip":
                 assert anchor in pages[meant].anchors, f"{file.name}: {link}"
+
+
+def test_the_search_ranks_the_manual_above_cases_and_scenes(built: Path) -> None:
+    entries = json.loads((built / "search" / "search_index.json").read_text("utf-8"))["docs"]
+    boost = {entry["location"].partition("#")[0]: entry.get("boost", 1.0) for entry in entries}
+    assert boost["input.html"] == 1.0
+    assert {boost[place] for place in boost if place.startswith("cases/")} == {0.2}
+
+
+def test_equations_are_drawn_by_the_browser(built: Path) -> None:
+    text = (built / "theory.html").read_text("utf-8")
+    assert text.count("<math ") >= 20
+    assert "<mfrac>" in text
+    assert "```math" not in text
+    assert "\\frac" not in re.sub(r"<annotation.*?</annotation>", "", text)
 
 
 def test_nested_lists_are_lists(built: Path) -> None:

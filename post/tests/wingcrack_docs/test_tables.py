@@ -16,4 +16,8 @@ def test_every_name_is_on_its_page() -> None:
     assert sorted(texts) == ["input.md", "limits.md", "output.md"]
     assert not any("{{" in text for text in texts.values())
     rows = [line for line in texts["input.md"].splitlines() if line.count(" | ") == 5]
-    assert len(rows) == len(parameters()) + texts["input.md"].count("\n## &")  # and a head each
+    expert = texts["input.md"].partition("\n## For experts")[2].partition("\n## ")[0]
+    rare = [line for line in expert.splitlines() if line.startswith("| `&")]
+    assert len(rare) == 6  # with their group in front
+    heads = texts["input.md"].count("\n## &")
+    assert len(rows) + len(rare) == len(parameters()) + heads

@@ -164,7 +164,7 @@ _FORMATS = Parameter(
     about="""\
 Without --only, the figures in which something happens are drawn, and those that were drawn before:
 network and stress intensities where tips grow, maps, profiles, lengths and states where a fracture
-slips or opens, wells where there are several or stages; balance and view only on request.
+slips or opens, wells where there are several or stages; balance, view and mesh only on request.
 
 groups of figures (--only), written to DIR/figures:
   summary    any run on one page: body and loads, network by state, pressure or load, length,
@@ -172,13 +172,16 @@ groups of figures (--only), written to DIR/figures:
   story      an injection on one page: the network with its slip events, well pressure,
              injectivity, where the fluid is, lengths, seismic moment
   network    the fractures at the start and what has grown, coloured by its order
-  maps       pore pressure, or without a fluid stress, in up to six states, with the contact states
-  fractures  opening, slip, aperture, pressure and tractions along each fracture; of more than 12
-             those with a well, that grow, that are longest, unless --only names this group
+  maps       pore pressure, or its change since the first state where that shows the wells better;
+             without a fluid stress; up to six states, with the contact states; of networks slip
+             and aperture of all fractures
+  fractures  opening, slip, aperture, pressure and tractions along each fracture that has a well,
+             slips, opens or grows, at most 12; of all if --only names this group
   tips       stress intensities; load and growth; length, well pressure, states; fluid balance
   wells      pressures, flow, volume and injectivity of each well
   probes     pressure, displacement and stress at the probe points
   view       the deformed body, its displacements drawn larger than they are
+  mesh       the mesh of the body, and around the fractures with the windows of the tips
 
 A figure whose files are there and would come out the same is not drawn again.
 """,

@@ -72,6 +72,11 @@ def _changing_wells(run: Run) -> bool:
     return len(wells) > 1 or len(stages - {"0"}) > 1  # 0: shut
 
 
+def _moving_network(run: Run) -> bool:
+    """Whether there are several fractures, some of which slip or open."""
+    return len((run.network or {}).get("fractures", ())) > 3 and slips_or_opens(run)
+
+
 def _on_request(_run: Run) -> bool:
     return False
 
@@ -82,6 +87,7 @@ _FIGURES = (
     _Figures("network", "network", "network:network_figure", shown=grows),
     _Figures("maps", "pressure_maps", "maps:pressure_maps", of_fields=True, shown=slips_or_opens),
     _Figures("maps", "stress_maps", "maps:stress_maps", of_fields=True, shown=slips_or_opens),
+    _Figures("maps", "jump_maps", "jump_maps:jump_maps", of_fields=True, shown=_moving_network),
     _Figures(
         "fractures", "fracture", "profiles:fracture_profiles", several=True, shown=slips_or_opens
     ),
@@ -94,6 +100,7 @@ _FIGURES = (
     _Figures("seismicity", "seismicity", "seismicity:seismicity", shown=has_seismic),
     _Figures("probes", "probes", "probes:probe_histories"),
     _Figures("view", "view", "view:view", of_fields=True, shown=_on_request),
+    _Figures("mesh", "mesh", "mesh:mesh_figure", of_fields=True, shown=_on_request),
 )
 
 

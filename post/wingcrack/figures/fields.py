@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from wingcrack.errors import RunError
+from wingcrack.errors import AbsentError, RunError
 from wingcrack.figures.durations import moment_of
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.vtu import Grid, IntArray, read_vtu
@@ -47,6 +47,21 @@ class FractureField:
 
     segments: FloatArray  # (m, 2, 2) both ends of each fracture cell [m]
     state: IntArray  # (m,) 0 stick, 1 slip, 2 open
+    # other cell data by name, first axis of length m
+    cell: dict[str, FloatArray] = field(default_factory=dict)
+
+    def of(self, name: str) -> FloatArray:
+        """Slip (magnitude) or opening [m], or another field by its name.
+
+        Raises `AbsentError` if the run did not write it.
+        """
+        whole = {"slip": "jump", "opening": "jump"}.get(name, name)
+        if whole not in self.cell:
+            raise AbsentError(f"the fractures have no field '{name}'")
+        values = self.cell[whole]
+        if name == "slip":
+            return np.abs(values[:, 1])
+        return values[:, 0] if name == "opening" else values
 
 
 def read_series(path: Path) -> tuple[Snapshot, ...]:
@@ -115,7 +130,7 @@ def read_fractures(path: Path) -> FractureField:
     lines = _cells(grid, path, _LINE, 2, "lines")
     if "state" not in grid.cell:
         raise RunError(f"{path}: the cell data 'state' is missing.")
-    return FractureField(grid.points[:, :2][lines], grid.cell["state"].astype(np.int64))
+    return FractureField(grid.points[:, :2][lines], grid.cell["state"].astype(np.int64), grid.cell)
 
 
 def _cells(grid: Grid, path: Path, kind: int, nodes: int, name: str) -> IntArray:

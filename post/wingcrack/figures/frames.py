@@ -252,6 +252,30 @@ def set_window(axes: Axes, view: Window, unit: Unit) -> None:
     axes.set_ylim(*unit.of([view.y_min, view.y_max]))
 
 
+def draw_fractures_by(
+    axes: Axes,
+    fractures: FractureField,
+    values: FloatArray,
+    norm: Normalize,
+    width: float,
+    unit: Unit,
+) -> None:
+    """Draw fractures coloured by a value of each cell, the largest on top."""
+    order = np.argsort(values)
+    segments = list(unit.of(fractures.segments[order]))
+    casing = LineCollection(segments, colors="#888888", linewidths=width + 0.6)
+    axes.add_collection(casing, autolim=False)
+    lines = LineCollection(
+        segments,
+        array=values[order],
+        norm=norm,
+        cmap=style.JUMP_COLOURS,
+        linewidths=width,
+        zorder=3,
+    )
+    axes.add_collection(lines, autolim=False)
+
+
 def draw_fractures(axes: Axes, fractures: FractureField | None, width: float, unit: Unit) -> None:
     """Draw fractures coloured by their state."""
     if fractures is None or not len(fractures.segments):

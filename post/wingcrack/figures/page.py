@@ -9,6 +9,7 @@ from pathlib import Path
 from string import Template
 from urllib.parse import quote
 
+from wingcrack.figures.captions import CAPTIONS, caption, captions
 from wingcrack.figures.facts import Facts, gather_facts
 from wingcrack.figures.read import Run
 from wingcrack.figures.report import Cell, report_rows, write_report
@@ -59,6 +60,7 @@ th, td { text-align: right; padding: .15rem .5rem; border-bottom: 1px solid #ddd
 <body>
 <h1>$title</h1>
 <p class="$status">$ended</p>
+<p><a href="captions.txt">Captions with the scene's parameters</a></p>
 <div class="parts">
 $parts
 </div>
@@ -92,11 +94,16 @@ def write_page(run: Run, folder: Path, order: Sequence[str]) -> list[Path]:
         ended=html.escape(facts.ended),
         parts="\n".join(_parts(facts, _costs(run.directory))),
         report=_report(rows),
-        figures="\n".join(_figures(folder, pictures)),
+        figures="\n".join(_figures(run, folder, pictures)),
     )
     folder.mkdir(parents=True, exist_ok=True)
-    points = write_points(run, folder)
-    return [*write_report(rows, folder), *points, write_whole(folder / NAME, text)]
+    words = captions(run, [name.removesuffix(".png") for name in pictures])
+    return [
+        *write_report(rows, folder),
+        *write_points(run, folder),
+        write_whole(folder / CAPTIONS, words),
+        write_whole(folder / NAME, text),
+    ]
 
 
 def _report(rows: Sequence[Mapping[str, Cell]]) -> str:
@@ -134,17 +141,18 @@ def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:
             yield f'<section class="{look}"><h2>{title}</h2><ul>{items}</ul></section>'
 
 
-def _figures(folder: Path, pictures: Sequence[str]) -> Iterable[str]:
+def _figures(run: Run, folder: Path, pictures: Sequence[str]) -> Iterable[str]:
     for name in pictures:
         stem = name.removesuffix(".png")
         link = ""
         if (folder / f"{stem}.pdf").exists():
             link = f' (<a href="{quote(stem)}.pdf">PDF</a>)'
         words = html.escape(stem.replace("_", " "))
+        said = html.escape(caption(run, stem))
         yield (
             f'<figure><a href="{quote(name)}"><img src="{quote(name)}" alt="{words}"'
             ' loading="lazy"></a>'
-            f"<figcaption>{words}{link}</figcaption></figure>"
+            f"<figcaption><b>{words}</b>{link}: {said}</figcaption></figure>"
         )
 
 

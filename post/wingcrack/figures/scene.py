@@ -69,6 +69,7 @@ class Scene:
     # how growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
     # without such growth
     control: str = ""
+    window_m: float | None = None  # side of the windows around the tips [m]; None: the whole body
     # whether 'forces' or 'grips' drive a body whose answer is in proportion to them, else ''
     drive: str = ""
 
@@ -156,6 +157,7 @@ def read_scene(path: Path) -> Scene | None:
         breadth_m=number("output", "out_of_plane_length") or 1.0,
         control=control_of(groups),
         drive=drive_of(groups),
+        window_m=number("fine", "window") if "fluid" in first else None,
     )
 
 

@@ -35,6 +35,7 @@ STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
 STEADY = 1.0e-6  # share of the values below which their differences say nothing
 
 FIELD_COLOURS = "cividis"
+JUMP_COLOURS = "magma_r"  # of slip and aperture: what is zero is pale
 _METADATA: dict[str, dict[str, Any]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}}
 
 RC: dict[Any, Any] = {

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 from wingcrack.errors import AbsentError, RunError
 from wingcrack.figures import style
@@ -18,7 +19,9 @@ from wingcrack.figures.frames import (
     Frame,
     draw_field,
     draw_fractures,
+    draw_fractures_by,
     extent,
+    line_width,
     set_window,
     zoom_window,
 )
@@ -139,22 +142,37 @@ def plot_network(run: Results, colour: str, ax: Axes | None) -> Axes:
 
 
 @style.styled
-def plot_map(run: Results, field: str, time: float | None, ax: Axes | None, *, close: bool) -> Axes:
-    """Draw a field of the rock, with the fractures by state."""
+def plot_map(
+    run: Results,
+    field: str,
+    time: float | None,
+    ax: Axes | None,
+    *,
+    close: bool,
+    fractures_by: str = "state",
+) -> Axes:
+    """Draw a field of the rock, with the fractures by state or by a value of their cells."""
+    _choose("fractures_by", fractures_by, ("state", "slip", "opening", "aperture"))
     found = run.fields(time)
     look = colouring(map(run.fields, run.field_moments), field)
     values = look.unit.of(values_of(found, field))
     axes = new_axes(ax)
     matrix = rock_of(found)
     fractures = FractureField(
-        found.segments, np.asarray(found.fractures.get("state", ()), dtype=np.int64)
+        found.segments,
+        np.asarray(found.fractures.get("state", ()), dtype=np.int64),
+        dict(found.fractures),
     )
     frame = Frame(found.moment, found.history_row, matrix, fractures)
     body = extent([matrix])
     zoom = zoom_window(body, [fractures])
     unit = run_length_unit(run.files)
     draw_field(axes, frame, values, look.norm, look.colours, unit)
-    draw_fractures(axes, fractures, 2.2 if close or zoom is None else 1.0, unit)
+    width = line_width(run.files, 2.2 if close or zoom is None else 1.0)
+    if fractures_by == "state":
+        draw_fractures(axes, fractures, width, unit)
+    elif len(fractures.segments):
+        _draw_by(axes, fractures, fractures_by, width, unit)
     set_window(axes, zoom if close and zoom is not None else body, unit)
     axes.set(
         title=moment_label(run.files, found.moment, found.history_row),
@@ -166,6 +184,17 @@ def plot_map(run: Results, field: str, time: float | None, ax: Axes | None, *, c
     )
     bar.set_label(look.label)
     return axes
+
+
+def _draw_by(axes: Axes, fractures: FractureField, name: str, width: float, unit: Unit) -> None:
+    """Draw fractures by a value of their cells, with its colours below the map."""
+    values = fractures.of(name)
+    fitting = displacement_unit(values)
+    norm = Normalize(0.0, float(fitting.of(values).max()) or 1.0)
+    draw_fractures_by(axes, fractures, fitting.of(values), norm, width, unit)
+    scale = ScalarMappable(norm, style.JUMP_COLOURS)
+    bar = axes.figure.colorbar(scale, ax=axes, orientation="horizontal", aspect=30, shrink=0.8)
+    bar.set_label(f"{name} [{fitting.name}]")
 
 
 @style.styled

@@ -272,7 +272,7 @@ class Results:
         if not self._matrix:
             raise AbsentError(f"{self.directory} has no fields (VTU output off?)")
         state = self._matrix[-1] if time is None else nearest(self._matrix, time)
-        return pyvista.read(state.path)
+        return pyvista.UnstructuredGrid(str(state.path))
 
     def to_xarray(self) -> xarray.Dataset:
         """Histories of run, wells and probes as a dataset of xarray, units in the attributes.

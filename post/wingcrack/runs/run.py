@@ -249,8 +249,9 @@ class Run(Results):
         ax: Axes | None = None,
         *,
         close: bool = False,
+        fractures_by: str = "state",
     ) -> Axes:
-        """Draw a field of the rock with the fractures coloured by their state.
+        """Draw a field of the rock with the fractures coloured by their state, slip or aperture.
 
         Parameters
         ----------
@@ -262,10 +263,12 @@ class Run(Results):
         ax : matplotlib.axes.Axes, optional
         close : bool
             Show what is near the fractures, not the whole body.
+        fractures_by : str
+            'state', 'slip', 'opening' or 'aperture'.
         """
         from wingcrack.runs import plots
 
-        return plots.plot_map(self, field, time, ax, close=close)
+        return plots.plot_map(self, field, time, ax, close=close, fractures_by=fractures_by)
 
     def plot_profile(
         self,

@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections import OrderedDict
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -18,7 +19,7 @@ from matplotlib.colors import Colormap, to_hex
 import wingcrack
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.fields import Snapshot, read_series
+from wingcrack.figures.fields import Snapshot, read_fractures, read_series
 from wingcrack.figures.scene import read_scene
 from wingcrack.figures.story_map import well_places
 from wingcrack.figures.table import FloatArray
@@ -47,8 +48,10 @@ _ON_FRACTURES = (
     ("pressure", "pressure", None),
     ("normal traction", "traction", 0),
     ("shear traction", "traction", 1),
+    ("aperture", "aperture", None),
 )
-_UNITS = {"jump": "m", "pressure": "Pa", "traction": "Pa"}
+_COLOURED = ("slip", "opening", "aperture")  # by which fractures can be coloured
+_UNITS = {"aperture": "m", "jump": "m", "pressure": "Pa", "traction": "Pa"}
 _KEPT = 4  # states in memory: the one shown, the one before, and both ends of the run
 _COLOURS = 256
 _WATCHED = ("history.csv", "run.json", "network.json", "scene.nml", "matrix.pvd", "fractures.pvd")
@@ -138,6 +141,8 @@ class Content:
                     "high": look.norm.vmax,
                     "colours": _colours(look.colours),
                     "plain": _colours(style.FIELD_COLOURS),
+                    "jumps": self._largest_jumps(),
+                    "jump_colours": _colours(style.JUMP_COLOURS),
                 },
                 allow_nan=False,
             ).encode()
@@ -222,6 +227,17 @@ class Content:
         if len(self._kept) > _KEPT:
             self._kept.popitem(last=False)
         return found
+
+    def _largest_jumps(self) -> dict[str, float]:
+        """Largest slip, opening and aperture of all states [m], of those that the run has."""
+        largest: dict[str, float] = {}
+        for snapshot in self._fractures:
+            found = read_fractures(snapshot.path)
+            for name in _COLOURED if len(found.segments) else ():
+                with suppress(AbsentError):
+                    high = float(found.of(name).max())
+                    largest[name] = max(high, largest.get(name, 0.0))
+        return largest
 
     def _near(self, places: FloatArray) -> npt.NDArray[np.float32]:
         return np.asarray(places - self._origin, dtype=np.float32)

@@ -1,5 +1,5 @@
 // The page: what is chosen, what is fetched for it, and a run that goes on.
-import { getArrays, getJson, spell, ticksBetween } from "./data.js";
+import { getArrays, getJson, spell, spellWithUnit, ticksBetween } from "./data.js";
 import { FieldMap } from "./map.js";
 import { Chart } from "./chart.js";
 
@@ -62,10 +62,12 @@ function fill(list, entries, chosen) {
 }
 
 function legend() {
-  const entries = run.states.map(([state, colour]) => {
+  const by = part("by").value, high = scale?.jumps[by];
+  const shown = high === undefined ? run.states : [[`${by} up to ${spellWithUnit(high, "m")}`, ""]];
+  const entries = shown.map(([words, colour]) => {
     const line = document.createElement("i");
-    line.style.background = colour;
-    return [line, state];
+    line.style.background = colour || gradient(scale.jump_colours);
+    return [line, words];
   });
   if (run.wells.length) {
     const sign = document.createElement("i");
@@ -97,7 +99,12 @@ async function showState() {
       [scale, scaleFor] = [found, field];
     }
     if (mine !== asked) return;
-    map.show({ mesh, state, scale, run, close: part("range").value === "view" });
+    for (const option of part("by").options) {
+      option.hidden = option.value !== "state" && !(option.value in scale.jumps);
+    }
+    const by = part("by").value;
+    map.show({ mesh, state, scale, run, by, close: part("range").value === "view" });
+    part("legend").replaceChildren(...legend());
     document.body.dataset.place = place; // what the map shows by now
     document.body.dataset.field = field;
     if (part("note").dataset.of === "state") say("");
@@ -114,11 +121,14 @@ async function meshOf(name, place, stamp) {
   return meshes.get(name);
 }
 
-function showScale(scale) {
-  const list = scale.colours;
+function gradient(list) {
   const stops = [];
   for (let k = 0; k < list.length; k += 3 * 15) stops.push(`rgb(${list.slice(k, k + 3)})`);
-  part("colours").style.background = `linear-gradient(to right, ${stops})`;
+  return `linear-gradient(to right, ${stops})`;
+}
+
+function showScale(scale) {
+  part("colours").style.background = gradient(scale.colours);
   part("label").textContent = scale.label;
   const room = part("ticks").clientWidth / 90;
   part("ticks").replaceChildren(...ticksBetween(scale.low, scale.high, Math.max(2, room)).map((value) => {
@@ -197,6 +207,7 @@ function say(words, of = "") {
 part("slider").addEventListener("input", showState);
 part("field").addEventListener("change", showState);
 part("range").addEventListener("change", showState);
+part("by").addEventListener("change", showState);
 part("column").addEventListener("change", showHistory);
 part("play").addEventListener("click", play);
 part("closer").addEventListener("click", () => map.zoom(1.5));

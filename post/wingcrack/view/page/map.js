@@ -4,6 +4,7 @@ import { spell, spellWithUnit, ticksBetween } from "./data.js";
 
 const ROOM = { left: 52, right: 10, top: 8, bottom: 36 }; // [px] around the map
 const REACH = 8; // [px] within which a fracture is pointed at
+const LEVELS = 15; // colours of fractures by a value
 const CLOSEST = 1e-5; // share of the body that may fill the map
 
 export class FieldMap {
@@ -145,8 +146,26 @@ export class FieldMap {
     pen.lineCap = "round";
     this.strokeSegments(pen, view, "#ffffff", 5, () => true);
     pen.lineCap = "butt";
+    const column = state.columns.findIndex(([words]) => words === this.shown.by);
+    if (column >= 0) {
+      this.strokeByValue(pen, view, column);
+      return;
+    }
     run.states.forEach(([, colour], number) =>
       this.strokeSegments(pen, view, colour, 3, (k) => state.states[k] === number));
+  }
+
+  strokeByValue(pen, view, column) { // the largest values on top
+    const { state, scale, by } = this.shown;
+    const count = state.segments.length / 4, list = scale.jump_colours, last = list.length / 3 - 1;
+    const level = (k) => {
+      const share = Math.abs(state.on_fractures[column * count + k]) / (scale.jumps[by] || 1);
+      return Math.round(LEVELS * Math.min(1, share));
+    };
+    for (let n = 0; n <= LEVELS; n++) {
+      const place = 3 * Math.round((last * n) / LEVELS);
+      this.strokeSegments(pen, view, `rgb(${list.slice(place, place + 3)})`, 3, (k) => level(k) === n);
+    }
   }
 
   strokeSegments(pen, view, colour, width, wanted) {
