@@ -14,7 +14,7 @@ import pytest
 from system_scene import SOLVER, TOP
 
 from wingcrack.sweeps.scene import scene_text
-from wingcrack_verify import recompute, recompute_growth
+from wingcrack_verify import recompute, recompute_files, recompute_growth
 from wingcrack_verify.stability import ALL_FIELDS
 
 pytestmark = pytest.mark.usefixtures("program")
@@ -82,7 +82,7 @@ def test_a_spoilt_table_is_found(
     [("prefilled_m2", "remeshed mass balance"), ("leakoff_m2", "remeshed leak-off")],
 )
 def test_a_spoilt_balance_on_a_new_mesh_is_found(column: str, found: str, out: Path) -> None:
-    states = recompute.read_run(out).states
+    states = recompute_files.read_run(out).states
     (row, *_) = [
         row
         for row in range(2, len(states) + 1)

@@ -18,7 +18,8 @@ import numpy.typing as npt
 
 from wingcrack.figures.text_files import read_json
 from wingcrack_verify import recompute
-from wingcrack_verify.recompute import Findings, Table, groups, load_of, read_table
+from wingcrack_verify.recompute import Findings, groups, load_of
+from wingcrack_verify.recompute_files import Table, read_table
 
 Points: TypeAlias = npt.NDArray[np.float64]
 
