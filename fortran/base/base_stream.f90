@@ -9,6 +9,8 @@ module base_stream
 
    public :: checksum, stream_t
 
+   integer(lk), parameter :: least_entry = 10_lk  !< bytes of an entry without name and values
+
    !> Entries in the order in which they are stored and loaded.
    type :: stream_t
       logical :: is_loading = .false.
@@ -92,6 +94,8 @@ contains
       exists = .true.
       call self%head(name, "n8", none, exists)
       call self%move(c_loc(n), 8_lk)
+      if (.not. self%is_loading) return
+      if (n < -1_lk .or. n > (self%length - self%place)/least_entry) call self%set_fault(name)
       if (allocated(self%fault)) n = -1_lk
    end subroutine visit_count
 
@@ -174,9 +178,34 @@ contains
       if (ranks /= size(extents)) return
       n = 0_lk
       if (size(n) > 0) call self%move(c_loc(n), 8_lk*size(n, kind=lk))
-      if (any(n < 0_lk) .or. any(n > self%length)) call self%set_fault(name)
+      if (.not. has_room(self, kind, n)) then
+         call self%set_fault(name)
+         n = 0_lk
+      end if
       extents = n
    end subroutine load_head
+
+   !> Whether values of these extents are no more than the bytes that are left.
+   pure logical function has_room(self, kind, extents)
+      class(stream_t), intent(in) :: self
+      character(len=2), intent(in) :: kind
+      integer(lk), intent(in) :: extents(:)
+      integer(lk) :: left
+      integer :: i
+
+      left = self%length - self%place
+      if (any(kind == ["r8", "i8"])) left = left/8_lk
+      if (any(kind == ["i4", "l4"])) left = left/4_lk
+      has_room = all(extents >= 0_lk)
+      if (.not. has_room .or. any(extents == 0_lk)) then
+         has_room = has_room .and. all(extents <= self%length)
+         return
+      end if
+      do i = 1, size(extents)
+         left = left/extents(i)
+      end do
+      has_room = left >= 1_lk .or. size(extents) == 0
+   end function has_room
 
    subroutine put_integer(self, value)
       class(stream_t), intent(inout) :: self

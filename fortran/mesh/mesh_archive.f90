@@ -5,7 +5,7 @@ module mesh_archive
    use, intrinsic :: iso_fortran_env, only: int8
    use base_archive, only: archive_t
    use base_errors, only: error_t
-   use base_kinds, only: lk
+   use base_kinds, only: ik, lk
    use base_lists, only: lists_t
    use mesh_builder, only: mesher_t
    use mesh_c_arrays, only: copy_mesh
@@ -40,6 +40,16 @@ contains
       call archive%list("xy", network%xy)
       call archive%list("s_start", network%s_start)
       call archive%texts("names", network%names)
+      if (archive%is_loading .and. allocated(network%first) .and. allocated(network%xy)) then
+         associate (first => network%first)
+            if (size(first) < 1 .or. .not. within(first, size(network%xy, 2, kind=ik) + 1)) then
+               call archive%set_fault(name)
+            else if (any(first(2:) < first(:size(first) - 1)) .or. &
+                     first(size(first)) /= size(network%xy, 2) + 1) then
+               call archive%set_fault(name)
+            end if
+         end associate
+      end if
       call archive%leave()
    end subroutine visit_network
 
@@ -130,7 +140,50 @@ contains
          if (allocated(error)) call archive%set_fault(name)
       end if
       call visit_fracture_mesh(archive, "fracture", mesh%fracture)
+      if (archive%is_loading .and. .not. allocated(archive%fault)) then
+         if (c_associated(mesher%handle) .and. .not. is_sound(mesh, mesh%fracture)) then
+            call archive%set_fault(name)
+         end if
+      end if
       call archive%leave()
    end subroutine visit_mesher_and_mesh
+
+   !> Whether the arrays of the fractures have the lengths of the mesh, and its indices.
+   pure logical function is_sound(mesh, f)
+      type(mesh_t), intent(in) :: mesh
+      type(fracture_mesh_t), intent(in) :: f
+
+      is_sound = allocated(f%cell_fracture) .and. allocated(f%cell_points) .and. &
+                 allocated(f%cell_faces) .and. allocated(f%cell_s) .and. allocated(f%point_xy) &
+                 .and. allocated(f%point_kind) .and. allocated(f%tip_point) .and. &
+                 allocated(f%tip_node) .and. allocated(f%tip_fracture) .and. &
+                 allocated(f%tip_end) .and. allocated(f%tip_direction) .and. &
+                 allocated(f%tip_radius) .and. allocated(f%point_cells%first) .and. &
+                 allocated(f%point_cells%item)
+      if (.not. is_sound) return
+      is_sound = all([size(f%cell_fracture), size(f%cell_points), size(f%cell_faces), &
+                      size(f%cell_s), size(f%point_xy), size(f%point_kind)] == &
+                     [f%n_cells, 2*f%n_cells, 2*f%n_cells, 2*f%n_cells, 2*f%n_points, f%n_points]) &
+                 .and. all([size(f%tip_point), size(f%tip_node), size(f%tip_fracture), &
+                            size(f%tip_end), size(f%tip_direction), size(f%tip_radius)] == &
+                           f%n_tips*[1, 1, 1, 1, 2, 1]) &
+                 .and. size(f%point_cells%first) == f%n_points + 1
+      if (.not. is_sound) return
+      associate (first => f%point_cells%first)
+         is_sound = within([f%cell_points], f%n_points) .and. &
+                    within([f%cell_faces], mesh%n_faces) .and. within(f%tip_point, f%n_points) &
+                    .and. within(f%tip_node, mesh%n_nodes) .and. within(f%tip_end, 2) .and. &
+                    within([f%cell_fracture, f%tip_fracture], f%n_cells) .and. &
+                    within(f%point_cells%item, f%n_cells) .and. &
+                    first(1) == 1 .and. first(size(first)) == size(f%point_cells%item) + 1 .and. &
+                    all(first(2:) >= first(:size(first) - 1))
+      end associate
+   end function is_sound
+
+   pure logical function within(indices, n)
+      integer(ik), intent(in) :: indices(:), n
+
+      within = all(indices >= 1 .and. indices <= n)
+   end function within
 
 end module mesh_archive

@@ -124,6 +124,9 @@ contains
       call archive%list("window_of", windows%window_of)
       call archive%list("resistance", windows%resistance)
       call archive%item("is_beside_body", windows%is_beside_body)
+      if (archive%is_loading .and. allocated(windows%window_of)) then
+         if (any(windows%window_of < 1 .or. windows%window_of > n)) call archive%set_fault(name)
+      end if
       do w = 1_lk, n
          if (archive%is_loading) allocate (windows%slot(w)%window)
          call windows%slot(w)%window%visit(archive, self%scene, self%problem%mesher, &

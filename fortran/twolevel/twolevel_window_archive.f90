@@ -19,6 +19,10 @@ contains
 
       call archive%enter("window")
       call archive%list("serves", self%serves)
+      if (archive%is_loading .and. allocated(self%serves)) then
+         if (any(self%serves < 1 .or. self%serves > size(tips))) call archive%set_fault("serves")
+      end if
+      if (allocated(archive%fault)) return
       call archive%item("is_body", self%is_body)
       call archive%item("lower", self%lower)
       call archive%item("upper", self%upper)
