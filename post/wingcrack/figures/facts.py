@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from wingcrack.figures.load import abscissa, has_load
-from wingcrack.figures.pressures import highest_pressures, injected_and_produced
+from wingcrack.figures.pressures import highest_pressures, pumped_volumes
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.slip import slip_words
@@ -93,7 +93,7 @@ def _results(run: Run) -> list[str]:
         highest = int(np.argmax(moments))
         lines.append(f"highest load factor: {moments[highest]:.4g} in state {highest + 1}")
     if history.has("injected_m2"):
-        injected, produced = (float(volume[-1]) for volume in injected_and_produced(history))
+        injected, produced = pumped_volumes(run)
         area = area_unit(injected, produced)
         line = f"injected: {float(area.of(injected)):.3g} {area.name}"
         if produced > 0.0:

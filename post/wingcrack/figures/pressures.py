@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from wingcrack.figures.read import Run
 from wingcrack.figures.table import FloatArray, Table
 
 _PRESSURE = "well_pressure_pa"
@@ -45,3 +46,18 @@ def injected_and_produced(history: Table) -> tuple[FloatArray, FloatArray]:
     net = history.number("injected_m2")
     produced = history.number("produced_m2") if history.has("produced_m2") else np.zeros_like(net)
     return net + produced, produced
+
+
+def pumped_volumes(run: Run) -> tuple[float, float]:
+    """Give what wells have taken in at their heads, and produced, until the end, positive [m2].
+
+    The history has what has entered the body: less by what the wells store.
+    """
+    wells = run.wells
+    if wells is None or not wells.has("rate_m2_s") or wells.rows == 0:
+        injected, produced = injected_and_produced(run.history)
+        return float(injected[-1]), float(produced[-1])
+    names, time, rate = wells.text("well"), wells.moments(), wells.number("rate_m2_s")
+    moved = [np.diff(time[names == name]) * rate[names == name][1:] for name in np.unique(names)]
+    volumes = np.concatenate(moved)
+    return float(volumes[volumes > 0.0].sum()), float(-volumes[volumes < 0.0].sum())

@@ -15,7 +15,12 @@ from matplotlib.gridspec import SubplotSpec
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
 from wingcrack.figures.load import abscissa
-from wingcrack.figures.pressures import highest_pressures, injected_and_produced, well_pressures
+from wingcrack.figures.pressures import (
+    highest_pressures,
+    injected_and_produced,
+    pumped_volumes,
+    well_pressures,
+)
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.slip import ASEISMIC_COLOUR, SEISMIC_COLOUR, seismic, slip_words
@@ -358,7 +363,7 @@ def _draw_facts(figure: Figure, place: SubplotSpec, handles: Sequence[Artist], f
 def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
     table = run.history
     clock = time_unit(float(table.moments()[-1]))
-    injected, produced = (float(volume[-1]) for volume in injected_and_produced(table))
+    injected, produced = pumped_volumes(run)
     unit = run_length_unit(run)
 
     def at(moment: float) -> str:
