@@ -58,6 +58,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
                                specification.size_along(edge.fracture),
                                specification.largest_along(edge.fracture)});
         mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
+        mesh.size.arrange();
         mesh.size.set_foci(specification.foci);
     }
     if (mesh.size.follows_other_mesh() || is_for_elements(specification))
@@ -79,6 +80,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
         (!specification.is_window &&
          (!joints_of(graph).empty() || has_near_ends(graph, domain, mesh.size))))
         limit_sizes_in_narrow_places(graph, domain, mesh.size);
+    mesh.size.arrange();
 
     const std::size_t n_given = graph.points.size();
     GuideEdges guides;

@@ -1,7 +1,9 @@
 #include "lone_sectors.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace cpp_mesh {
@@ -17,44 +19,76 @@ public:
     Divider(PlaneMesh& mesh, int first_cell) : mesh_(mesh), first_cell_(first_cell) {
         for (const FractureCell& cell : mesh.fracture_cells)
             fractures_.insert(ordered(cell.node[0], cell.node[1]));
+        for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c)
+            enter(c);
     }
 
+    // The first cell that must be divided, until there is none: of those before the next one only
+    // what has changed is looked at again.
     void run() {
-        for (bool found = true; found;) {
-            found = false;
-            const EdgeTable edges(mesh_.cells, static_cast<int>(mesh_.xy.size()));
-            for (int c = first_cell_; c < static_cast<int>(mesh_.cells.size()) && !found; ++c) {
-                for (int k = 0; k < 3 && !found; ++k) {
-                    found = fills_sector(edges, c, k) && may_change(edges.across(c, (k + 1) % 3));
-                    if (found)
-                        divide(edges, c, (k + 1) % 3);
-                }
+        std::set<int> again;
+        for (int next = first_cell_; next < static_cast<int>(mesh_.cells.size());) {
+            const int c = again.empty() ? next : *again.begin();
+            again.erase(c);
+            const int k = edge_to_halve(c);
+            if (k < 0) {
+                next += c == next ? 1 : 0;
+                continue;
             }
+            const int behind = across(c, k);
+            divide(c, k);
+            for (int changed : {c, behind})
+                if (changed >= first_cell_ && changed < next)
+                    again.insert(changed);
         }
     }
 
 private:
+    // The edge of a cell that is opposite to a corner that it fills alone, or -1.
+    int edge_to_halve(int c) const {
+        for (int k = 0; k < 3; ++k)
+            if (fills_sector(c, k) && may_change(across(c, (k + 1) % 3)))
+                return (k + 1) % 3;
+        return -1;
+    }
+
+    static std::int64_t key(int a, int b) { return (static_cast<std::int64_t>(a) << 32) | b; }
+
+    // The boundary of a cell runs along its edges.
+    void enter(int c) {
+        const Triangle& cell = mesh_.cells[c];
+        for (int k = 0; k < 3; ++k)
+            cell_of_[key(cell[k], cell[(k + 1) % 3])] = c;
+    }
+
+    // The cell on the other side of edge k, or -1.
+    int across(int c, int k) const {
+        const Triangle& cell = mesh_.cells[c];
+        const auto found = cell_of_.find(key(cell[(k + 1) % 3], cell[k]));
+        return found == cell_of_.end() ? -1 : found->second;
+    }
+
     bool is_fracture(int c, int k) const {
         const Triangle& cell = mesh_.cells[c];
         return fractures_.count(ordered(cell[k], cell[(k + 1) % 3])) > 0;
     }
 
     // The two edges at corner k of a cell part it from its neighbours, one of them a fracture.
-    bool fills_sector(const EdgeTable& edges, int c, int k) const {
+    bool fills_sector(int c, int k) const {
         const int after = k, before = (k + 2) % 3;
         const bool wall = is_fracture(c, after), other_wall = is_fracture(c, before);
-        return (wall || other_wall) && (wall || edges.across(c, after) < 0) &&
-               (other_wall || edges.across(c, before) < 0);
+        return (wall || other_wall) && (wall || across(c, after) < 0) &&
+               (other_wall || across(c, before) < 0);
     }
 
     bool may_change(int c) const { return c < 0 || c >= first_cell_; }
 
     // Halve edge k of a cell.
-    void divide(const EdgeTable& edges, int c, int k) {
+    void divide(int c, int k) {
         const int a = mesh_.cells[c][k], b = mesh_.cells[c][(k + 1) % 3];
         const int middle = static_cast<int>(mesh_.xy.size());
         mesh_.xy.push_back(0.5 * (mesh_.xy[a] + mesh_.xy[b]));
-        const int behind = edges.across(c, k);
+        const int behind = across(c, k);
         halve(c, a, b, middle);
         if (behind >= 0)
             halve(behind, b, a, middle);
@@ -71,6 +105,9 @@ private:
         std::replace(mesh_.cells[c].begin(), mesh_.cells[c].end(), b, middle);
         std::replace(rest.begin(), rest.end(), a, middle);
         mesh_.cells.push_back(rest);
+        cell_of_.erase(key(a, b));
+        enter(c);
+        enter(static_cast<int>(mesh_.cells.size()) - 1);
     }
 
     void halve_fracture_cell(int a, int b, int middle) {
@@ -88,7 +125,8 @@ private:
 
     PlaneMesh& mesh_;
     const int first_cell_;
-    std::set<std::pair<int, int>> fractures_; // edges, by their nodes
+    std::set<std::pair<int, int>> fractures_;       // edges, by their nodes
+    std::unordered_map<std::int64_t, int> cell_of_; // by the nodes of a directed edge
 };
 
 } // namespace

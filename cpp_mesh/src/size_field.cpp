@@ -81,20 +81,40 @@ double SizeDisc::operator()(Vec2 p) const {
 
 double SizeField::operator()(Vec2 p) const {
     double size = wanted_ != nullptr ? (*wanted_)(p) : largest_;
-    bool have_own = false;
-    for (const SizeSource& source : sources_) {
+    const auto by_source = [&](int k) {
+        const SizeSource& source = sources_[k];
         const double here = source.size + slope_ * distance_to_segment(p, source.a, source.b);
         if (source.largest > 0.0 && here < size)
             size = std::min(size, std::max(here, foci_.up_to(source.largest, p)));
         else
             size = std::min(size, here);
-        have_own = have_own || source.largest > 0.0;
-    }
-    if (!have_own)
+    };
+    source_tree_.lower(p, size, by_source);
+    for (int k = source_tree_.size(); k < static_cast<int>(sources_.size()); ++k)
+        by_source(k);
+    if (!foci_.places.empty() && std::none_of(sources_.begin(), sources_.end(),
+                                              [](const SizeSource& s) { return s.largest > 0.0; }))
         size = std::max(size, foci_(p));
-    for (const SizeDisc& disc : discs_)
-        size = std::min(size, disc(p));
+    const auto by_disc = [&](int k) { size = std::min(size, discs_[k](p)); };
+    disc_tree_.lower(p, size, by_disc);
+    for (int k = disc_tree_.size(); k < static_cast<int>(discs_.size()); ++k)
+        by_disc(k);
     return size;
+}
+
+void SizeField::arrange() {
+    std::vector<SizeTree::Bound> items;
+    for (const SizeSource& source : sources_)
+        items.push_back({{std::min(source.a.x, source.b.x), std::min(source.a.y, source.b.y)},
+                         {std::max(source.a.x, source.b.x), std::max(source.a.y, source.b.y)},
+                         source.size,
+                         slope_,
+                         0.0});
+    source_tree_ = SizeTree(items);
+    items.clear();
+    for (const SizeDisc& disc : discs_)
+        items.push_back({disc.centre, disc.centre, disc.size, disc.slope, disc.radius});
+    disc_tree_ = SizeTree(items);
 }
 
 namespace {

@@ -5,6 +5,7 @@
 #include "domain.hpp"
 #include "geometry.hpp"
 #include "nodal_sizes.hpp"
+#include "size_tree.hpp"
 
 #include <memory>
 #include <vector>
@@ -56,11 +57,16 @@ public:
     void add(const SizeSource& source) { sources_.push_back(source); }
     void add(const SizeDisc& disc) { discs_.push_back(disc); }
     void set_foci(SizeFoci foci) { foci_ = std::move(foci); }
+    // Sort what there is by place, which changes nothing but the time that a size takes.
+    void arrange();
     // Decisions must not depend on rounding errors: the same body in another unit of length is to
     // get the same mesh.
     void make_scale_free() { is_scale_free_ = true; }
     bool is_scale_free() const { return is_scale_free_; }
-    void set_discs(std::vector<SizeDisc> discs) { discs_ = std::move(discs); }
+    void set_discs(std::vector<SizeDisc> discs) {
+        discs_ = std::move(discs);
+        disc_tree_ = {};
+    }
 
     // Every member in turn, to store or load it.
     template <typename Archive> void visit(Archive& archive) {
@@ -73,6 +79,7 @@ public:
 private:
     std::vector<SizeSource> sources_;
     std::vector<SizeDisc> discs_;
+    SizeTree source_tree_, disc_tree_; // of the first ones
     SizeFoci foci_;
     std::shared_ptr<const NodalSizes> wanted_;
     double slope_ = 0.0;
