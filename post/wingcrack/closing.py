@@ -51,7 +51,7 @@ def _well_line(name: str, rows: list[Mapping[str, str]]) -> str:
     )
 
 
-def pressure_text(value: str | float) -> str:
+def pressure_text(value: str | float, digits: int = 3) -> str:
     """A pressure as 0.91 MPa.
 
     >>> pressure_text(911234.0)
@@ -61,7 +61,7 @@ def pressure_text(value: str | float) -> str:
     size, unit = next(
         ((size, unit) for size, unit in _PRESSURES if abs(number) >= 0.1 * size), _PRESSURES[-1]
     )
-    return f"{number / size:.3g} {unit}"
+    return f"{number / size:.{digits}g} {unit}"
 
 
 def time_text(value: str | float) -> str:

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 
 import wingcrack
+from wingcrack.closing import pressure_text
+from wingcrack.figures.units import displacement_unit
 from wingcrack_docs.places import DOCS, PICTURES, TOP, DocsError
 from wingcrack_docs.thumbnail import draw_thumbnail
 from wingcrack_verify.suite import read_suite
@@ -154,10 +156,12 @@ def _of_history(run: wingcrack.Run) -> Iterator[str]:
     last = run.history.iloc[-1]
     length = last.get("fracture_length_error_m", -1.0)
     if length > 0.0:
-        yield f"length {1e3 * length:.2g} mm of {last['fracture_length_m']:.3g} m"
+        unit = displacement_unit(length)
+        said = f"length {float(unit.of(length)):.2g} {unit.name}"
+        yield f"{said} of {last['fracture_length_m']:.3g} m"
     pressure = last.get("well_pressure_error_pa", -1.0)
     if pressure > 0.0:
-        said = f"well pressure {1e-3 * pressure:.2g} kPa"
+        said = f"well pressure {pressure_text(pressure, 2)}"
         # of several wells it is the error of their mean
         yield (
             f"{said} of {1e-6 * whole:.3g} MPa" if (whole := last.get("well_pressure_pa")) else said

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -64,7 +65,11 @@ class Runner:
         self._cache.mkdir(parents=True, exist_ok=True)
         handle = os.open(self._cache, os.O_RDONLY)
         try:
-            fcntl.flock(handle, fcntl.LOCK_EX)
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                print(f"waiting for another call that runs in {self._cache}", file=sys.stderr)
+                fcntl.flock(handle, fcntl.LOCK_EX)
             outcomes = self._pool.run_all(
                 range(len(listed)),
                 lambda number: self.run(listed[number]),

@@ -25,6 +25,8 @@ from wingcrack_verify.judge import judge_case
 from wingcrack_verify.page import number_text, templates
 from wingcrack_verify.paper import Number, Paper, read_paper
 
+# On narrow screens each row is a card, and these stand before its cells.
+_HEADS = ("place", "quantity", "unit", "thesis", "measured", "ours", "exact", "remark")
 COLUMNS = (
     "place",
     "quantity",
@@ -225,7 +227,7 @@ def _write_page(
             figures=figures,
             quick=given.quick,
             number=number_text,
-            columns={},
+            columns={"numbers": _HEADS},
         )
     )
     write_whole(given.out / "index.html", text)
