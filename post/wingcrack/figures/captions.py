@@ -30,6 +30,7 @@ _ABOUT = {
     "contact states of the fracture cells.",
     "balance": "Where the injected fluid is, and the error of its balance.",
     "wells": "Pressure, flow, volume and injectivity of the wells.",
+    "seismicity": "Seismic events by magnitude, time and place; numbers of events by magnitude.",
     "probes": "Pressure, displacement and stress at the probe points.",
     "mesh": "Mesh of the body, and around the fractures with the windows of the tips.",
     "view": "Deformed body, displacements enlarged.",
