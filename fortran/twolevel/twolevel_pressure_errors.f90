@@ -7,7 +7,8 @@
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
-!!   error is that over ln(1.5 sqrt(A)/r_w), and 0.45 A over the squared distance of a side (measured:
+!!   error is that over ln(1.5 sqrt(A)/r_w), and 0.45 A over the squared distance of a side
+!!   (measured:
 !!   2.6 to 4.2 % at 2 and 1.5 cells). Before, the rings around the well take in the flow
 !!   (coarse_well_rings), within 2 %; once the cell is filled this falls with the squared distance
 !!   of diffusion over A, the order of the cells.

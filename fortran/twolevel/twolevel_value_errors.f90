@@ -254,7 +254,8 @@ contains
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
-            error%injected = time(injected) + self%of_flow*abs(row%injected) + self%of_held + lost
+            error%injected = time(injected) + max(self%of_flow*abs(row%injected), self%of_held) &
+                             + lost
             error%produced = time(produced) + self%of_flow*abs(row%produced) &
                              + min(row%produced, error%injected) + lost
          else
@@ -396,8 +397,8 @@ contains
             error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
                              + of_solution*abs(row%pressure)
             if (.not. well%has_given_flow()) then
-               error%injected = time(2*n + w) + max(share, self%of_flow)*abs(row%injected) &
-                                + self%of_held
+               error%injected = time(2*n + w) + max(share*abs(row%injected), &
+                                                    self%of_flow*abs(row%injected), self%of_held)
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)
                if (abs(row%injected) > 0.0_rk) error%flow = &

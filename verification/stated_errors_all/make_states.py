@@ -18,8 +18,6 @@ DRAWN = (4, 5, 7, 8, 12, 15, 25, 30)
 GAPS = {
     "slip of cells, closed body": "10.4 times too large in the median since errors cover kinks",
     "largest slip, without a fluid": "16 times too large in the median, likewise",
-    "pressure of a well in rock": "12 times too large in the median",
-    "head pressure of a well in rock": "12 times too large in the median",
     "direction, without a fluid": "the stated error of K_II of a crack under pressure alone is 13 "
     "times too large in the median",
 }

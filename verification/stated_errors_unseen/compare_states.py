@@ -80,7 +80,7 @@ def solve(solver: Path, scene: Scene, limit: float, *, again: bool = True) -> Pa
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "state.nml").write_text(text)
         environment = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-        command = ["nice", "-n", "5", str(solver), "run", str(folder / "state.nml"), "--out", str(folder)]
+        command = ["nice", str(solver), "run", str(folder / "state.nml"), "--out", str(folder)]
         try:
             done = subprocess.run(
                 command, capture_output=True, text=True, timeout=limit, env=environment, check=False
