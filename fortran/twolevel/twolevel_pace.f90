@@ -41,8 +41,11 @@ module twolevel_pace
    !! does not advance decides about the length of a step [-].
    real(rk), parameter :: least_load = 0.1_rk, least_rise = 0.02_rk
 
+   !> Relative change of the time at which the search ends [-].
+   real(rk), parameter :: same_time = 1.0e-10_rk
+
    !> Misfit that is rounding, and the one at which a search that does not improve ends [-].
-   real(rk), parameter :: rounding = 3.0e-10_rk, small = 1.0e-7_rk
+   real(rk), parameter :: rounding = 1.0e-14_rk, small = 1.0e-7_rk
 
 contains
 
@@ -131,7 +134,7 @@ contains
       real(rk) :: change, misfit_change
 
       is_found = .not. self%is_bound .or. abs(self%misfit) <= rounding .or. &
-                 (self%tries > 2 .and. abs(self%misfit) <= small .and. &
+                 (self%tries > 3 .and. abs(self%misfit) <= small .and. &
                   abs(self%misfit) >= 0.1_rk*abs(self%last_misfit))
       if (is_found .or. allocated(self%why_not)) return
       self%tries = self%tries + 1
@@ -144,6 +147,8 @@ contains
          self%rise = max(least_rise, abs(misfit_change/(dt - self%last_dt))*(self%since + dt))
          change = max(-0.8_rk*dt, min(4.0_rk*dt, change))
       end if
+      is_found = self%tries > 1 .and. abs(change) <= same_time*(self%since + dt)
+      if (is_found) return
       self%last_dt = dt
       self%last_misfit = self%misfit
       dt = dt + change
