@@ -1,8 +1,9 @@
-!> The time of a state of a replayed run. Tips are where they were in the recorded run, and the length
-!! of the step is found so that K_eq/K_IC of the tips that decide about it is the recorded one:
-!! those that join a target in the step, else those that advance, by the length of their advances,
-!! else the one with the largest K_eq/K_IC, where this rises in the step. Other steps, jumps among
-!! them, are as long as those of the record, in proportion to the time since the wells were switched.
+!> The time of a state of a replayed run. Tips are where they were in the recorded run, and the
+!! length of the step is found so that K_eq/K_IC of the tips that decide about it is the recorded
+!! one: those that join a target in the step, else those that advance, by the length of their
+!! advances, else the one with the largest K_eq/K_IC, where this rises in the step. Other steps,
+!! jumps among them, are as long as those of the record, in proportion to the time since the wells
+!! were switched.
 module twolevel_pace
    use base_archive, only: archive_t
    use base_kinds, only: pi, rk
@@ -16,7 +17,7 @@ module twolevel_pace
    type :: pace_t
       real(rk) :: recorded = 0.0_rk  !< length of the recorded step [s]
       real(rk) :: recorded_end = 0.0_rk  !< and its end [s]
-      real(rk) :: since = 0.0_rk  !< time since the wells were switched, at the start of the step [s]
+      real(rk) :: since = 0.0_rk  !< time since the last switch at the start of the step [s]
       real(rk) :: recorded_since = 0.0_rk  !< the same in the record [s]
       logical :: is_bound = .false.  !< the tips decide about the length of the step
       logical :: has_joined = .false.
@@ -86,7 +87,7 @@ contains
    subroutine see_end(self, tape, excess, before, angle, advance, counts, jumps)
       class(pace_t), intent(inout) :: self
       type(tape_t), intent(inout) :: tape
-      real(rk), intent(in) :: excess(:), before(:)  !< (tips) K_eq/K_IC - 1, also before the step [-]
+      real(rk), intent(in) :: excess(:), before(:)  !< (tips) K_eq/K_IC - 1, now and before [-]
       real(rk), intent(in) :: angle(:)  !< (tips) kink angle of the criterion [rad]
       real(rk), intent(in) :: advance(:)  !< (tips) [m]
       logical, intent(in) :: counts(:)  !< (tips) the tip is loaded
@@ -105,10 +106,10 @@ contains
       goes_on = counts .and. advance > 0.0_rk
       if (any(counts .and. max(excess, recorded) > -far .and. abs(excess - recorded) > far)) then
          self%why_not = "K_eq/K_IC differs from the record by "//brief_text(maxval( &
-                      abs(excess - recorded), mask=counts .and. max(excess, recorded) > -far), 3)
+                         abs(excess - recorded), mask=counts .and. max(excess, recorded) > -far), 3)
       else if (any(goes_on .and. abs(angle - recorded_angle) > aside)) then
          self%why_not = "the direction of a tip differs from the record by "//brief_text(maxval( &
-                        abs(angle - recorded_angle), mask=goes_on)*180.0_rk/pi, 3)//" degrees"
+                              abs(angle - recorded_angle), mask=goes_on)*180.0_rk/pi, 3)//" degrees"
       end if
       if (self%has_joined .or. jumps) return
       if (any(goes_on)) then
@@ -154,8 +155,8 @@ contains
       dt = dt + change
       if (self%tries > tries_max .or. dt > most*self%recorded .or. &
           dt < self%recorded/most) then
-         self%why_not = "no step between an eighth and eight times the recorded one leads to its "// &
-                        "K_eq/K_IC"
+         self%why_not = "no step between an eighth and eight times the recorded one "// &
+                        "leads to its K_eq/K_IC"
       end if
    end subroutine improve
 

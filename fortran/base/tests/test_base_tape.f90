@@ -37,8 +37,8 @@ program test_base_tape
    call follower%compare("x", x, recorded)
    call checks%is_true(all(moves .eqv. [.true., .false.]) .and. n == 7, "decisions are taken")
    call checks%is_true(all(abs(recorded - [1.0_rk, 2.0_rk]) <= 0.0_rk) .and. &
-                  all(abs(x - 3.0_rk) <= 0.0_rk), "compared values are kept")
-   call checks%is_true(follower%is_at_end() .and. .not. follower%fault(), "the record is at its end")
+                       all(abs(x - 3.0_rk) <= 0.0_rk), "compared values are kept")
+   call checks%is_true(follower%is_at_end() .and. .not. follower%fault(), "the record has ended")
 
    call follower%follow(recorder%bytes())
    n = 5

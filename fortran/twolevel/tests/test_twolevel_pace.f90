@@ -31,7 +31,7 @@ contains
       end do
       call checks%is_true(is_found .and. k < 7, "the time is found in few tries")
       call checks%is_true(abs((100.0_rk + dt)/(150.0_rk*1.01_rk**6) - 1.0_rk) < 1.0e-8_rk, &
-                     "it is that of the power law")
+                          "it is that of the power law")
    end subroutine finds_time_of_a_power_law
 
    subroutine gives_up_outside_of_range()
