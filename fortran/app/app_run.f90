@@ -89,16 +89,14 @@ contains
       was_interrupted = .false.
       call allocate_simulation(scene, simulation)
       call timers%begin()
-      call journal%files%open(directory, source, refused, error)
-      if (allocated(error)) return
       if (len_trim(scene%time%replay) > 0) then
          call read_record(trim(scene%time%replay), version, decisions, error)
          refused = allocated(error)
-         if (refused) call journal%files%place%release()
          if (refused) return
          call simulation%tape%follow(decisions)
       end if
-
+      call journal%files%open(directory, source, refused, error)
+      if (allocated(error)) return
       if (present(origin)) then
          call restart(simulation, journal, scene, origin, timers, refused, error)
          is_meshed = .not. allocated(error)

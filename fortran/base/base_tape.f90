@@ -1,6 +1,6 @@
-!> Decisions of a computation in the order in which they are taken: recorded, or taken from the record
-!! of another computation, or both. The same line of code does either, as in base_archive, so that a
-!! replay takes the same way through the program as the recorded run.
+!> Decisions of a computation in the order in which they are taken: recorded, or taken from the
+!! record of another computation, or both. The same line of code does either, as in base_archive, so
+!! that a replay takes the same way through the program as the recorded run.
 module base_tape
    use, intrinsic :: iso_fortran_env, only: int8
    use base_archive, only: archive_t
@@ -75,7 +75,7 @@ contains
    end subroutine mark
 
    !> Discard the decisions since the last mark.
-   subroutine rewind(self)
+   subroutine rewind (self)
       class(tape_t), intent(inout) :: self
 
       self%own%length = self%own_mark

@@ -141,8 +141,10 @@ contains
       end if
       call visit_fracture_mesh(archive, "fracture", mesh%fracture)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
-         if (c_associated(mesher%handle) .and. .not. is_sound(mesh, mesh%fracture)) then
-            call archive%set_fault(name)
+         if (c_associated(mesher%handle)) then
+            if (.not. (is_sound(mesh, mesh%fracture) .and. has_indices(mesh))) then
+               call archive%set_fault(name)
+            end if
          end if
       end if
       call archive%leave()
@@ -179,6 +181,22 @@ contains
                     all(first(2:) >= first(:size(first) - 1))
       end associate
    end function is_sound
+
+   !> Whether the arrays of cells and faces have indices of the mesh.
+   pure logical function has_indices(mesh)
+      type(mesh_t), intent(in) :: mesh
+
+      has_indices = within([mesh%cell_nodes], mesh%n_nodes) .and. &
+                    within([mesh%cell_faces], mesh%n_faces) .and. &
+                    within([mesh%face_nodes], mesh%n_nodes) .and. &
+                    within(mesh%face_cells(1, :), mesh%n_cells) .and. &
+                    within(mesh%face_cells(2, :) + 1, mesh%n_cells + 1) .and. &
+                    within(mesh%face_fracture_cell + 1, mesh%fracture%n_cells + 1) .and. &
+                    all(mesh%face_side >= 0)
+      if (has_indices .and. allocated(mesh%face_layer)) then
+         has_indices = within(mesh%face_layer + 1, mesh%n_layers + 1)
+      end if
+   end function has_indices
 
    pure logical function within(indices, n)
       integer(ik), intent(in) :: indices(:), n

@@ -1,10 +1,10 @@
 !> The record of a run, record.bin in its folder: all decisions between two accepted states
 !! (base_tape), from which another run takes them.
 !!
-!! The file is a sequence of parts, each with the number of its bytes (int64), their checksum (CRC-32,
-!! int64), and the bytes: the first one has the version of this format and that of the program, each
-!! of the others the decisions up to one accepted state. The file is complete at any time, and can be
-!! cut after any part.
+!! The file is a sequence of parts, each with the number of its bytes (int64), their checksum
+!! (CRC-32, int64), and the bytes: the first one has the version of this format and that of the
+!! program, each of the others the decisions up to one accepted state. The file is complete at any
+!! time, and can be cut after any part.
 module report_replay
    use, intrinsic :: iso_c_binding, only: c_size_t
    use, intrinsic :: iso_fortran_env, only: int8

@@ -10,7 +10,8 @@ module report_rows
    public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
    public :: event_growth_jump, event_growth_uncertain
    public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
-   public :: event_replay, event_step_cut, event_unstable, event_well, event_window, fracture_fields_t
+   public :: event_replay, event_step_cut, event_unstable, event_well, event_window
+   public :: fracture_fields_t
    public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
    public :: matrix_fields_t, probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
    public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t

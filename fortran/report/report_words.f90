@@ -29,7 +29,8 @@ module report_words
       word_t("step_cut", &
          "a time step did not converge, had too large a time error, or tips would begin to "// &
          "grow or grow too far in it: it is repeated with a shorter step"), &
-      word_t("replay", "a replay has left the record, for the reason in `detail`, and decides freely"), &
+      word_t("replay", &
+             "a replay has left the record, for the reason in `detail`, and decides freely"), &
       word_t("unstable_growth", &
          "tips have grown at constant time until they arrested, or exceed K_IC in the initial "// &
          "state and grow at once; without a fluid a row at the start and one at the end, with "// &

@@ -1,8 +1,9 @@
-!> The time of a state of a replayed run. Tips are where they were in the recorded run, and the length
-!! of the step is found so that K_eq/K_IC of the tips that decide about it is the recorded one:
-!! those that join a target in the step, else those that advance, by the length of their advances,
-!! else the one with the largest K_eq/K_IC, where this rises in the step. Other steps, jumps among
-!! them, are as long as those of the record, in proportion to the time since the wells were switched.
+!> The time of a state of a replayed run. Tips are where they were in the recorded run, and the
+!! length of the step is found so that K_eq/K_IC of the tips that decide about it is the recorded
+!! one: those that join a target in the step, else those that advance, by the length of their
+!! advances, else the one with the largest K_eq/K_IC, where this rises in the step. Other steps,
+!! jumps among them, are as long as those of the record, in proportion to the time since the wells
+!! were switched.
 module twolevel_pace
    use base_archive, only: archive_t
    use base_kinds, only: pi, rk
@@ -16,7 +17,7 @@ module twolevel_pace
    type :: pace_t
       real(rk) :: recorded = 0.0_rk  !< length of the recorded step [s]
       real(rk) :: recorded_end = 0.0_rk  !< and its end [s]
-      real(rk) :: since = 0.0_rk  !< time since the wells were switched, at the start of the step [s]
+      real(rk) :: since = 0.0_rk  !< time since the last switch at the start of the step [s]
       real(rk) :: recorded_since = 0.0_rk  !< the same in the record [s]
       logical :: is_bound = .false.  !< the tips decide about the length of the step
       logical :: has_joined = .false.
@@ -41,8 +42,11 @@ module twolevel_pace
    !! does not advance decides about the length of a step [-].
    real(rk), parameter :: least_load = 0.1_rk, least_rise = 0.02_rk
 
+   !> Relative change of the time at which the search ends [-].
+   real(rk), parameter :: same_time = 1.0e-10_rk
+
    !> Misfit that is rounding, and the one at which a search that does not improve ends [-].
-   real(rk), parameter :: rounding = 3.0e-10_rk, small = 1.0e-7_rk
+   real(rk), parameter :: rounding = 1.0e-14_rk, small = 1.0e-7_rk
 
 contains
 
@@ -83,7 +87,7 @@ contains
    subroutine see_end(self, tape, excess, before, angle, advance, counts, jumps)
       class(pace_t), intent(inout) :: self
       type(tape_t), intent(inout) :: tape
-      real(rk), intent(in) :: excess(:), before(:)  !< (tips) K_eq/K_IC - 1, also before the step [-]
+      real(rk), intent(in) :: excess(:), before(:)  !< (tips) K_eq/K_IC - 1, now and before [-]
       real(rk), intent(in) :: angle(:)  !< (tips) kink angle of the criterion [rad]
       real(rk), intent(in) :: advance(:)  !< (tips) [m]
       logical, intent(in) :: counts(:)  !< (tips) the tip is loaded
@@ -102,10 +106,10 @@ contains
       goes_on = counts .and. advance > 0.0_rk
       if (any(counts .and. max(excess, recorded) > -far .and. abs(excess - recorded) > far)) then
          self%why_not = "K_eq/K_IC differs from the record by "//brief_text(maxval( &
-                      abs(excess - recorded), mask=counts .and. max(excess, recorded) > -far), 3)
+                         abs(excess - recorded), mask=counts .and. max(excess, recorded) > -far), 3)
       else if (any(goes_on .and. abs(angle - recorded_angle) > aside)) then
          self%why_not = "the direction of a tip differs from the record by "//brief_text(maxval( &
-                        abs(angle - recorded_angle), mask=goes_on)*180.0_rk/pi, 3)//" degrees"
+                              abs(angle - recorded_angle), mask=goes_on)*180.0_rk/pi, 3)//" degrees"
       end if
       if (self%has_joined .or. jumps) return
       if (any(goes_on)) then
@@ -131,7 +135,7 @@ contains
       real(rk) :: change, misfit_change
 
       is_found = .not. self%is_bound .or. abs(self%misfit) <= rounding .or. &
-                 (self%tries > 2 .and. abs(self%misfit) <= small .and. &
+                 (self%tries > 3 .and. abs(self%misfit) <= small .and. &
                   abs(self%misfit) >= 0.1_rk*abs(self%last_misfit))
       if (is_found .or. allocated(self%why_not)) return
       self%tries = self%tries + 1
@@ -144,13 +148,15 @@ contains
          self%rise = max(least_rise, abs(misfit_change/(dt - self%last_dt))*(self%since + dt))
          change = max(-0.8_rk*dt, min(4.0_rk*dt, change))
       end if
+      is_found = self%tries > 1 .and. abs(change) <= same_time*(self%since + dt)
+      if (is_found) return
       self%last_dt = dt
       self%last_misfit = self%misfit
       dt = dt + change
       if (self%tries > tries_max .or. dt > most*self%recorded .or. &
           dt < self%recorded/most) then
-         self%why_not = "no step between an eighth and eight times the recorded one leads to its "// &
-                        "K_eq/K_IC"
+         self%why_not = "no step between an eighth and eight times the recorded one "// &
+                        "leads to its K_eq/K_IC"
       end if
    end subroutine improve
 

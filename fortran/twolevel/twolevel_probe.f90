@@ -57,7 +57,7 @@ contains
       allocate (columns(0))
       if (count(in_play) >= 2) then
          columns = self%now%interaction%columns_to_measure(pack([(i, i=1, size(self%tip, &
-                                                                            kind=ik))], in_play), &
+                                                                             kind=ik))], in_play), &
                                                            self%now%segment)
       end if
       is_column = [(any(columns == i), i=1, size(self%tip, kind=ik))]

@@ -8,7 +8,8 @@ submodule(twolevel_state) twolevel_steps
    use base_tolerances, only: same_time
    use coarse_rock, only: shear_beside
    use mesh_types, only: fracture_mesh_t
-   use report_rows, only: entry_row_t, event_replay, event_step_cut, event_unstable, history_row_t, well_row_t
+   use report_rows, only: entry_row_t, event_replay, event_step_cut, event_unstable, &
+                          history_row_t, well_row_t
    use report_limits, only: limit_depth, limit_time_error, limit_well_error
    use report_slip, only: slip_step_t
    use twolevel_coarse_errors, only: estimate_coarse_errors

@@ -61,7 +61,7 @@ contains
       integer :: number
 
       call write_scene("&time end=75600.0, step=1800.0 / &growth intensities=.true. /")
-      call read(scene)
+      call read (scene)
       call run(scene, base)
       call run(scene, follower, base)
       call table%open("summary.csv", "of_itself,k2_gradient,k2_difference,"// &
@@ -94,7 +94,7 @@ contains
 
       call write_scene("&time end=360000.0 / &growth enabled=.true., new_aperture=1.0e-5, "// &
                        "new_volume='conserved', stop_gain=0.01 /")
-      call read(scene)
+      call read (scene)
       call run(scene, base)
       call run(scene, follower, base)
       n = size(base%time)
@@ -110,7 +110,7 @@ contains
 
       call write_scene("&time end=200.0, tolerance=2.0e-4 / &growth enabled=.true., "// &
                        "new_aperture=1.0e-5, new_volume='conserved' /")
-      call read(changed)
+      call read (changed)
       changed%material%toughness = 2.0_rk*scene%material%toughness
       call run(changed, fine)
       k = findloc(fine%keq > scene%material%toughness, .true., dim=1)
@@ -179,7 +179,7 @@ contains
       close (unit)
    end subroutine write_scene
 
-   subroutine read(scene)
+   subroutine read (scene)
       type(scene_t), intent(out) :: scene
       type(error_t), allocatable :: error
 

@@ -15,7 +15,7 @@ program test_base_tape
    n = 7
    x = [1.0_rk, 2.0_rk]
    call recorder%keep("moves", moves)
-   call checks%check(size(recorder%bytes()) == 0, "a tape that is off records nothing")
+   call checks%is_true(size(recorder%bytes()) == 0, "a tape that is off records nothing")
    recorder%is_recording = .true.
    call recorder%begin()
    call recorder%keep("moves", moves)
@@ -24,7 +24,7 @@ program test_base_tape
    call recorder%rewind()
    call recorder%keep("n", n)
    call recorder%compare("x", x, recorded)
-   call checks%check(all(abs(recorded - x) <= 0.0_rk), "without a record values are their own")
+   call checks%is_true(all(abs(recorded - x) <= 0.0_rk), "without a record values are their own")
 
    follower%is_recording = .true.
    call follower%begin()
@@ -35,14 +35,14 @@ program test_base_tape
    call follower%keep("moves", moves)
    call follower%keep("n", n)
    call follower%compare("x", x, recorded)
-   call checks%check(all(moves .eqv. [.true., .false.]) .and. n == 7, "decisions are taken")
-   call checks%check(all(abs(recorded - [1.0_rk, 2.0_rk]) <= 0.0_rk) .and. &
-                  all(abs(x - 3.0_rk) <= 0.0_rk), "compared values are kept")
-   call checks%check(follower%is_at_end() .and. .not. follower%fault(), "the record is at its end")
+   call checks%is_true(all(moves .eqv. [.true., .false.]) .and. n == 7, "decisions are taken")
+   call checks%is_true(all(abs(recorded - [1.0_rk, 2.0_rk]) <= 0.0_rk) .and. &
+                       all(abs(x - 3.0_rk) <= 0.0_rk), "compared values are kept")
+   call checks%is_true(follower%is_at_end() .and. .not. follower%fault(), "the record has ended")
 
    call follower%follow(recorder%bytes())
    n = 5
    call follower%keep("joins", n)
-   call checks%check(follower%fault() .and. n == 5, "another decision is a fault, and stays free")
+   call checks%is_true(follower%fault() .and. n == 5, "another decision is a fault, and stays free")
    call checks%finish()
 end program test_base_tape

@@ -29,9 +29,9 @@ contains
          call pace%improve(dt, is_found)
          if (is_found .or. allocated(pace%why_not)) exit
       end do
-      call checks%check(is_found .and. k < 7, "the time is found in few tries")
-      call checks%check(abs((100.0_rk + dt)/(150.0_rk*1.01_rk**6) - 1.0_rk) < 1.0e-8_rk, &
-                     "it is that of the power law")
+      call checks%is_true(is_found .and. k < 7, "the time is found in few tries")
+      call checks%is_true(abs((100.0_rk + dt)/(150.0_rk*1.01_rk**6) - 1.0_rk) < 1.0e-8_rk, &
+                          "it is that of the power law")
    end subroutine finds_time_of_a_power_law
 
    subroutine gives_up_outside_of_range()
@@ -48,7 +48,7 @@ contains
          call pace%improve(dt, is_found)
          if (is_found .or. allocated(pace%why_not)) exit
       end do
-      call checks%check(allocated(pace%why_not), "a step far from the recorded one is not taken")
+      call checks%is_true(allocated(pace%why_not), "a step far from the recorded one is not taken")
    end subroutine gives_up_outside_of_range
 
    !> A tip that advances, with K_eq/K_IC = 1 at 150 s and the recorded toughness.
