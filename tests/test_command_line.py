@@ -145,7 +145,7 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["check"], "check needs a scene file"),
         (["check", "nowhere.nml"], "there is no scene file nowhere.nml"),
         (["check", "nowhere.nml", "--out", "here"], "no such option '--out'"),
-        (["check", "inputs/paper_c/onset.nml", "--mohr", "m.jpg"], "--mohr must end in .png or"),
+        (["check", "nowhere.nml", "--mohr", "m.jpg"], "--mohr must end in .png or"),
         (["check", "nowhere.nml", "other.nml"], "got unexpected extra argument (other.nml)"),
         (["plot"], "plot needs the directory of a run"),
         (["plot", "nowhere"], "there is no directory nowhere"),

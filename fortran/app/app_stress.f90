@@ -175,7 +175,7 @@ contains
          if (well%fracture > 0 .and. maxval(well%rate) > 0.0_rk) then
             toughness = min(scene%material%toughness, scene%fractures(well%fracture)%toughness)
             if (toughness < huge(1.0_rk)) call json%add("k_m", dimensionless_toughness( &
-                                          scene, toughness, maxval(well%rate)/well%entry_count()))
+                                            scene, toughness, maxval(well%rate)/well%entry_count()))
          end if
       end if
       if (allocated(well%pressure)) then

@@ -51,7 +51,7 @@ contains
                do e = 1, size(entries)
                   if (entries(e)%loss > 0.0_rk) cycle
                   call find_node(scene, place_t(entries(e)%fracture, well%at_point, &
-                                               [entries(e)%x, entries(e)%y]), places, group, node)
+                                                [entries(e)%x, entries(e)%y]), places, group, node)
                   call join(group, w + 1, node, is_loop)
                   if (pass == 1 .or. .not. is_loop) cycle
                   call refuse(error, sheet, sheet%find("injection", w), "fracture", &

@@ -159,7 +159,11 @@ contains
 
       do k = 1, size(renamed)
          if (any([(headers(m)%text == renamed(k)%header, m=1, size(headers))])) cycle
-         reason = "there is no column '"//shortened(renamed(k)%header)//"', which columns names"
+         reason = "there is no column '"//shortened(renamed(k)%header)//"', which columns "// &
+                  "names; there are"
+         do m = 1, size(headers)
+            reason = reason//trim(merge(",", " ", m > 1))//" '"//shortened(headers(m)%text)//"'"
+         end do
          return
       end do
    end subroutine find_missing

@@ -421,7 +421,7 @@ contains
 
       call exchange(record, "enabled", growth%enabled)
       if (record%reading) growth%enabled_assumed = record%line > 0 .and. &
-                               .not. (record%is_given("enabled") .or. record%is_given("intensities"))
+                              .not. (record%is_given("enabled") .or. record%is_given("intensities"))
       call exchange(record, "intensities", growth%intensities)
       call exchange(record, "law", growth%law)
       call exchange(record, "increment", growth%increment, nothing=0.0_rk)

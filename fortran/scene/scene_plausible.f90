@@ -444,7 +444,7 @@ contains
       associate (m => scene%material)
          ! Diffusivity of rock that is strained in one direction.
          reach = sqrt(max(m%permeability_xx, m%permeability_yy)/scene%fluid%viscosity &
-                             *scene%time%end/stored)
+                      *scene%time%end/stored)
       end associate
       call add(list, reach > distance, of_sealed, reach)
    end subroutine doubt_seal

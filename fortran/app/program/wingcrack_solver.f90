@@ -21,7 +21,7 @@ program wingcrack_solver
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | run [SCENE.nml] --restart DIR [--end T] "// &
-                                  "[--out DIR] [--quiet] | check SCENE.nml [--stress] | name SCENE.nml | "// &
+                        "[--out DIR] [--quiet] | check SCENE.nml [--stress] | name SCENE.nml | "// &
                                   "ranks SCENE.nml | "// &
                                   "--describe json | --version"
    !> Kept to the program's end: gfortran 12 loses memory when it deallocates by the dynamic type.

@@ -89,12 +89,12 @@ def run(given: SimpleNamespace) -> None:
 )
 def check(given: SimpleNamespace) -> None:
     """Read and validate a scene without running it."""
-    _judge_scene(given)
     if given.mohr is not None:
         if given.mohr.suffix not in {".png", ".pdf"}:
             raise UsageError(f"--mohr must end in .png or .pdf, unlike {given.mohr}")
         if not given.mohr.parent.is_dir():
             raise UsageError(f"the diagram cannot go to {given.mohr}: there is no such folder")
+    _judge_scene(given)
 
 
 def _judge_restart(given: SimpleNamespace) -> None:
