@@ -104,7 +104,8 @@ def cell_sizes(lines: Sequence[Line]) -> tuple[list[float], str]:
     def cells(least: float) -> float:
         return float(np.maximum(gaps / sizes(least)[owner], 1.0).sum())
 
-    least, high = float(np.median(lengths)) / _CELLS, float(lengths.max())
+    high = float(np.median(lengths))
+    least = high / _CELLS
     if cells(least) > _MOST:
         for _ in range(40):
             middle = 0.5 * (least + high)
