@@ -38,10 +38,23 @@ void replace(std::string& text, const std::string& mark, const std::string& word
         text.replace(at, mark.size(), words);
 }
 
+std::string text_of(double value, int digits) {
+    std::array<char, 32> text; // sign, digits, point and exponent need 17 of them
+    const auto written = std::to_chars(text.data(), text.data() + text.size(), value,
+                                       std::chars_format::general, digits);
+    return {text.data(), written.ptr};
+}
+
+// Of large coordinates, as those of maps, the first digits are alike.
+std::string coordinate_text(double value) {
+    return text_of(value, std::abs(value) < 1e4 ? 6 : 10);
+}
+
 Fault with_place(Fault fault) {
     if (fault.place)
         replace(fault.reason, "{at}",
-                "at (" + number_text(fault.place->x) + ", " + number_text(fault.place->y) + ")");
+                "at (" + coordinate_text(fault.place->x) + ", " + coordinate_text(fault.place->y) +
+                    ")");
     return fault;
 }
 
@@ -64,11 +77,7 @@ MeshError::MeshError(Fault fault)
     : std::runtime_error(message_of(with_place(fault))), fault_(with_place(std::move(fault))) {}
 
 std::string number_text(double value) {
-    constexpr int digits = 6;
-    std::array<char, 32> text; // sign, digits, point and exponent need 13 of them
-    const auto written = std::to_chars(text.data(), text.data() + text.size(), value,
-                                       std::chars_format::general, digits);
-    return {text.data(), written.ptr};
+    return text_of(value, 6);
 }
 
 } // namespace cpp_mesh

@@ -6,11 +6,13 @@ import os
 import signal
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NoReturn
 
-from shapely.geometry import Polygon
+import shapely
+from shapely.geometry import LineString, Polygon
 
 from wingcrack.scenes.errors import SceneError
 from wingcrack.scenes.parameters import groups
@@ -25,7 +27,7 @@ from wingcrack_maps.random_network import Set, random_network
 from wingcrack_maps.read import read_map
 from wingcrack_maps.repair import Repair, repair
 from wingcrack_maps.report import Report, file_texts, terminal_text
-from wingcrack_maps.scene_text import FRACTURE_DEFAULTS, Network, cell_size, scene_text
+from wingcrack_maps.scene_text import FRACTURE_DEFAULTS, Network, cell_sizes, scene_text
 from wingcrack_maps.units import shift
 
 
@@ -84,6 +86,7 @@ def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
         )
     if not content.lines:
         raise SceneError(f"{path}: it has no lines, so no fractures")
+    _leave_out(given, content, path)
     if extent(content.lines) == 0.0:
         raise SceneError(f"{path}: all its lines lie at one place and have no length")
     give_names(content, base.names if base is not None else set())
@@ -125,6 +128,29 @@ def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
     text = scene_text(network, _heading(given, path), base)
     _write(given.out, text, report)
     return report
+
+
+def _leave_out(given: SimpleNamespace, content: Map, path: str) -> None:
+    """Leave out short traces and vertices on request, before faults are looked for."""
+    if given.simplify is not None:
+        before = sum(len(line.points) for line in content.lines)
+        shapes = [LineString(line.points).simplify(given.simplify) for line in content.lines]
+        content.lines = [
+            replace(line, points=shapely.get_coordinates(shape))
+            for line, shape in zip(content.lines, shapes, strict=True)
+        ]
+        after = sum(len(line.points) for line in content.lines)
+        content.note("simplified", f"{before - after} of {before} vertices were within"
+                     f" {given.simplify:g} m of the line without them")  # fmt: skip
+    if given.drop_shorter is None:
+        return
+    kept = [line for line in content.lines if line.length >= given.drop_shorter]
+    dropped = sum(line.length for line in content.lines) - sum(line.length for line in kept)
+    if not kept:
+        raise SceneError(f"{path}: no fracture has {given.drop_shorter:g} m, see --drop-shorter")
+    content.note("dropped", f"{len(content.lines) - len(kept)} traces shorter than"
+                 f" {given.drop_shorter:g} m, together {dropped:.6g} m")  # fmt: skip
+    content.lines = kept
 
 
 def _add_entries(given: SimpleNamespace, content: Map, path: str, base: Base | None) -> None:
@@ -191,10 +217,13 @@ def _network(
     cell = given.cell
     if cell is None and base is not None:
         cell = base.number("coarse", "size_fracture") or base.number("fe", "size_fracture")
-    if cell is None and not given.growth:
-        cell = cell_size(content.lines)
+    cells: list[float] = []
+    if cell is None and not given.growth and (base is None or "fe" not in base.groups):
+        cells, words = cell_sizes(content.lines)
+        content.note("cells", words)
     line_values = [line.attributes for line in content.lines]
-    return Network(content.lines, line_values, regions, region_values, body, cell, given.growth)  # type: ignore[arg-type]
+    lines = content.lines
+    return Network(lines, line_values, regions, region_values, body, cell, cells, given.growth)  # type: ignore[arg-type]
 
 
 def _heading(given: SimpleNamespace, path: str) -> str:

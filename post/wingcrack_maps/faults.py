@@ -75,6 +75,18 @@ def extent(lines: Sequence[Line]) -> float:
     return float(np.hypot(*(places.max(axis=0) - places.min(axis=0))))
 
 
+def place_text(place: tuple[float, float], grain: float) -> tuple[str, str]:
+    """Write a place to a tenth of a length at least, however large its coordinates are.
+
+    Examples
+    --------
+    >>> place_text((109800.25, 6720000.125), 0.05)
+    ('109800.250', '6720000.125')
+    """
+    decimals = max(0, 1 - math.floor(math.log10(grain)))
+    return f"{place[0]:.{decimals}f}", f"{place[1]:.{decimals}f}"
+
+
 def find_faults(lines: Sequence[Line], body: Polygon | None, limits: Limits) -> list[Fault]:
     """All faults of a network, in the order of `KINDS`."""
     return Search(body, limits).faults(lines)

@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Point, Polygon
 
-from wingcrack_maps.faults import BODY, HARMLESS, Fault, Limits, Search
+from wingcrack_maps.faults import BODY, HARMLESS, Fault, Limits, Search, place_text
 from wingcrack_maps.features import Line, Points
 
 _ROUNDS = 2000
@@ -262,9 +262,10 @@ class _Network:
         place = np.array(fault.place)
         for i in dict.fromkeys(fault.lines):
             self._set(i, self._through(i, place))
+        where = ", ".join(place_text(fault.place, self.limits.near))
         if one == other:
-            return f"both crossings made one at ({place[0]:.6g}, {place[1]:.6g})"
-        return f"crossings gathered at ({place[0]:.6g}, {place[1]:.6g})"
+            return f"both crossings made one at ({where})"
+        return f"crossings gathered at ({where})"
 
     def _through(self, i: int, place: Points) -> Points:
         """Vertices of a line that goes through a place near to it."""

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from wingcrack_maps.faults import ANGLES, BODY, HARMLESS, KINDS, Fault
+from wingcrack_maps.faults import ANGLES, BODY, HARMLESS, KINDS, Fault, place_text
 from wingcrack_maps.features import Line, Note
 from wingcrack_maps.repair import Repair
 
@@ -65,7 +65,7 @@ class Report:
         size: str,
         what: str,
     ) -> None:
-        x, y = (f"{place[0]:.9g}", f"{place[1]:.9g}") if place else ("", "")
+        x, y = (place_text(place, 0.01 * self.near)) if place else ("", "")
         first, others = (names[0], " ".join(names[1:])) if names else ("", "")
         values = (status, kind, first, others, x, y, size, what)
         self.rows.append(dict(zip(COLUMNS, values, strict=True)))
@@ -82,7 +82,7 @@ def terminal_text(report: Report) -> str:
     if faults:
         lines.append("")
     for row in faults[:_SHOWN]:
-        where = f"({float(row['x_m']):.6g}, {float(row['y_m']):.6g})"
+        where = f"({', '.join(place_text((float(row['x_m']), float(row['y_m'])), report.near))})"
         who = " ".join(word for word in (row["fracture"], row["other"]) if word)
         lines.append(
             f"{row['status']:<9}{row['fault']:<16} {who:<22} {where:<20} {row['size']:<12}"

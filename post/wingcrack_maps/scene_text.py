@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,12 +12,17 @@ from shapely.strtree import STRtree
 from wingcrack.scenes.namelist import Value, group_text
 from wingcrack_maps.base import Base
 from wingcrack_maps.body import domain_values
-from wingcrack_maps.features import Area, Line
+from wingcrack_maps.features import Area, Line, Points
 
 FRACTURE_DEFAULTS: dict[str, Value] = {"friction": 0.6, "dilation_deg": 3.0, "aperture": 1.0e-4}
 """Of fractures where neither map nor call says it: ours, to start from."""
 
-_CELLS = 8.0  # of the median fracture
+_CELLS = 8.0  # along a fracture
+_MOST = 1500.0  # cells along all fractures: some two minutes
+_ROCK_CELLS = 20.0  # in the rock for each of them, 8 to 24 in networks that were measured
+# A run of 55 to 60 steps with 10,000 cells in the rock on one core, and how it grows with them
+_MINUTES, _POWER = 0.7, 1.35
+_RATE = 1.4e-7  # of the well for each metre of its cluster [m2/s per m]
 _COARSENING = 8.0  # cells far from the fractures over those at them
 
 _ROCK = """\
@@ -48,8 +52,8 @@ _TIME_WITH_GROWTH = """\
 """
 
 _NO_GROWTH = """\
-! Without the exclamation mark fractures grow. Remove size_fracture of &coarse then, so that cells,
-! increments and windows follow from the length of each fracture:
+! Without the exclamation mark fractures grow. Remove &coarse and every cell_size then, so that
+! cells, increments and windows follow from the length of each fracture:
 ! &growth enabled = .true. /
 """
 
@@ -60,7 +64,7 @@ _GROWTH = """\
 
 _WELL = """\
 ! A well in the fractures that hang together over the largest length. Its pressure limit is 3 MPa
-! above the smallest compression: fractures across that open.
+! above the smallest compression: fractures across that open. Its rate suits the length of them.
 """
 
 
@@ -73,16 +77,54 @@ class Network:
     regions: Sequence[Area]
     region_values: Sequence[dict[str, Value]]
     body: Polygon | None
-    cell: float | None
+    cell: float | None  # of all fractures [m]
+    cells: Sequence[float]  # of each where there is none for all [m]
     grows: bool = False
 
 
-def cell_size(lines: Sequence[Line]) -> float:
-    """Cells at the fractures: an eighth of the median length, at most the shortest fracture [m]."""
-    lengths = np.array([line.length for line in lines if line.length > 0.0])
-    size = min(float(np.median(lengths)) / _CELLS, float(lengths.min()))
-    grain = 10.0 ** (math.floor(math.log10(size)) - 1)
-    return float(f"{math.floor(size / grain * (1.0 + 1e-12)) * grain:.2g}")
+def cell_sizes(lines: Sequence[Line]) -> tuple[list[float], str]:
+    """Cells along each fracture [m]: an eighth of it or of the median, or what a short run bears.
+
+    Shorter fractures have fewer cells, one at least, and every segment has one.
+
+    Returns
+    -------
+    list of float, str
+        The sizes, and what they cost in words.
+    """
+    # one of no length is refused when the scene is checked
+    lengths = np.maximum([line.length for line in lines], 1e-9 * max(line.length for line in lines))
+    segments = [np.hypot(*np.diff(line.points, axis=0).T) for line in lines]
+    owner = np.repeat(np.arange(len(lines)), [len(own) for own in segments])
+    gaps = np.concatenate(segments)
+
+    def sizes(least: float) -> Points:
+        return np.minimum(np.maximum(lengths / _CELLS, least), 0.999 * lengths)
+
+    def cells(least: float) -> float:
+        return float(np.maximum(gaps / sizes(least)[owner], 1.0).sum())
+
+    high = float(np.median(lengths))
+    least = high / _CELLS
+    if cells(least) > _MOST:
+        for _ in range(40):
+            middle = 0.5 * (least + high)
+            least, high = (middle, high) if cells(middle) > _MOST else (least, middle)
+        least = high
+    found = [float(f"{size:.3g}") for size in 0.995 * sizes(least)]
+    rock = _ROCK_CELLS * cells(least)
+    minutes = _MINUTES * (rock / 1e4) ** _POWER
+    words = (
+        f"cells of {min(found):.3g} to {max(found):.3g} m along fractures: about"
+        f" {cells(least):.0f}, and {rock:.2g} in the rock; a run of 60 steps takes about"
+        f" {max(minutes, 0.1):.2g} minutes on one core, more where much slips or opens"
+    )
+    if cells(least) > 1.1 * _MOST:
+        words += (
+            f"; {len(gaps)} segments have a cell each: --simplify leaves out vertices,"
+            " --drop-shorter short traces"
+        )
+    return found, words
 
 
 def scene_text(network: Network, heading: str, base: Base | None) -> str:
@@ -115,7 +157,7 @@ def _geometry(network: Network, base: Base | None) -> str:
     pieces = []
     if "domain" not in present:
         pieces.append(group_text("domain", domain_values(_body(network))))
-    if network.cell is not None and not ({"coarse", "fe"} & present.keys()):
+    if (network.cell is not None or network.cells) and not ({"coarse", "fe"} & present.keys()):
         name = "coarse" if base is None or "fluid" in present else "fe"
         pieces.append(group_text(name, _sizes(network)))
     for area, values in zip(network.regions, network.region_values, strict=True):
@@ -124,18 +166,21 @@ def _geometry(network: Network, base: Base | None) -> str:
         if not values:  # without rock of its own a region is none
             text = "".join(f"! {line}\n" for line in text.splitlines())
         pieces.append(text)
-    for line, values in zip(network.lines, network.line_values, strict=True):
+    for k, (line, values) in enumerate(zip(network.lines, network.line_values, strict=True)):
         x, y = (list(map(float, row)) for row in line.points.T)
-        pieces.append(group_text("fracture", {"name": line.name, "x": x, "y": y, **values}))
+        own: dict[str, Value] = {"cell_size": network.cells[k]} if network.cells else {}
+        pieces.append(group_text("fracture", {"name": line.name, "x": x, "y": y, **own, **values}))
     return "".join(pieces)
 
 
 def _sizes(network: Network) -> dict[str, Value]:
-    assert network.cell is not None
+    near = network.cell or float(np.median(network.cells))
+    least = network.cell or max(network.cells)
     low_x, low_y, high_x, high_y = _body(network).bounds
     edges = np.hypot(*np.diff(np.array(_body(network).exterior.coords), axis=0).T)
-    far = min(_COARSENING * network.cell, high_x - low_x, high_y - low_y, float(edges.min()))
-    return {"size_fracture": network.cell, "size_boundary": max(far, network.cell)}
+    far = min(_COARSENING * near, high_x - low_x, high_y - low_y, float(edges.min()))
+    own: dict[str, Value] = {} if network.cell is None else {"size_fracture": network.cell}
+    return {**own, "size_boundary": max(far, least)}
 
 
 def _well(lines: Sequence[Line]) -> str:
@@ -144,13 +189,16 @@ def _well(lines: Sequence[Line]) -> str:
     tree = STRtree(shapes)
     # shares of a cell's size are nothing here, and meeting ends differ by rounding
     touching = [tree.query(shape, "dwithin", 1e-9 * shape.length) for shape in shapes]
-    cluster = list(range(len(lines)))
-    for i, others in enumerate(touching):
-        for j in others:
-            old, new = cluster[int(j)], cluster[i]
-            cluster = [new if number == old else number for number in cluster]
-    total = [sum(lines[j].length for j, c in enumerate(cluster) if c == own) for own in cluster]
+    one = np.repeat(np.arange(len(lines)), [len(others) for others in touching])
+    other = np.concatenate(touching)
+    cluster, before = np.arange(len(lines)), np.empty(0, dtype=int)
+    while not np.array_equal(cluster, before):
+        before = cluster.copy()
+        np.minimum.at(cluster, one, before[other])
+        np.minimum.at(cluster, other, before[one])
+    total = np.bincount(cluster, [line.length for line in lines])[cluster]
     longest = max(range(len(lines)), key=lambda i: (total[i], lines[i].length))
+    rate = float(f"{min(1.0e-5, _RATE * total[longest]):.1g}")
     return group_text(
-        "injection", {"fracture": lines[longest].name, "rate": 1.0e-5, "pressure": 33.0e6}
+        "injection", {"fracture": lines[longest].name, "rate": rate, "pressure": 33e6}
     )

@@ -374,3 +374,36 @@ def test_nothing_is_replaced_unasked_and_a_folder_that_cannot_be_written_is_told
     assert ended.value.code == 2
     assert "--overwrite replaces it" in capsys.readouterr().err
     assert imported(path, "--unit", "m", "--overwrite")[0] == 0
+
+
+def test_sizes_follow_from_the_lengths_and_their_cost_is_told(tmp_path: Path) -> None:
+    """An eighth of the long one; of the median for the others, but no more than their length."""
+    lines = [feature((0, 6 * k), (4, 6 * k)) for k in range(3)]
+    lines += [feature((10, 0), (10, 16)), feature((14, 0), (14, 0.2))]
+    status, scene = imported(geojson(tmp_path / "m.geojson", *lines), "--unit", "m")
+    assert status == 0
+    found = [fracture["cell_size"] for fracture in fractures(scene).values()]
+    assert found == pytest.approx([0.5, 0.5, 0.5, 2.0, 0.2], rel=0.01)
+    assert "minutes on one core" in scene.with_suffix(".repairs.csv").read_text()
+
+
+def test_a_large_network_has_coarser_cells(tmp_path: Path) -> None:
+    lines = [
+        feature((10 * i, 10 * j), (10 * i + 8, 10 * j + 2)) for i in range(25) for j in range(20)
+    ]
+    status, scene = imported(geojson(tmp_path / "m.geojson", *lines), "--unit", "m")
+    assert status == 0
+    found = [fracture["cell_size"] for fracture in fractures(scene).values()]
+    assert found == pytest.approx([500 * np.hypot(8, 2) / 1500] * 500, rel=0.01)
+
+
+def test_short_traces_and_vertices_are_left_out_on_request(tmp_path: Path) -> None:
+    wavy = feature((0, 0), (5, 0.01), (10, 0), name="wavy")
+    path = geojson(tmp_path / "m.geojson", wavy, feature((3, 4), (3, 4.5)), feature((7, 5), (9, 9)))
+    status, scene = imported(path, "--unit", "m", "--drop-shorter", "1", "--simplify", "0.1")
+    assert status == 0
+    assert [len(fracture["x"]) for fracture in fractures(scene).values()] == [2, 2]  # type: ignore[arg-type]
+    notes = scene.with_suffix(".repairs.csv").read_text()
+    assert "1 traces shorter than 1 m, together 0.5 m" in notes
+    assert "1 of 7 vertices" in notes
+    assert imported(path, "--unit", "m", "--drop-shorter", "99", "--overwrite")[0] == 2

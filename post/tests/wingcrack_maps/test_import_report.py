@@ -17,7 +17,7 @@ def test_of_many_notes_of_one_kind_the_first_is_shown() -> None:
     report.add_notes([Note("many", f"many {k}") for k in range(5)])
     head, _, fault, _, *notes = terminal_text(report).splitlines()
     assert head.split() == ["fractures", "1"]
-    assert fault.split()[:6] == ["left", "short", "fracture", "f1", "(0,", "0.25)"]
+    assert fault.split()[:6] == ["left", "short", "fracture", "f1", "(0.00,", "0.25)"]
     assert [" ".join(note.split()[1:]) for note in notes] == [
         "few few 0",
         "few few 1",

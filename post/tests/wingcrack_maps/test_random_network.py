@@ -167,7 +167,7 @@ def test_two_sets_become_a_scene_that_the_solver_takes(tmp_path: Path) -> None:
     names = list(fractures(out))
     assert any(name.startswith("set1_") for name in names)
     assert any(name.startswith("set2_") for name in names)
-    assert {row[0] for row in rows(out, "noted")} == {"density", "rejected", "assumed"}
+    assert {row[0] for row in rows(out, "noted")} == {"density", "rejected", "assumed", "cells"}
 
 
 @needs_solver

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point, box
 
-from wingcrack_maps.faults import Limits, find_faults
+from wingcrack_maps.faults import Limits, Search, find_faults
 from wingcrack_maps.features import Line
 from wingcrack_maps.repair import repair
 
@@ -160,3 +160,34 @@ def test_careless_networks_are_repaired_whatever_they_are(seed: int, ends: str) 
     for line in repaired:
         for place in line.points:
             assert min(Point(place).distance(shape) for shape in old) < 5 * LIMITS.near
+
+
+def test_a_crossing_at_a_small_angle_is_no_duplicate() -> None:
+    """Two lines of 100 m that cross at 1.26 degrees, all within the distance of 2.5 m."""
+    lines = lines_of([[(0, 0), (100, 0)], [(0, -1), (100, 1.2)]])
+    limits = Limits(2.5, 5.0, 1e-8)
+    [fault] = find_faults(lines, None, limits)
+    assert fault.kind == "flat crossing"
+    assert fault.size == pytest.approx(math.degrees(math.atan2(2.2, 100.0)))
+    assert fault.place == pytest.approx((100.0 / 2.2, 0.0))
+    assert find_faults(repair(lines, None, limits, "join")[0], None, limits) == []
+
+
+def test_a_short_flat_meeting_is_found() -> None:
+    """The first segment runs on the other fracture over less than the distance."""
+    lines = lines_of([[(0, 0), (9, 0)], [(4, 0), (4.12, 0), (6, 4)]])
+    assert [fault.kind for fault in find_faults(lines, None, LIMITS)] == ["overlap"]
+    assert find_faults(repair(lines, None, LIMITS, "join")[0], None, LIMITS) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_changed_networks_are_examined_as_new_ones(seed: int) -> None:
+    """After any changes the search that goes on finds what a new one finds."""
+    numbers = np.random.default_rng(seed)
+    lines = lines_of([numbers.uniform(0.0, 9.0, (3, 2)).tolist() for _ in range(40)])
+    search = Search(box(0.0, 0.0, 9.0, 9.0), LIMITS)
+    for _ in range(6):
+        assert search.faults(lines) == find_faults(lines, search.body, LIMITS)
+        kept = [line for line in lines if numbers.random() < 0.8]
+        moved = Line("new", numbers.uniform(0.0, 9.0, (3, 2)))
+        lines = [*kept[:9], moved, *kept[9:]]
