@@ -197,7 +197,7 @@ contains
       integer(ik) :: i
 
       if (.not. is_due(self%reference, self%tip, self%now%windows%tip, self%rules, &
-                         self%scene%growth%enabled)) then
+                       self%scene%growth%enabled)) then
          do i = 1, size(self%tip, kind=ik)
             if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do
