@@ -18,9 +18,9 @@
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
 !! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error:
-!! two fifths of `slack`, up to three times the tolerance. After two rejected proposals it may be all
-!! of `slack`, and above K_IC by the same, up to three times the tolerance. Over short advances a
-!! change of K_eq within the slack is no slope.
+!! two fifths of `slack`, up to three times the tolerance. After two rejected proposals it may be
+!! all of `slack`, and above K_IC by the same, up to three times the tolerance. Over short advances
+!! a change of K_eq within the slack is no slope.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
