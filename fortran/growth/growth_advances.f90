@@ -17,9 +17,10 @@
 !!
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
-!! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error
-!! (two fifths of `slack`; all of it after two rejected proposals), and above it by the same, up to
-!! three times the tolerance. Over short advances a change of K_eq within the slack is no slope.
+!! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error:
+!! two fifths of `slack`, up to three times the tolerance. After two rejected proposals it may be
+!! all of `slack`, and above K_IC by the same, up to three times the tolerance. Over short advances
+!! a change of K_eq within the slack is no slope.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -41,9 +42,9 @@ module growth_advances
    !! within the slack is an error of the meshes, and no slope [-].
    real(rk), parameter :: short = 0.1_rk
 
-   !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
-   !! tolerance [-].
-   real(rk), parameter :: most_over = 3.0_rk
+   !> Largest excess of a tip between its bounds where a search that has stalled ends, and largest
+   !! lack where one that has not stalled ends, over the tolerance [-].
+   real(rk), parameter :: most_off = 3.0_rk
 
    !> State of the iteration.
    type :: advances_t
@@ -76,6 +77,7 @@ module growth_advances
       procedure :: begin
       procedure :: improve
       procedure, private :: allowed
+      procedure, private :: has_stalled
       procedure, private :: judge
       procedure, private :: update_matrix
       procedure, private :: propose
@@ -118,7 +120,7 @@ contains
       if (self%evaluations > 1) call self%update_matrix(excess)
       if (.not. self%is_monotone) call self%judge(excess)
       has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance, &
-                                           self%allowed(tolerance)))
+                                           self%allowed(tolerance), self%has_stalled()))
       if (.not. has_moved) return
       if (.not. self%is_monotone) then
          if (self%evaluations < evaluations_max .and. self%rejected < rejected_max) then
@@ -147,26 +149,37 @@ contains
    pure function allowed(self, tolerance) result(lack)
       class(advances_t), intent(in) :: self
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
-      integer, parameter :: stalled = 2  ! rejected proposals
-      real(rk), parameter :: at_once = 0.4_rk  ! share of `slack` before
+      real(rk), parameter :: at_once = 0.4_rk  ! share of `slack` before the search has stalled
       real(rk) :: lack(size(self%place))
 
       lack = tolerance
       if (.not. allocated(self%slack)) return
-      lack = max(tolerance, at_once*self%slack)
-      if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
+      lack = max(tolerance, min(at_once*self%slack, most_off*tolerance))
+      if (self%has_stalled()) lack = max(tolerance, self%slack)
    end function allowed
 
+   !> Whether the errors of the meshes keep the search from its end.
+   pure logical function has_stalled(self)
+      class(advances_t), intent(in) :: self
+      integer, parameter :: rejected_most = 2
+
+      has_stalled = allocated(self%slack) .and. &
+                    (self%is_monotone .or. self%rejected_in_all >= rejected_most)
+   end function has_stalled
+
    !> Whether a tip satisfies its complementarity condition within the tolerance.
-   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance, slack)
+   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance, slack, stalled)
       real(rk), intent(in) :: place, lower, upper  !< [m]
       real(rk), intent(in) :: excess, tolerance  !< [-]
       real(rk), intent(in), optional :: slack  !< lack between the bounds; default: tolerance [-]
-      real(rk) :: lack
+      logical, intent(in), optional :: stalled  !< K_IC may be exceeded by the slack too
+      real(rk) :: lack, over
 
       lack = tolerance
       if (present(slack)) lack = slack
-      if (excess > min(lack, most_over*tolerance)) then
+      over = tolerance
+      if (present(stalled)) over = merge(min(lack, most_off*tolerance), tolerance, stalled)
+      if (excess > over) then
          in_equilibrium = place >= upper
       else if (excess < -lack) then
          in_equilibrium = place <= lower
@@ -264,8 +277,8 @@ contains
       do i = 1, size(self%place)
          associate (place => self%place(i), near => self%near(i), far => self%far(i), &
                     excess => self%excess(i), length => self%length(i))
-            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance, &
-                               lack(i))) cycle
+            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance, lack(i), &
+                               self%has_stalled())) cycle
             if (excess > 0.0_rk) then
                near = place
                if (far <= near) far = huge(1.0_rk)

@@ -4,7 +4,9 @@
 !!   - The error of the edge follows from a comparison with the whole body as one window for all
 !!     tips, which takes nothing on its edge: the difference of K, and the error of K there, which
 !!     is that of its elements alone. No factor of safety is therefore needed. The comparison costs
-!!     about as much as the windows, and is repeated once per two path segments.
+!!     about as much as the windows, and is repeated once per two path segments. In a network that
+!!     grows it does not wait for tips with K_eq below a quarter of K_IC: until they are compared
+!!     with others, all of their K counts as error.
 !!   - The rock's pressure is linear in each cell. A quarter of the change of K with the pressures
 !!     of the cells' middles counts as error: slip changes the pressure of the rock around a tip,
 !!     and layers that are thinner than a cell appear there. At a fast well (C2 at 1e-6 m2/s, cells
@@ -195,7 +197,7 @@ contains
       integer(ik) :: i
 
       if (.not. is_due(self%reference, self%tip, self%now%windows%tip, self%rules, &
-                         self%scene%growth%enabled)) then
+                       self%scene%growth%enabled)) then
          do i = 1, size(self%tip, kind=ik)
             if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do

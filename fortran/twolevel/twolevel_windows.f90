@@ -31,7 +31,7 @@ module twolevel_windows
 
    !> Displacement of a tip in the window of another tip, over the distance of the two tips, above
    !! which this window is meshed again: intensities change by a small part of it [-].
-   real(rk), parameter :: noticeable = 4.0e-3_rk
+   real(rk), parameter :: noticeable = 1.0e-3_rk
 
    !> Number of tips up to which all are in the focus of the body as window, and lack of toughness,
    !! error included, beyond which other tips are not [-].
