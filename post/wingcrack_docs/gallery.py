@@ -96,7 +96,7 @@ def _cost(record: dict[str, object]) -> str:
     cpu_s, memory = float(str(record["cpu_s"])), float(str(record["peak_memory_mb"]))
     states = record["steps"]
     cells = f"{record['cells']:,} cells, " if record.get("cells") else ""
-    return f"{cpu_s:.2g} CPU s, {memory:.0f} MB, {cells}{states} states"
+    return f"{float(f'{cpu_s:.2g}'):g} CPU s, {memory:.0f} MB, {cells}{states} states"
 
 
 def _processor() -> str:

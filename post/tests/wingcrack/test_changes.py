@@ -63,3 +63,19 @@ def test_colours_change_at_zero_where_there_are_both_signs() -> None:
     assert colours(0.75) == pytest.approx(MEAN_COLOURS(0.5), abs=0.02)
     assert colours(0.0) == pytest.approx(MEAN_COLOURS(0.0))
     assert colours(1.0) == pytest.approx(MEAN_COLOURS(1.0), abs=0.02)
+
+
+def test_a_mesh_cut_by_a_fracture_can_be_searched() -> None:
+    first = _frame(8, lambda x, y: np.where(y < 1.0, 3.0e6, 1.0e6) + 0.0 * x)
+    matrix = first.matrix
+    inside = np.flatnonzero(np.all(np.abs(matrix.points - 1.0) < 0.6, axis=1))
+    triangles = matrix.triangles.copy()
+    above = matrix.points[triangles].mean(axis=1)[:, 1] > 1.0
+    slit = [node for node in inside if abs(matrix.points[node, 1] - 1.0) < 1e-12]
+    points = np.concatenate((matrix.points, matrix.points[slit]))
+    for k, node in enumerate(slit):
+        triangles[above[:, None] & (triangles == node)] = len(matrix.points) + k
+    cut = Frame(0.0, 0, MatrixField(points, triangles, matrix.cell), None)
+    later = _frame(16, lambda x, y: np.where(y < 1.0, 4.0e6, 2.0e6) + 0.0 * x)
+    assert slit
+    assert changes_since(cut, later, "pressure") == pytest.approx(1.0e6)

@@ -90,7 +90,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 _WELLS = "time_s,well,stage\n0.0,a,0\n1.0,a,1\n"
 _ALWAYS = ["summary", "story", "load", "equilibrium", "probes"]  # where the run has them
-_MOTION = ["pressure_maps", "stress_maps", "fracture", "development"]
+_MOTION = ["pressure_maps", "stress_maps", "fracture"]
 
 
 def _zero(run: Path, columns: Sequence[str]) -> None:

@@ -77,6 +77,11 @@ def _moving_network(run: Run) -> bool:
     return len((run.network or {}).get("fractures", ())) > 3 and slips_or_opens(run)
 
 
+def _untold(run: Run) -> bool:
+    """Whether fractures move and no story shows pressure, length and states by time."""
+    return slips_or_opens(run) and (run.wells is None or run.network is None)
+
+
 def _on_request(_run: Run) -> bool:
     return False
 
@@ -94,7 +99,7 @@ _FIGURES = (
     _Figures("tips", "intensities", "history:intensities", shown=grows),
     _Figures("tips", "load", "load:load_figure"),
     _Figures("tips", "equilibrium", "equilibrium_figure:equilibrium_figure"),
-    _Figures("tips", "development", "history:development", shown=slips_or_opens),
+    _Figures("tips", "development", "history:development", shown=_untold),
     _Figures("tips", "balance", "history:balance", shown=_on_request),
     _Figures("wells", "wells", "wells:well_histories", shown=_changing_wells),
     _Figures("seismicity", "seismicity", "seismicity:seismicity", shown=has_seismic),

@@ -185,9 +185,9 @@ def changes_since(first: Frame, frame: Frame, field: str) -> FloatArray:
     rest = start - plane(middle) @ fit
     if np.abs(rest).max() <= ROUND_OFF * max(float(np.abs(start).max()), 1e-300):
         return np.asarray(now - plane(places) @ fit)
-    mesh = Triangulation(
-        first.matrix.points[:, 0], first.matrix.points[:, 1], first.matrix.triangles
-    )
+    # both sides of a fracture have nodes of their own, which a search for triangles refuses
+    nodes, number = np.unique(first.matrix.points, axis=0, return_inverse=True)
+    mesh = Triangulation(nodes[:, 0], nodes[:, 1], number.ravel()[first.matrix.triangles])
     cell = np.asarray(mesh.get_trifinder()(*places.T), dtype=np.int64)
     before = start[cell]
     if float(rest.std()) < _LINEAR * float(start.std()):

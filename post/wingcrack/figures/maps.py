@@ -47,7 +47,9 @@ from wingcrack.figures.units import MEGAPASCAL, Unit, stress_unit
 
 PANELS_PER_ROW = 3
 DEFAULT_COUNT = 6
-_DEPTH = 0.1  # range of the first state over the largest change from which on changes are drawn
+_DEPTH = (
+    0.1  # range of most of the first state over the largest change from which on changes are drawn
+)
 _ONE_SIGN = 0.02  # share of the larger limit below which the other sign does not count
 
 
@@ -72,7 +74,8 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
         changed_window(body, frames, changes),
     )
     fields, label = [frame.matrix.cell["pressure"] for frame in frames], "pore pressure"
-    if np.ptp(first.matrix.cell["pressure"]) > _DEPTH * max(map(_largest, changes)):
+    low, high = usual_range(first.matrix, first.matrix.cell["pressure"], body)
+    if high - low > _DEPTH * max(map(_largest, changes)):
         fields, label = changes, f"change of pore pressure since {moment_label(run, first.moment)}"
         if frames[0].moment == first.moment and len(frames) > 1:  # nothing to see in it
             frames, fields = frames[1:], fields[1:]

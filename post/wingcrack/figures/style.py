@@ -38,6 +38,10 @@ FIELD_COLOURS = "cividis"
 JUMP_COLOURS = "magma_r"  # of slip and aperture: what is zero is pale
 _METADATA: dict[str, dict[str, Any]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}}
 
+_PNG: dict[str, Any] = {
+    "pil_kwargs": {"compress_level": 1}
+}  # a fifth more bytes, a tenth less time
+
 RC: dict[Any, Any] = {
     "axes.axisbelow": True,
     "axes.formatter.useoffset": False,  # a tick says its whole value
@@ -174,7 +178,8 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     for form in formats:
         aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
         try:
-            figure.savefig(aside, metadata=_METADATA[form])
+            more = _PNG if form == "png" else {}
+            figure.savefig(aside, metadata=_METADATA[form], **more)
             written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))
         finally:
             aside.unlink(missing_ok=True)
