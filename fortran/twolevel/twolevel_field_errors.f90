@@ -144,7 +144,7 @@ contains
                                                                - fracture%cell_s(1, at)))
                of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening, errors%of_slip]
                if (k%k1 > 0.0_rk) of_k(1, i) = of_k(1, i) &
-                                     + of_pressure(at)*root(jumps%opening%reach(at), half)
+                                               + of_pressure(at)*root(jumps%opening%reach(at), half)
                of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
                             *root(jumps%slip%reach(at), half)
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then

@@ -167,7 +167,7 @@ contains
       tips(3)%intensity%k2_error = 1.2e6_rk
       call see_doubt(watch, tips(3), 1.0e6_rk, "f1  ", "9 s")
       call watch%stop_run(error)
-      call checks%fails_with(error, "error of K over K_IC where a tip would grow 120 % above 100 "// &
+    call checks%fails_with(error, "error of K over K_IC where a tip would grow 120 % above 100 "// &
                              "at 9 s, fracture f1, end 2, (0, 0) m; ", "the run stops")
       tips%arrested = .true.
       call checks%is_true(.not. any(doubtful(tips, 1.0e6_rk)), "arrested tips do not grow")
