@@ -44,8 +44,8 @@ STEPS = {
 
 def described(scene: Path) -> str:
     """Give the solver's description."""
-    words = [SOLVER, "check", scene, "--stress"]
-    return subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    words = [str(SOLVER), "check", str(scene), "--stress"]
+    return str(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
 
 
 @pytest.mark.parametrize("name", STEPS)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -152,7 +153,7 @@ def test_meeting_entries_without_losses_are_refused(others: str, tmp_path: Path)
     control = "pressure = 1e6" if "pressure" in others else "rate = 1e-5"
     first = f"&injection name = 'A', fracture = 'a', 'b', {control} /"
     (tmp_path / "meet.nml").write_text(f"{BODY}&time end = 1 /\n{first}\n{others}\n")
-    words = [SOLVER, "check", tmp_path / "meet.nml"]
+    words = [str(SOLVER), "check", str(tmp_path / "meet.nml")]
     told = subprocess.run(words, capture_output=True, text=True, check=False)
     assert told.returncode == 2
     # the well with entries; of several the last one
@@ -168,7 +169,7 @@ def test_meeting_entries_without_losses_are_refused(others: str, tmp_path: Path)
 POINTS = {"a": (1.1, -3.0), "b": (-0.3, 0.0), "c": (0.4, 3.0)}
 LOSSES = {"a": 1e16, "b": 3e15, "c": 2e16}
 HALF = {"a": 3.0, "b": 2.0, "c": 1.0}
-TURNS = {
+TURNS: dict[str, Callable[[float, float], tuple[float, float]]] = {
     "as it is": lambda x, y: (x, y),
     "mirrored": lambda x, y: (-x, y),
     "upside down": lambda x, y: (x, -y),

@@ -52,7 +52,10 @@ private:
         return -1;
     }
 
-    static std::int64_t key(int a, int b) { return (static_cast<std::int64_t>(a) << 32) | b; }
+    static std::uint64_t key(int a, int b) {
+        return (std::uint64_t{static_cast<std::uint32_t>(a)} << 32U) |
+               std::uint64_t{static_cast<std::uint32_t>(b)};
+    }
 
     // The boundary of a cell runs along its edges.
     void enter(int c) {
@@ -125,8 +128,8 @@ private:
 
     PlaneMesh& mesh_;
     const int first_cell_;
-    std::set<std::pair<int, int>> fractures_;       // edges, by their nodes
-    std::unordered_map<std::int64_t, int> cell_of_; // by the nodes of a directed edge
+    std::set<std::pair<int, int>> fractures_;        // edges, by their nodes
+    std::unordered_map<std::uint64_t, int> cell_of_; // by the nodes of a directed edge
 };
 
 } // namespace

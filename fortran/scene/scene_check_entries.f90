@@ -1,7 +1,7 @@
-!> Entries of wells that meet in the same places without losses: fluid could then flow round through
-!! wells and fractures at any rate, and the flows of the entries are not determined. Wells, places and
-!! the outside, to which wells at a pressure belong, are the nodes of a graph; an entry without a
-!! loss, and a pressure without one, connects two of them; a loop is refused.
+!> Entries of wells that meet in the same places without losses: fluid could then flow round
+!! through wells and fractures at any rate, and the flows of the entries are not determined. Wells,
+!! places and the outside, to which wells at a pressure belong, are the nodes of a graph; an entry
+!! without a loss, and a pressure without one, connects two of them; a loop is refused.
 module scene_check_entries
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

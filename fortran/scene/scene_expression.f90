@@ -1,7 +1,7 @@
 !> Divides the text of a scene file into tokens with their lines, and evaluates expressions:
-!! numbers, named values, + - * / ^, brackets, sqrt, sin, cos and tan of radians, sind, cosd and tand
-!! of degrees, and pi. A name must be defined before it is used, so no
-!! name can depend on itself.
+!! numbers, named values, + - * / ^, brackets, sqrt, sin, cos and tan of radians, sind, cosd and
+!! tand of degrees, and pi. A name must be defined before it is used, so no name can depend on
+!! itself.
 !!
 !! The syntax is that of Fortran namelists: `&group`, `name = values`, `/`, comments from `!` to the
 !! end of the line, texts in single or double quotes in which a doubled quote stands for one.

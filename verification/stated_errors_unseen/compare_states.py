@@ -25,9 +25,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from draw_states import FAMILIES, Draw, Scene
 
 from wingcrack.scenes.namelist import group_text
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from verification.stated_errors_unseen.draw_states import FAMILIES, Draw, Scene
 
 HERE = Path(__file__).resolve().parent
 TOP = HERE.parents[1]
