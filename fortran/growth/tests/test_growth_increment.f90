@@ -1,7 +1,7 @@
 !> One increment of growth of many tips.
 program test_growth_increment
    use base_kinds, only: ik, rk
-   use growth_front, only: plan_increment, tips_at_onset
+   use growth_increment, only: plan_increment, tips_at_onset
    use growth_network, only: move_end
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
