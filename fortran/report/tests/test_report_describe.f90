@@ -9,8 +9,8 @@ program test_report_describe
    use report_record, only: status_failed, status_finished, status_stopped
    use report_rows, only: event_arrest, event_bifurcation, event_growth, event_growth_onset, &
                           event_growth_jump, event_growth_uncertain, &
-                          event_joint, event_opening, event_remesh, event_replay, event_slip_onset, &
-                          event_step_cut, event_unstable, event_well, event_window
+                          event_joint, event_opening, event_remesh, event_replay, &
+                          event_slip_onset, event_step_cut, event_unstable, event_well, event_window
    use testing_checks, only: checks_t
    use testing_files, only: file_text
    implicit none(type, external)
