@@ -5,6 +5,7 @@ module scene_check_fluid
    use base_number, only: integer_text
    use base_tolerances, only: same_place
    use scene_check_geometry, only: contains_point, distance_to, point_text
+   use scene_exchange, only: nearest_fracture
    use scene_fluid_law, only: fluid_law_t, has_law, new_fluid_law
    use scene_parameters, only: groups
    use scene_sheet, only: group_index, parameter_index, record_t, refuse, sheet_t
@@ -270,6 +271,12 @@ contains
       wanted = sheet%records(well)%value("fracture")
       do e = 1, size(wanted%names)
          if (any(names == wanted%names(e))) cycle
+         if (wanted%names(e) == nearest_fracture .and. size(names) > 0) then
+            if (size(wanted%names) == 1 .and. sheet%records(well)%is_set("x")) cycle
+            call refuse(error, sheet, well, "fracture", "is '"//nearest_fracture//"', which needs "// &
+                        "x and y, and must be the only one")
+            return
+         end if
          name = trim(wanted%names(e))
          reason = "is '"//name//"', which is no fracture of the scene"
          if (size(names) == 0) reason = "is '"//name//"', but the scene has no fracture"

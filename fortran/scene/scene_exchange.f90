@@ -3,6 +3,7 @@
 !! One list serves both directions, so that reading and writing are always consistent.
 module scene_exchange
    use base_kinds, only: ik, radians, rk
+   use base_plane, only: nearest_place, norm2
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
                                     exchange_side, exchange_word, set_names, set_text, &
@@ -16,7 +17,9 @@ module scene_exchange
    implicit none(type, external)
    private
 
-   public :: scene_to_sheet, sheet_to_scene
+   public :: nearest_fracture, scene_to_sheet, sheet_to_scene
+
+   character(len=*), parameter :: nearest_fracture = "nearest"  !< in place of a fracture's name
 
    real(rk), parameter :: unlimited = huge(1.0_rk)
 
@@ -48,6 +51,11 @@ contains
       do i = 1, size(scene%injections)  ! fractures may follow the wells in the file
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          if (.not. value%is_set) cycle
+         if (value%names(1) == nearest_fracture .and. scene%injections(i)%at_point) then
+            if (all(scene%fractures%name /= nearest_fracture)) then
+               call place_at_nearest(scene%fractures, scene%injections(i))
+            end if
+         end if
          do e = size(value%names), 1, -1
             do f = 1, size(scene%fractures)
                if (scene%fractures(f)%name /= value%names(e)) cycle
@@ -60,6 +68,34 @@ contains
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
    end subroutine sheet_to_scene
+
+   !> Place a well at the point of a fracture that is nearest to its own.
+   pure subroutine place_at_nearest(fractures, well)
+      type(fracture_t), intent(in) :: fractures(:)
+      type(injection_t), intent(inout) :: well
+      real(rk) :: least, place(2), point(2), segment(2, 2)
+      integer :: f, k
+
+      point = [well%x, well%y]
+      least = huge(1.0_rk)
+      do f = 1, size(fractures)
+         do k = 2, min(size(fractures(f)%x), size(fractures(f)%y))  ! unequal ones are refused later
+            segment(1, :) = fractures(f)%x(k - 1:k)
+            segment(2, :) = fractures(f)%y(k - 1:k)
+            place = nearest_place(point, segment)
+            if (.not. norm2(place - point) < least) cycle
+            least = norm2(place - point)
+            well%fracture = int(f, ik)
+            well%x = place(1)
+            well%y = place(2)
+         end do
+      end do
+      if (allocated(well%entries)) then
+         well%entries%fracture = well%fracture
+         well%entries%x = well%x
+         well%entries%y = well%y
+      end if
+   end subroutine place_at_nearest
 
    !> A sheet with all values of a scene.
    pure subroutine scene_to_sheet(scene, sheet)

@@ -293,8 +293,8 @@ module scene_parameter_table
       parameter_t("injection", "name", kind_name, absent="well_ and its number", derived=.true., &
          meaning="Name, different from that of every other well"), &
       parameter_t("injection", "fracture", kind_names, absent="in the rock, at x and y", &
-         meaning="Name of the fracture; several names: a well with an entry into each, see "// &
-                 "entry_loss"), &
+         meaning="Name of the fracture, or 'nearest', the one nearest to x and y; several "// &
+                 "names: a well with an entry into each, see entry_loss"), &
       parameter_t("injection", "rate", kind_reals, "m2/s", absent="follows from pressure", &
          meaning="Volume per time and metre of thickness, of the whole well; negative: "// &
                  "extraction. One value, or one per stage"), &

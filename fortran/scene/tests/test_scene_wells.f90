@@ -32,6 +32,7 @@ program test_scene_wells
 
    call check_lists()
    call check_entries()
+   call check_nearest()
    call check_table()
    call check_spreadsheets()
    call check_faults()
@@ -71,6 +72,22 @@ contains
       call checks%is_true(scene%injections(1)%is_controlled(), "storage makes it one too")
       call expect_same()
    end subroutine check_lists
+
+   !> The fracture nearest to a point, and the place on it.
+   subroutine check_nearest()
+      call read_with("&injection fracture='nearest' rate=1e-7 x=1.0 y=0.2 entry_loss=1e12 /"// &
+                     second)
+      call checks%no_error(error, "the nearest fracture")
+      associate (well => scene%injections(1))
+         call checks%is_true(well%fracture == 2 .and. abs(well%x - 1.0_rk) < 1.0e-12_rk .and. &
+                             abs(well%y - 0.3_rk) < 1.0e-12_rk, "the second, at its nearest place")
+         call checks%is_true(well%entries(1)%fracture == 2 .and. &
+                             abs(well%entries(1)%y - 0.3_rk) < 1.0e-12_rk, "its entry too")
+      end associate
+      call expect_same()
+      call refuse("&injection fracture='nearest' rate=1e-7 /", ":10: &injection: fracture is "// &
+                  "'nearest', which needs x and y, and must be the only one"//doc)
+   end subroutine check_nearest
 
    !> Several fractures of one well, a loss at a single one, and a list of one name.
    subroutine check_entries()
