@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,7 +57,7 @@ def frequency(magnitudes: FloatArray, width: float = BIN) -> Frequency:
         few = f"{chosen.size} of {magnitudes.size} events from magnitude {complete:.1f} on, "
         return Frequency(chosen.size, complete, reason=few + f"fewer than {FEWEST}")
     mean = float(chosen.mean())
-    b = float(np.log10(np.e) / (mean - (complete - 0.5 * width)))
+    b = float(math.log10(math.e) / (mean - (complete - 0.5 * width)))
     spread = float(np.sum((chosen - mean) ** 2)) / (chosen.size * (chosen.size - 1))
     return Frequency(chosen.size, complete, b, float(np.log(10.0) * b**2 * np.sqrt(spread)))
 
