@@ -17,10 +17,8 @@
 !!
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
-!! resolution. K_eq of a tip between its bounds may therefore be below K_IC by a share of the error:
-!! two fifths of `slack`, up to three times the tolerance. After two rejected proposals it may be
-!! all of `slack`, and above K_IC by the same, up to three times the tolerance. Over short advances
-!! a change of K_eq within the slack is no slope.
+!! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
+!! given share of the error (`slack`), and above it by the same, up to three times the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -28,7 +26,7 @@ module growth_advances
    implicit none(type, external)
    private
 
-   public :: advances_t, in_equilibrium, short
+   public :: advances_t, in_equilibrium
 
    !> Shortest change of a position, over the distance between its bounds [-]. The excess has been
    !! seen to change by 33 over a segment, so that this is worth 3e-3 of K_IC.
@@ -38,13 +36,9 @@ module growth_advances
    !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
 
-   !> Advances of all tips, over the distances between their bounds, up to which a change of K_eq
-   !! within the slack is an error of the meshes, and no slope [-].
-   real(rk), parameter :: short = 0.1_rk
-
-   !> Largest excess of a tip between its bounds where a search that has stalled ends, and largest
-   !! lack where one that has not stalled ends, over the tolerance [-].
-   real(rk), parameter :: most_off = 3.0_rk
+   !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
+   !! tolerance [-].
+   real(rk), parameter :: most_over = 3.0_rk
 
    !> State of the iteration.
    type :: advances_t
@@ -65,8 +59,7 @@ module growth_advances
       real(rk), private :: radius = 1.0_rk
       integer, private :: rejected = 0  !< number of proposals rejected in succession
       integer, private :: rejected_in_all = 0
-      !> (tips) lack of toughness between the bounds at which a search that has stalled ends; a
-      !! share of it ends others [-]
+      !> (tips) lack of toughness between the bounds at which a search that has stalled ends [-]
       real(rk), allocatable :: slack(:)
       ! Bracket of each tip in the monotone search.
       real(rk), allocatable, private :: near(:)  !< farthest position with K_eq > K_IC [m]
@@ -77,7 +70,6 @@ module growth_advances
       procedure :: begin
       procedure :: improve
       procedure, private :: allowed
-      procedure, private :: has_stalled
       procedure, private :: judge
       procedure, private :: update_matrix
       procedure, private :: propose
@@ -120,7 +112,7 @@ contains
       if (self%evaluations > 1) call self%update_matrix(excess)
       if (.not. self%is_monotone) call self%judge(excess)
       has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance, &
-                                           self%allowed(tolerance), self%has_stalled()))
+                                           self%allowed(tolerance)))
       if (.not. has_moved) return
       if (.not. self%is_monotone) then
          if (self%evaluations < evaluations_max .and. self%rejected < rejected_max) then
@@ -149,37 +141,24 @@ contains
    pure function allowed(self, tolerance) result(lack)
       class(advances_t), intent(in) :: self
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
-      real(rk), parameter :: at_once = 0.4_rk  ! share of `slack` before the search has stalled
+      integer, parameter :: stalled = 2  ! rejected proposals
       real(rk) :: lack(size(self%place))
 
       lack = tolerance
       if (.not. allocated(self%slack)) return
-      lack = max(tolerance, min(at_once*self%slack, most_off*tolerance))
-      if (self%has_stalled()) lack = max(tolerance, self%slack)
+      if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
    end function allowed
 
-   !> Whether the errors of the meshes keep the search from its end.
-   pure logical function has_stalled(self)
-      class(advances_t), intent(in) :: self
-      integer, parameter :: rejected_most = 2
-
-      has_stalled = allocated(self%slack) .and. &
-                    (self%is_monotone .or. self%rejected_in_all >= rejected_most)
-   end function has_stalled
-
    !> Whether a tip satisfies its complementarity condition within the tolerance.
-   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance, slack, stalled)
+   elemental logical function in_equilibrium(place, excess, lower, upper, tolerance, slack)
       real(rk), intent(in) :: place, lower, upper  !< [m]
       real(rk), intent(in) :: excess, tolerance  !< [-]
       real(rk), intent(in), optional :: slack  !< lack between the bounds; default: tolerance [-]
-      logical, intent(in), optional :: stalled  !< K_IC may be exceeded by the slack too
-      real(rk) :: lack, over
+      real(rk) :: lack
 
       lack = tolerance
       if (present(slack)) lack = slack
-      over = tolerance
-      if (present(stalled)) over = merge(min(lack, most_off*tolerance), tolerance, stalled)
-      if (excess > over) then
+      if (excess > min(lack, most_over*tolerance)) then
          in_equilibrium = place >= upper
       else if (excess < -lack) then
          in_equilibrium = place <= lower
@@ -216,7 +195,7 @@ contains
    pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
-      real(rk) :: change(size(excess)), predicted(size(excess)), scaled(size(excess), size(excess))
+      real(rk) :: scaled(size(excess), size(excess))
       integer :: j
 
       ! The excess at nearly the same position shows nothing but the error of the mesh.
@@ -225,12 +204,7 @@ contains
          do j = 1, size(excess)
             scaled(:, j) = self%matrix(:, j)*length(j)
          end do
-         change = excess - self%excess
-         if (allocated(self%slack) .and. all(abs(self%place - self%best) <= short*length)) then
-            predicted = matmul(scaled, (self%place - self%best)/length)
-            where (abs(change - predicted) <= self%slack) change = predicted
-         end if
-         call broyden_update(scaled, (self%place - self%best)/length, change)
+         call broyden_update(scaled, (self%place - self%best)/length, excess - self%excess)
          do j = 1, size(excess)
             self%matrix(:, j) = scaled(:, j)/length(j)
          end do
@@ -277,8 +251,8 @@ contains
       do i = 1, size(self%place)
          associate (place => self%place(i), near => self%near(i), far => self%far(i), &
                     excess => self%excess(i), length => self%length(i))
-            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance, lack(i), &
-                               self%has_stalled())) cycle
+            if (in_equilibrium(place, excess, self%lower(i), self%upper(i), tolerance, &
+                               lack(i))) cycle
             if (excess > 0.0_rk) then
                near = place
                if (far <= near) far = huge(1.0_rk)

@@ -127,24 +127,20 @@ contains
 
    !> Broyden update from a try in which tips have been moved. Rows of tips that have not been
    !! evaluated keep their values.
-   pure subroutine update(self, moved, change, is_evaluated, noise)
+   pure subroutine update(self, moved, change, is_evaluated)
       class(interaction_t), intent(inout) :: self
       real(rk), intent(in) :: moved(:)  !< (tips) displacements [m]
       real(rk), intent(in) :: change(:)  !< (tips) change of K_eq over K_IC [-]
       logical, intent(in) :: is_evaluated(:)  !< (tips)
-      !> (tips) change that the meshes may have caused; default: none [-]
-      real(rk), intent(in), optional :: noise(:)
       real(rk), allocatable :: matrix(:, :)
-      real(rk) :: least(size(change)), outcome(size(change))
+      real(rk) :: outcome(size(change))
       integer(ik), allocatable :: known(:)
       integer(ik) :: i
 
       if (any(abs(moved) > 0.0_rk .and. .not. self%is_known)) return
       outcome = matmul(self%matrix, moved)
-      least = 0.0_rk
-      if (present(noise)) least = noise
-      if (.not. any(is_evaluated .and. abs(change - outcome) > max(noticeable, least))) return
-      where (is_evaluated .and. abs(change - outcome) >= least) outcome = change
+      if (.not. any(is_evaluated .and. abs(change - outcome) > noticeable)) return
+      where (is_evaluated) outcome = change
       known = pack([(i, i=1, size(moved, kind=ik))], self%is_known)
       matrix = self%matrix(known, known)
       call broyden_update(matrix, moved(known), outcome(known))

@@ -4,9 +4,7 @@
 !!   - The error of the edge follows from a comparison with the whole body as one window for all
 !!     tips, which takes nothing on its edge: the difference of K, and the error of K there, which
 !!     is that of its elements alone. No factor of safety is therefore needed. The comparison costs
-!!     about as much as the windows, and is repeated once per two path segments. In a network that
-!!     grows it does not wait for tips with K_eq below a quarter of K_IC: until they are compared
-!!     with others, all of their K counts as error.
+!!     about as much as the windows, and is repeated once per two path segments.
 !!   - The rock's pressure is linear in each cell. A quarter of the change of K with the pressures
 !!     of the cells' middles counts as error: slip changes the pressure of the rock around a tip,
 !!     and layers that are thinner than a cell appear there. At a fast well (C2 at 1e-6 m2/s, cells
@@ -80,9 +78,6 @@ module twolevel_coarse_errors
    !> Relative change of the intensities within which the last comparison with the body still
    !! applies [-].
    real(rk), parameter :: like_before = 0.05_rk
-
-   !> Lack of toughness, error included, beyond which a tip is far below it [-].
-   real(rk), parameter :: far = 0.5_rk
 
    !> Change of the difference between window and body while the last comparison applies, over the
    !! estimated error of the elements: not exceeded in 97 and 93 of 100 states of wings (C2, K_I and
@@ -196,8 +191,7 @@ contains
       type(front_state_t) :: front
       integer(ik) :: i
 
-      if (.not. is_due(self%reference, self%tip, self%now%windows%tip, self%rules, &
-                       self%scene%growth%enabled)) then
+      if (.not. is_due(self%reference, self%tip, self%now%windows%tip, self%rules)) then
          do i = 1, size(self%tip, kind=ik)
             if (self%tip(i)%is_loaded()) call keep_comparison(self%now%windows%tip(i))
          end do
@@ -217,21 +211,16 @@ contains
    !> Whether the windows are to be compared with the body again: this requires no mesh, or a tip
    !! has advanced by the length of two segments since the last comparison, or its intensities have
    !! changed noticeably.
-   pure logical function is_due(reference, tips, seen, rules, may_grow)
+   pure logical function is_due(reference, tips, seen, rules)
       type(windows_t), intent(in) :: reference  !< the body as one window
       type(tip_t), intent(in) :: tips(:)
       type(window_tip_t), intent(in) :: seen(:)  !< (tips) in their windows
       type(growth_rules_t), intent(in) :: rules
-      logical, intent(in) :: may_grow  !< tips may grow: those far below their toughness can wait
-      integer, parameter :: few = 8  ! tips are all compared
       integer(ik) :: i
 
       is_due = .not. reference%has_to_mesh(tips)
       do i = 1, size(tips, kind=ik)
          if (.not. tips(i)%is_loaded()) cycle
-         if (may_grow .and. size(tips) > few) then
-            if (is_far_off(tips(i), seen(i), rules%toughness)) cycle
-         end if
          associate (tip => seen(i))
             is_due = is_due .or. norm2(tips(i)%xy - tip%compared_at) &
                      > 2.0_rk*rules%increment_of(tips(i)%fracture) &
@@ -241,16 +230,6 @@ contains
       end do
    end function is_due
 
-   !> Whether a tip is far below its toughness even if its intensities are wrong by themselves.
-   pure logical function is_far_off(tip, seen, toughness)
-      type(tip_t), intent(in) :: tip
-      type(window_tip_t), intent(in) :: seen  !< the tip in its window
-      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-
-      is_far_off = tip%excess(toughness) + norm2([seen%found%k1, seen%found%k2]) &
-                   /tip%scale_of(toughness) <= -far
-   end function is_far_off
-
    !> Change of the intensities of a tip within which its last comparison with the body still
    !! applies: more where the tip is below its toughness, as long as it cannot have reached it
    !! [Pa m^1/2].
@@ -258,6 +237,7 @@ contains
       type(tip_t), intent(in) :: tip
       type(window_tip_t), intent(in) :: seen  !< the tip in its window
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
+      real(rk), parameter :: far = 0.5_rk
       real(rk) :: lack  ! of toughness, error included [-]
 
       lack = -tip%excess(toughness) - tip%relative_error(toughness)
@@ -293,9 +273,6 @@ contains
          if (tip%found%closed) tip%uncertain(1) = abs(lacking(1)) + of_other_mesh*own(1)
          tip%of_elements = maxval(own)
       end associate
-      ! Never compared: nothing is known of the difference.
-      if (norm2(tip%compared) > 0.0_rk) return
-      tip%uncertain = shown([tip%found%k1, tip%found%k2], tip%found%closed)
    end subroutine keep_comparison
 
    !> Compare the edges of the windows with more and less accurate ones.

@@ -12,8 +12,7 @@ module twolevel_moves
    private
 
    public :: arrivals, at_joints, driven_t, excess_max, first_onset, is_in_play, judge_tips
-   public :: keep_together, onset, overshoots, separate_tips, set_out, share_of_error, slack_max
-   public :: tolerance
+   public :: keep_together, onset, overshoots, separate_tips, set_out, tolerance
 
    real(rk), parameter :: tolerance = 5.0e-3_rk  !< tolerance of K_eq/K_IC of growing tips [-]
 

@@ -10,11 +10,9 @@ module twolevel_probe
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_state, only: go_back, state_t, step_report_t
-   use growth_advances, only: short
    use growth_interaction, only: interaction_t
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
-   use twolevel_moves, only: share_of_error, slack_max
    use twolevel_places, only: place_tips
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
@@ -120,15 +118,9 @@ contains
       logical, intent(in) :: is_evaluated(:)  !< (tips)
       type(interaction_t), intent(inout) :: interaction
 
-      real(rk) :: moved(size(tips)), noise(size(tips))
-
       if (.not. allocated(self%reached)) return
-      moved = segments%reached - self%reached
-      noise = 0.0_rk
-      if (all(abs(moved) <= short*segments%length)) then
-         noise = min(slack_max, share_of_error*tips%relative_error(toughness))
-      end if
-      call interaction%update(moved, tips%excess(toughness) - self%excess, is_evaluated, noise)
+      call interaction%update(segments%reached - self%reached, &
+                              tips%excess(toughness) - self%excess, is_evaluated)
    end subroutine update_interaction
 
 end module twolevel_probe
