@@ -37,11 +37,12 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
     changes = ("permeability = 5.0e-20", "permeability = 3.0e-10")
     status, terminal, _, warnings = run(tmp_path, varied(changes))
     assert status == 0
-    bound, mass = warnings
+    seal, bound, mass = warnings
+    assert seal.startswith("&injection: reach is ")
     assert 2.0e-6 < first_value(bound, "forward error bound ") < 1.0e-5
     assert " above 1e-06 at 3600 s; in 5 states, the worst " in bound
     assert mass.startswith("mass error ")
-    assert "2 warnings:" in terminal
+    assert "3 warnings:" in terminal
     assert terminal.count("warning") == 1
     assert bound in terminal
     log = (tmp_path / "out" / "run.log").read_text()
@@ -125,12 +126,14 @@ def test_check_tells_what_is_doubted(tmp_path: Path) -> None:
     (tmp_path / "scene.nml").write_text(text)
     done = call(tmp_path, "check", "scene.nml")
     assert done.returncode == 0
-    told = done.stdout.split("4 warnings:\n")[1].splitlines()
+    told = done.stdout.split("5 warnings:\n")[1].splitlines()
     assert told == [
         "  &material: young is 40.0 Pa: rock has 1e9 to 1e11 Pa",
         "  &material: permeability is 0.05 m2: rock has 1e-22 to 1e-11 m2, "
         "and a millidarcy is 1e-15 m2",
         "  &fracture 'f1': friction is 1.6: rock has 0.3 to 1",
+        "  &injection: reach is 13420.0 m: the body is sealed and its pressure changes with the "
+        "volume of the wells; give sides a pressure, or inflow = 0 if they are sealed",
         "  &injection: start is 36000.0 s: the well is never active",
     ]
 

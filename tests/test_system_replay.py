@@ -100,4 +100,4 @@ def test_a_cut_record_is_followed_up_to_its_last_whole_part(base: Path, tmp_path
     (tmp_path / "cut" / "record.bin").write_bytes(whole[: len(whole) // 2])
     done = solver(tmp_path, replaying(tmp_path / "cut"), "run")
     assert done.returncode == 0, done.stderr
-    assert "it ends here" in (tmp_path / "run" / "run.log").read_text()
+    assert "left the record: it ends here" in (tmp_path / "run" / "events.csv").read_text()

@@ -6,6 +6,7 @@ without end K_II = (tau - mu (sigma_n - p)) sqrt(pi a), and K_eq = 2/sqrt(3) K_I
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
@@ -173,8 +174,8 @@ def test_others_are_only_warned(tmp_path: Path, growth: str) -> None:
     assert any(warning.startswith(doubt) for warning in warnings) == ("paris" in growth)
 
 
-def test_a_body_without_fluid_is_not_grown_in_either(tmp_path: Path) -> None:
-    """Nearly incompressible again: K is known to 14 %, and &adaptive mends that."""
+def test_growth_in_a_body_without_fluid_says_so_too(tmp_path: Path) -> None:
+    """K of a nearly incompressible body is known to 14 %: a warning; &adaptive mends that."""
     scene = """\
 &domain x_min = -1.0, x_max = 1.0, y_min = -1.0, y_max = 1.0 /
 &material young = 10.0e9, poisson = 0.4999, toughness = 1.0e6 /
@@ -192,11 +193,17 @@ def test_a_body_without_fluid_is_not_grown_in_either(tmp_path: Path) -> None:
 """
     (tmp_path / "scene.nml").write_text(scene)
     done = call(tmp_path, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
-    assert done.returncode == 1
-    reason = done.stderr.splitlines()[-1]
-    assert "error of K over K_IC where a tip would grow " in reason
-    assert "fracture crack, end " in reason
-    assert not [row for row in rows(tmp_path / "out" / "events.csv") if row["kind"] == "growth"]
+    assert done.returncode == 0
+    (warning,) = (
+        text
+        for text in json.loads((tmp_path / "out/run.json").read_text())["warnings"]
+        if text.startswith("error of K over K_IC where a tip would grow ")
+    )
+    assert "fracture crack, end " in warning
+    events = rows(tmp_path / "out" / "events.csv")
+    uncertain = [row for row in events if row["kind"] == "growth_uncertain"]
+    assert 1 <= len(uncertain) <= 4
+    assert all("load factor of growth known to as much" in row["detail"] for row in uncertain)
     # errors at the kinks of the wings count: with the default of 0.01 they are 5.1 % of K_IC
     adaptive = "&adaptive enabled = .true., tolerance = 0.008 /\n"
     (tmp_path / "scene.nml").write_text(scene + adaptive)

@@ -273,7 +273,7 @@ contains
          if (any(names == wanted%names(e))) cycle
          if (wanted%names(e) == nearest_fracture .and. size(names) > 0) then
             if (size(wanted%names) == 1 .and. sheet%records(well)%is_set("x")) cycle
-            call refuse(error, sheet, well, "fracture", "is '"//nearest_fracture//"', which needs "// &
+         call refuse(error, sheet, well, "fracture", "is '"//nearest_fracture//"', which needs "// &
                         "x and y, and must be the only one")
             return
          end if

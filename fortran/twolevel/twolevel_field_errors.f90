@@ -6,8 +6,9 @@
 !! within the cell, anywhere: its error is as large as its value.
 !!
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
-!! that has moved is one of K_I of sqrt(pi L/2) times it, and of K_II by friction; errors in time of
-!! slip and opening are relative errors of K. Faces at a tip that have slipped and now stick with
+!! that slips is one of K_II of the friction times sqrt(pi L/2) times it; errors in time of slip and
+!! opening are relative errors of K. The net pressure of an open fracture follows from the
+!! compliance of its faces and has no term here. Faces at a tip that have slipped and now stick with
 !! less than the friction hold a rest of the slip before them. A cell does not resolve how this
 !! rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi) s.
 module twolevel_field_errors
@@ -143,8 +144,6 @@ contains
             associate (k => tips(i)%intensity, half => 0.5_rk*(fracture%cell_s(2, at) &
                                                                - fracture%cell_s(1, at)))
                of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening, errors%of_slip]
-               if (k%k1 > 0.0_rk) of_k(1, i) = of_k(1, i) &
-                                               + of_pressure(at)*root(jumps%opening%reach(at), half)
                of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
                             *root(jumps%slip%reach(at), half)
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then

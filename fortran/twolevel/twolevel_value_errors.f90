@@ -331,6 +331,7 @@ contains
       integer(ik) :: f
 
       error = self%in_space(scene, problem)
+      if (self%quantities%n_steps == 0) return  ! the pressure of the initial state is given
       associate (of_fracture => problem%mesh%fracture%cell_fracture, &
                  has_given => have_given_pressure(scene))
          do f = 1, size(has_given, kind=ik)

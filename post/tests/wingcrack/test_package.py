@@ -193,6 +193,7 @@ def test_figures_by_name_and_all(own_run: Path) -> None:
         "intensities.png",
         "development.png",
         "balance.png",
+        "captions.txt",
         "index.html",
     ]
     assert all(file.is_file() for file in drawn)

@@ -52,7 +52,7 @@ def test_each_well_has_a_row_per_stage(wells: Path) -> None:
 
 
 def test_page_and_file_have_the_same_rows(wells: Path, tmp_path: Path) -> None:
-    table, page = write_page(read_run(wells), tmp_path, ())
+    table, _, page = write_page(read_run(wells), tmp_path, ())
     with table.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["highest_pressure_pa"]) for row in rows] == [5e6, 3e6, 9e5]

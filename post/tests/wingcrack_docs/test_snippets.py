@@ -72,6 +72,9 @@ def test_toml_is_read(block: Block, tmp_path: Path) -> None:
         folder.mkdir()
         (tmp_path / "paper_d").symlink_to(TOP / "inputs" / "paper_d")
         assert launch(tmp_path, "new", "injection", "--out", "studies/mine.nml").returncode == 0
+        if "from" in content:  # of a run, which is not repeated here
+            assert "at" in content
+            return
         (folder / "shown.toml").write_text(block.text.replace("count = 40", "count = 4"))
         done = launch(tmp_path, "study", "studies/shown.toml", "--check")
         assert done.returncode == 0, done.stderr
