@@ -62,7 +62,7 @@ prepare_study() {
     prepare "$solver_target"
 }
 
-# prepare_maps ARGUMENT...: see to what fracture maps and random networks take, beside the rest; what
+# prepare_maps ARGUMENT...: see to what fracture maps and random networks take, in addition to the rest; what
 # reads files of geographic information systems comes with the first of them, or with --crs.
 prepare_maps() {
     requirement_lists+=("$root/requirements_maps.txt")

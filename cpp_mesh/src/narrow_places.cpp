@@ -20,10 +20,10 @@ constexpr double growth_at_corners = 0.4;
 // Below this share of the wanted size the distance of an end is too small for good shapes.
 constexpr double near_share = 0.2;
 
-// The room around the points of a graph.
-class Rooms {
+// The clearance around the points of a graph.
+class Clearances {
 public:
-    Rooms(const Graph& graph, const Domain& domain)
+    Clearances(const Graph& graph, const Domain& domain)
         : graph_(graph), domain_(domain), edges_(domain.box(), graph.edges.size()) {
         for (std::size_t e = 0; e < graph.edges.size(); ++e) {
             const Vec2 a = end(graph.edges[e], 0), b = end(graph.edges[e], 1);
@@ -69,11 +69,11 @@ void limit_sizes_in_narrow_places(const Graph& graph, const Domain& domain, Size
         if (whole < narrow_share * size(0.5 * (a + b)))
             discs.push_back({0.5 * (a + b), 0.5 * whole, whole, growth});
     }
-    Rooms rooms(graph, domain);
+    Clearances clearances(graph, domain);
     for (int p : points) {
         const Vec2 place = graph.points[p].xy;
         const double wanted = size(place);
-        const double gap = rooms.at(p, wanted);
+        const double gap = clearances.at(p, wanted);
         if (gap < narrow_share * wanted)
             discs.push_back({place, gap, gap, growth});
     }
@@ -86,12 +86,12 @@ bool has_near_ends(const Graph& graph, const Domain& domain, const SizeField& si
     for (const GraphEdge& edge : graph.edges)
         for (int p : edge.point)
             ++n_edges[p];
-    Rooms rooms(graph, domain);
+    Clearances clearances(graph, domain);
     for (int p = 0; p < static_cast<int>(n_edges.size()); ++p) {
         if (n_edges[p] != 1 || graph.points[p].on_boundary)
             continue;
         const double nearest = near_share * size(graph.points[p].xy);
-        if (rooms.at(p, nearest) < nearest)
+        if (clearances.at(p, nearest) < nearest)
             return true;
     }
     return false;

@@ -229,7 +229,7 @@ module scene_types
    !> Fracture growth.
    type :: growth_t
       logical :: enabled = .false.
-      logical :: enabled_assumed = .false.  !< it is the default, beside other names of growth
+      logical :: enabled_assumed = .false.  !< the default, where other names of growth are given
       !> stress intensity factors are computed (always with growth)
       logical :: intensities = .false.
       character(len=name_length) :: law = "equilibrium"  !< "equilibrium" or "paris"

@@ -48,7 +48,7 @@ contains
       error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
    end function of_layers
 
-   !> What is left of the error of a step in time of the pressures at faces and wells, as the layers
+   !> Remaining error in time of a step of the pressures at faces and wells, as the layers
    !! (coarse_chain) and the rings of wells (coarse_well_rings) take several steps within it. Layers
    !! take a fourth, as far as they are not wider than their chain [-].
    pure real(rk) function of_steps(problem) result(left)

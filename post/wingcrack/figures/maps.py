@@ -277,11 +277,11 @@ def _stress_scale(
 
 
 def stress_norm(low: float, high: float) -> tuple[Normalize, Unit]:
-    """Scale between two stresses [Pa], and its unit; a uniform stress has some room around it."""
+    """Scale between two stresses [Pa], and its unit; a margin around a uniform stress."""
     unit = stress_unit(np.array([low, high]))
     if not high - low > 1.0e-6 * max(abs(low), abs(high)):
-        room = 0.01 * abs(low) or unit.size
-        low, high = low - room, high + room
+        margin = 0.01 * abs(low) or unit.size
+        low, high = low - margin, high + margin
     return Normalize(float(unit.of(low)), float(unit.of(high))), unit
 
 
