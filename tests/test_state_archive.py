@@ -48,7 +48,7 @@ STORED = {
     "face_conditions_t": ("fine_archive:visit_conditions",),
     "trend_t": ("twolevel_archive:visit_trend",),
     "stated_errors_t": ("twolevel_errors:visit",),
-    "coarse_problem_t": ("twolevel_restart:visit_problem",),
+    "coarse_problem_t": ("twolevel_restart:visit", "twolevel_restart:visit_problem"),
     "coarse_values_t": ("twolevel_archive:visit_values",),
     "fracture_cells_t": ("coarse_archive:visit_cells",),
     "windows_t": ("twolevel_restart:visit_windows",),

@@ -11,8 +11,10 @@
 !!   b1     bytes of values of a type that has neither pointers nor allocatable components
 !!   n8     number of the elements that follow, each as entries; -1: not allocated
 !!   g0     begin of a group of entries with this name; an empty name ends the group
+!!
+!! The extents of an array that is loaded are compared with those that its entry names (base_stream).
 module base_archive
-   use, intrinsic :: iso_c_binding, only: c_loc
+   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_loc
    use, intrinsic :: iso_fortran_env, only: int8
    use base_kinds, only: ik, lk, rk
    use base_stream, only: stream_t
@@ -28,12 +30,8 @@ module base_archive
       procedure :: texts
       procedure, private :: item_real, item_integer, item_long, item_logical, item_text
       generic :: item => item_real, item_integer, item_long, item_logical, item_text
-      procedure, private :: list_real1, list_real2, list_real3, list_real4, list_integer1
-      procedure, private :: list_integer2, list_integer3, list_logical1, list_logical2, list_byte1
-      procedure, private :: list_text
-      generic :: list => list_real1, list_real2, list_real3, list_real4, &
-         list_integer1, list_integer2, list_integer3, list_logical1, list_logical2, &
-         list_byte1, list_text
+      procedure, private :: list_real, list_integer, list_logical, list_byte, list_text
+      generic :: list => list_real, list_integer, list_logical, list_byte, list_text
    end type archive_t
 
 contains
@@ -61,13 +59,8 @@ contains
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(rk), intent(inout), target, contiguous :: x(..)
-      integer(lk) :: extents(rank(x))
-      logical :: exists
 
-      exists = .true.
-      extents = shape(x, lk)
-      call self%head(name, "r8", extents, exists)
-      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%fixed(name, "r8", shape(x, lk))
       call self%move(c_loc(x), 8_lk*size(x, kind=lk))
    end subroutine item_real
 
@@ -75,13 +68,8 @@ contains
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer(ik), intent(inout), target, contiguous :: x(..)
-      integer(lk) :: extents(rank(x))
-      logical :: exists
 
-      exists = .true.
-      extents = shape(x, lk)
-      call self%head(name, "i4", extents, exists)
-      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%fixed(name, "i4", shape(x, lk))
       call self%move(c_loc(x), 4_lk*size(x, kind=lk))
    end subroutine item_integer
 
@@ -89,13 +77,8 @@ contains
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer(lk), intent(inout), target, contiguous :: x(..)
-      integer(lk) :: extents(rank(x))
-      logical :: exists
 
-      exists = .true.
-      extents = shape(x, lk)
-      call self%head(name, "i8", extents, exists)
-      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%fixed(name, "i8", shape(x, lk))
       call self%move(c_loc(x), 8_lk*size(x, kind=lk))
    end subroutine item_long
 
@@ -103,13 +86,8 @@ contains
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       logical, intent(inout), target, contiguous :: x(..)
-      integer(lk) :: extents(rank(x))
-      logical :: exists
 
-      exists = .true.
-      extents = shape(x, lk)
-      call self%head(name, "l4", extents, exists)
-      if (any(extents /= shape(x, lk))) call self%set_fault(name)
+      call self%fixed(name, "l4", shape(x, lk))
       call self%move(c_loc(x), 4_lk*size(x, kind=lk))
    end subroutine item_logical
 
@@ -118,195 +96,121 @@ contains
       character(len=*), intent(in) :: name
       ! allow(C072)
       character(len=*), intent(inout), target :: x
-      integer(lk) :: extents(1)
-      logical :: exists
 
-      exists = .true.
-      extents = len(x, lk)
-      call self%head(name, "c1", extents, exists)
-      if (extents(1) /= len(x, lk)) call self%set_fault(name)
+      call self%fixed(name, "c1", [len(x, lk)])
       call self%move(c_loc(x), len(x, lk))
    end subroutine item_text
 
-   subroutine list_real1(self, name, x)
+   subroutine list_real(self, name, x, extents)
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout), target :: x(:)
-      integer(lk) :: n(1)
+      real(rk), allocatable, intent(inout), target :: x(..)
+      character(len=*), optional, intent(in) :: extents  !< of base_stream
+      integer(lk) :: n(rank(x))
       logical :: exists
 
       exists = allocated(x)
       n = 0_lk
       if (exists) n = shape(x, lk)
-      call self%head(name, "r8", n, exists)
+      call self%head(name, "r8", n, exists, extents)
       if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1)))
+         select rank (x)
+         rank (1)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1)))
+         rank (2)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1), n(2)))
+         rank (3)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1), n(2), n(3)))
+         rank (4)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1), n(2), n(3), n(4)))
+         end select
       end if
       if (exists) call self%move(c_loc(x), 8_lk*product(n))
-   end subroutine list_real1
+   end subroutine list_real
 
-   subroutine list_real2(self, name, x)
+   subroutine list_integer(self, name, x, extents)
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout), target :: x(:, :)
-      integer(lk) :: n(2)
+      integer(ik), allocatable, intent(inout), target :: x(..)
+      character(len=*), optional, intent(in) :: extents  !< of base_stream
+      integer(lk) :: n(rank(x))
+      integer(ik), pointer :: values(:)
       logical :: exists
 
       exists = allocated(x)
       n = 0_lk
       if (exists) n = shape(x, lk)
-      call self%head(name, "r8", n, exists)
+      call self%head(name, "i4", n, exists, extents)
       if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1), n(2)))
-      end if
-      if (exists) call self%move(c_loc(x), 8_lk*product(n))
-   end subroutine list_real2
-
-   subroutine list_real3(self, name, x)
-      class(archive_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout), target :: x(:, :, :)
-      integer(lk) :: n(3)
-      logical :: exists
-
-      exists = allocated(x)
-      n = 0_lk
-      if (exists) n = shape(x, lk)
-      call self%head(name, "r8", n, exists)
-      if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1), n(2), n(3)))
-      end if
-      if (exists) call self%move(c_loc(x), 8_lk*product(n))
-   end subroutine list_real3
-
-   subroutine list_real4(self, name, x)
-      class(archive_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      real(rk), allocatable, intent(inout), target :: x(:, :, :, :)
-      integer(lk) :: n(4)
-      logical :: exists
-
-      exists = allocated(x)
-      n = 0_lk
-      if (exists) n = shape(x, lk)
-      call self%head(name, "r8", n, exists)
-      if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1), n(2), n(3), n(4)))
-      end if
-      if (exists) call self%move(c_loc(x), 8_lk*product(n))
-   end subroutine list_real4
-
-   subroutine list_integer1(self, name, x)
-      class(archive_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      integer(ik), allocatable, intent(inout), target :: x(:)
-      integer(lk) :: n(1)
-      logical :: exists
-
-      exists = allocated(x)
-      n = 0_lk
-      if (exists) n = shape(x, lk)
-      call self%head(name, "i4", n, exists)
-      if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1)))
+         select rank (x)
+         rank (1)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1)))
+         rank (2)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1), n(2)))
+         rank (3)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1), n(2), n(3)))
+         end select
       end if
       if (exists) call self%move(c_loc(x), 4_lk*product(n))
-   end subroutine list_integer1
+      if (.not. (self%is_loading .and. exists .and. present(extents))) return
+      if (product(n) == 0_lk) return
+      call c_f_pointer(c_loc(x), values, [product(n)])
+      call self%compare_range(name, values, extents)
+   end subroutine list_integer
 
-   subroutine list_integer2(self, name, x)
+   subroutine list_logical(self, name, x, extents)
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      integer(ik), allocatable, intent(inout), target :: x(:, :)
-      integer(lk) :: n(2)
+      logical, allocatable, intent(inout), target :: x(..)
+      character(len=*), optional, intent(in) :: extents  !< of base_stream
+      integer(lk) :: n(rank(x))
       logical :: exists
 
       exists = allocated(x)
       n = 0_lk
       if (exists) n = shape(x, lk)
-      call self%head(name, "i4", n, exists)
+      call self%head(name, "l4", n, exists, extents)
       if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1), n(2)))
+         select rank (x)
+         rank (1)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1)))
+         rank (2)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1), n(2)))
+         end select
       end if
       if (exists) call self%move(c_loc(x), 4_lk*product(n))
-   end subroutine list_integer2
+   end subroutine list_logical
 
-   subroutine list_integer3(self, name, x)
+   subroutine list_byte(self, name, x, extents)
       class(archive_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      integer(ik), allocatable, intent(inout), target :: x(:, :, :)
-      integer(lk) :: n(3)
+      integer(int8), allocatable, intent(inout), target :: x(..)
+      character(len=*), optional, intent(in) :: extents  !< of base_stream
+      integer(lk) :: n(rank(x))
       logical :: exists
 
       exists = allocated(x)
       n = 0_lk
       if (exists) n = shape(x, lk)
-      call self%head(name, "i4", n, exists)
+      call self%head(name, "b1", n, exists, extents)
       if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1), n(2), n(3)))
-      end if
-      if (exists) call self%move(c_loc(x), 4_lk*product(n))
-   end subroutine list_integer3
-
-   subroutine list_logical1(self, name, x)
-      class(archive_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      logical, allocatable, intent(inout), target :: x(:)
-      integer(lk) :: n(1)
-      logical :: exists
-
-      exists = allocated(x)
-      n = 0_lk
-      if (exists) n = shape(x, lk)
-      call self%head(name, "l4", n, exists)
-      if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1)))
-      end if
-      if (exists) call self%move(c_loc(x), 4_lk*product(n))
-   end subroutine list_logical1
-
-   subroutine list_logical2(self, name, x)
-      class(archive_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      logical, allocatable, intent(inout), target :: x(:, :)
-      integer(lk) :: n(2)
-      logical :: exists
-
-      exists = allocated(x)
-      n = 0_lk
-      if (exists) n = shape(x, lk)
-      call self%head(name, "l4", n, exists)
-      if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1), n(2)))
-      end if
-      if (exists) call self%move(c_loc(x), 4_lk*product(n))
-   end subroutine list_logical2
-
-   subroutine list_byte1(self, name, x)
-      class(archive_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      integer(int8), allocatable, intent(inout), target :: x(:)
-      integer(lk) :: n(1)
-      logical :: exists
-
-      exists = allocated(x)
-      n = 0_lk
-      if (exists) n = shape(x, lk)
-      call self%head(name, "b1", n, exists)
-      if (self%is_loading) then
-         if (allocated(x)) deallocate (x)
-         if (exists) allocate (x(n(1)))
+         select rank (x)
+         rank (1)
+            if (allocated(x)) deallocate (x)
+            if (exists) allocate (x(n(1)))
+         end select
       end if
       if (exists) call self%move(c_loc(x), 1_lk*product(n))
-   end subroutine list_byte1
+   end subroutine list_byte
 
    subroutine list_text(self, name, x)
       class(archive_t), intent(inout) :: self

@@ -1,4 +1,9 @@
 !> Stream of bytes with named entries, for base_archive, which defines them.
+!!
+!! Extents of arrays are named in a text such as "2, cells": a number, or a name whose extent is known
+!! (`set_extent`, not negative) or becomes known with the first array that has it. An array with other extents is a
+!! fault. "?" after it: the array may be not allocated; "; 1:cells" or "; 0:cells" at the end: its values
+!! are numbers of these elements, and 0 for none.
 module base_stream
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int64_t, c_loc, c_ptr, c_signed_char, &
                                                                              c_size_t
@@ -11,6 +16,12 @@ module base_stream
 
    integer(lk), parameter :: least_entry = 10_lk  !< bytes of an entry without name and values
 
+   !> Extent of all arrays whose entries have its name.
+   type :: extent_t
+      character(len=20) :: name = ""
+      integer(lk) :: n = 0_lk
+   end type extent_t
+
    !> Entries in the order in which they are stored and loaded.
    type :: stream_t
       logical :: is_loading = .false.
@@ -19,15 +30,21 @@ module base_stream
       integer(lk) :: place = 0_lk  !< bytes loaded so far
       !> the first fault of loading; nothing is loaded after it
       character(len=:), allocatable :: fault
+      type(extent_t), allocatable, private :: known(:)
    contains
       procedure :: begin_storing
       procedure :: begin_loading
       procedure :: enter
       procedure :: leave
       procedure :: count => visit_count
+      procedure :: extent
+      procedure :: set_extent
+      procedure :: compare_extent
+      procedure :: compare_range
       procedure :: plain
       procedure :: append
       procedure :: head
+      procedure :: fixed
       procedure :: move
       procedure :: set_fault
    end type stream_t
@@ -63,6 +80,7 @@ contains
       self%is_loading = .true.
       self%place = 0_lk
       if (allocated(self%fault)) deallocate (self%fault)
+      if (allocated(self%known)) deallocate (self%known)
    end subroutine begin_loading
 
    !> Begin a group of entries.
@@ -99,21 +117,113 @@ contains
       if (allocated(self%fault)) n = -1_lk
    end subroutine visit_count
 
+   !> Number of the elements that follow, of an array of any type; -1: it is not allocated.
+   subroutine extent(self, name, array, n, expected)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      class(*), optional, intent(in) :: array(:)
+      integer(lk), intent(out) :: n
+      character(len=*), optional, intent(in) :: expected  !< name of its extent
+
+      n = -1_lk
+      if (present(array)) n = size(array, kind=lk)
+      call self%count(name, n)
+      if (.not. (self%is_loading .and. present(expected))) return
+      if (n >= 0_lk) call compare_extents(self, name, [n], expected)
+      if (n < 0_lk .and. index(expected, "?") == 0) call self%set_fault(name)
+   end subroutine extent
+
+   !> All arrays with this name of an extent have n elements from here on.
+   subroutine set_extent(self, name, n)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: n
+
+      if (.not. self%is_loading) return
+      if (.not. allocated(self%known)) allocate (self%known(0))
+      self%known = [extent_t(name, int(n, lk)), pack(self%known, self%known%name /= name)]
+   end subroutine set_extent
+
+   !> The extent of this name is n: a fault, unless it is, or has not been known.
+   subroutine compare_extent(self, name, n)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: n
+
+      if (self%is_loading) call compare_extents(self, name, [int(n, lk)], name)
+   end subroutine compare_extent
+
+   !> Compare the extents of an array with those that its entry names.
+   subroutine compare_extents(self, name, n, expected)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(lk), intent(in) :: n(:)
+      character(len=*), intent(in) :: expected
+      character(len=20) :: names(size(n))
+      integer(lk) :: number
+      integer :: i, k, status
+
+      read (expected(:scan(expected//";", ";") - 1), *) names
+      do i = 1, size(n)
+         read (names(i), *, iostat=status) number
+         if (status == 0) then
+            if (number /= n(i)) call self%set_fault(name)
+            cycle
+         end if
+         if (.not. allocated(self%known)) allocate (self%known(0))
+         k = findloc(self%known%name, names(i), 1)
+         if (k > 0) then
+            if (self%known(k)%n < 0_lk) k = 0
+         end if
+         if (k == 0) then
+            call self%set_extent(trim(names(i)), int(n(i), ik))
+         else if (self%known(k)%n /= n(i)) then
+            call self%set_fault(name)
+         end if
+      end do
+   end subroutine compare_extents
+
+   !> Compare numbers of elements with the range at the end of the names of the extents.
+   subroutine compare_range(self, name, values, expected)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      integer(ik), intent(in) :: values(:)
+      character(len=*), intent(in) :: expected
+      integer :: at, k
+
+      at = index(expected, ";")
+      if (at == 0 .or. .not. allocated(self%known)) return
+      k = findloc(self%known%name, expected(index(expected, ":") + 1:), 1)
+      if (any(values < merge(0, 1, expected(at + 2:at + 2) == "0"))) call self%set_fault(name)
+      if (k == 0) return
+      if (any(values > self%known(k)%n)) call self%set_fault(name)
+   end subroutine compare_range
+
    !> Values of a type without pointers and allocatable components.
    subroutine plain(self, name, address, n_bytes)
       class(stream_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(c_ptr), intent(in) :: address
       integer(lk), intent(in) :: n_bytes  !< of all values
-      integer(lk) :: extents(1)
+
+      call self%fixed(name, "b1", [n_bytes])
+      call self%move(address, n_bytes)
+   end subroutine plain
+
+   !> The head of values that exist already.
+   subroutine fixed(self, name, kind, extents)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      character(len=2), intent(in) :: kind
+      integer(lk), intent(in) :: extents(:)
+      integer(lk) :: found(size(extents))
       logical :: exists
 
       exists = .true.
-      extents = n_bytes
-      call self%head(name, "b1", extents, exists)
-      if (extents(1) /= n_bytes) call self%set_fault(name)
-      call self%move(address, n_bytes)
-   end subroutine plain
+      found = extents
+      call self%head(name, kind, found, exists)
+      if (any(found /= extents) .or. .not. exists) call self%set_fault(name)
+   end subroutine fixed
 
    !> Append the bytes of another archive that is being stored.
    subroutine append(self, other)
@@ -126,12 +236,13 @@ contains
    end subroutine append
 
    !> The head of an entry: stored, or loaded and compared.
-   subroutine head(self, name, kind, extents, exists)
+   subroutine head(self, name, kind, extents, exists, expected)
       class(stream_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       character(len=2), intent(in) :: kind
       integer(lk), intent(inout) :: extents(:)
       logical, intent(inout) :: exists  !< .false.: an array that is not allocated
+      character(len=*), optional, intent(in) :: expected  !< names of the extents
       integer(ik) :: ranks
       character(len=64) :: found_name
       character(len=2) :: found_kind
@@ -142,6 +253,11 @@ contains
          call load_head(self, found_name, found_kind, ranks, extents)
          if (found_name /= name .or. found_kind /= kind .or. &
              .not. any(ranks == [-1_ik, size(extents, kind=ik)])) call self%set_fault(name)
+         if (present(expected) .and. ranks >= 0_ik .and. .not. allocated(self%fault)) then
+            call compare_extents(self, name, extents, expected)
+         else if (present(expected)) then
+            if (index(expected, "?") == 0) call self%set_fault(name)
+         end if
          exists = ranks >= 0_ik .and. .not. allocated(self%fault)
          if (.not. exists) extents = 0_lk
          return

@@ -378,9 +378,10 @@ contains
 
    !> Store or load the equations that were factorized and the known directions; the factors are
    !! made again from these equations.
-   subroutine visit(self, archive, error)
+   subroutine visit(self, archive, n_bulk, error)
       class(sparse_step_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
+      integer(ik), intent(in) :: n_bulk  !< unknowns that are not of the fractures
       type(error_t), allocatable, intent(out) :: error
 
       call archive%item("is_ready", self%is_ready)
@@ -392,17 +393,31 @@ contains
       call archive%item("estimated_at", self%estimated_at)
       call archive%item("factorizations", self%factorizations)
       call archive%item("solutions", self%solutions)
-      call archive%list("row", self%row)
-      call archive%list("col", self%col)
-      call archive%list("values", self%values)
-      call archive%list("col_scale", self%col_scale)
-      call archive%list("row_scale", self%row_scale)
-      call archive%list("row_factor", self%row_factor)
-      call archive%list("weight", self%weight)
-      call archive%list("direction", self%direction)
-      call archive%list("force", self%force)
-      call archive%list("product", self%product)
-      if (.not. (archive%is_loading .and. self%is_ready)) return
+      call archive%set_extent("directions", most_kept)
+      call archive%list("col_scale", self%col_scale, "sparse_unknowns ?")
+      call archive%list("row", self%row, "sparse_entries ?; 1:sparse_unknowns")
+      call archive%list("col", self%col, "sparse_entries ?; 1:sparse_unknowns")
+      call archive%list("values", self%values, "sparse_entries ?")
+      call archive%list("row_scale", self%row_scale, "slopes ?")
+      call archive%list("row_factor", self%row_factor, "slopes ?")
+      call archive%list("weight", self%weight, "2, slopes ?")
+      call archive%list("direction", self%direction, "slopes, directions ?")
+      call archive%list("force", self%force, "condensed, directions ?")
+      call archive%list("product", self%product, "slopes, directions ?")
+      if (.not. (archive%is_loading .and. self%is_ready) .or. allocated(archive%fault)) return
+      self%is_ready = .false.
+      if (allocated(self%row) .and. allocated(self%col) .and. allocated(self%values) .and. &
+          allocated(self%col_scale) .and. allocated(self%row_scale) .and. &
+          allocated(self%row_factor) .and. allocated(self%weight) .and. &
+          allocated(self%direction) .and. allocated(self%force) .and. allocated(self%product)) then
+         self%is_ready = size(self%col_scale) - size(self%row_scale) == n_bulk .and. &
+                         min(self%n_rock, self%n_kept) >= 0 .and. &
+                         self%n_rock <= size(self%row) .and. self%n_kept <= most_kept
+      end if
+      if (.not. self%is_ready) then
+         call archive%set_fault("factors")
+         return
+      end if
       self%solver%ordering = mumps_pord
       call self%solver%analyse(size(self%col_scale, kind=ik), self%row, self%col, &
                                mumps_unsymmetric, error)

@@ -17,9 +17,7 @@ contains
       type(contact_law_t), allocatable, intent(inout), target :: law(:)
       integer(lk) :: n
 
-      n = -1_lk
-      if (allocated(law)) n = size(law, kind=lk)
-      call archive%count(name, n)
+      call archive%extent(name, law, n, "fcells ?")
       if (archive%is_loading) then
          if (allocated(law)) deallocate (law)
          if (n >= 0_lk) allocate (law(n))

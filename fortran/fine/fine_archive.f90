@@ -11,9 +11,20 @@ module fine_archive
    implicit none(type, external)
    private
 
-   public :: visit_conditions, visit_contact, visit_fine_mesh, visit_loads
+   public :: set_fine_extents, visit_conditions, visit_contact, visit_fine_mesh, visit_loads
 
 contains
+
+   !> Extents of the arrays of a mesh that follow.
+   subroutine set_fine_extents(archive, mesh)
+      type(archive_t), intent(inout) :: archive
+      type(fine_mesh_t), intent(in) :: mesh
+
+      call archive%set_extent("fine_vertices", mesh%n_vertices)
+      call archive%set_extent("fine_nodes", mesh%n_nodes)
+      call archive%set_extent("fine_cells", mesh%n_cells)
+      call archive%set_extent("fine_faces", mesh%fracture%n_cells)
+   end subroutine set_fine_extents
 
    subroutine visit_fine_mesh(archive, name, mesh)
       type(archive_t), intent(inout) :: archive
@@ -24,22 +35,23 @@ contains
       call archive%item("n_vertices", mesh%n_vertices)
       call archive%item("n_nodes", mesh%n_nodes)
       call archive%item("n_cells", mesh%n_cells)
-      call archive%list("xy", mesh%xy)
-      call archive%list("cell_nodes", mesh%cell_nodes)
-      call archive%item("tip_element", mesh%tip_element)
-      call archive%list("tip_corner", mesh%tip_corner)
-      call archive%list("on_boundary", mesh%on_boundary)
-      call archive%list("boundary_faces", mesh%boundary_faces)
-      call archive%list("boundary_middles", mesh%boundary_middles)
-      call archive%list("boundary_sides", mesh%boundary_sides)
-      call archive%list("face_nodes", mesh%face_nodes)
-      call archive%list("face_cells", mesh%face_cells)
-      call archive%list("face_at_tip", mesh%face_at_tip)
-      call archive%list("face_tip", mesh%face_tip)
-      call archive%list("face_s", mesh%face_s)
-      call archive%list("face_tangent", mesh%face_tangent)
-      call archive%list("face_length", mesh%face_length)
       call visit_fracture_mesh(archive, "fracture", mesh%fracture)
+      call set_fine_extents(archive, mesh)
+      call archive%list("xy", mesh%xy, "2, fine_nodes ?")
+      call archive%list("cell_nodes", mesh%cell_nodes, "6, fine_cells ?; 1:fine_nodes")
+      call archive%item("tip_element", mesh%tip_element)
+      call archive%list("tip_corner", mesh%tip_corner, "fine_cells ?")
+      call archive%list("on_boundary", mesh%on_boundary, "fine_nodes ?")
+      call archive%list("boundary_faces", mesh%boundary_faces, "2, fine_sides ?; 1:fine_nodes")
+      call archive%list("boundary_middles", mesh%boundary_middles, "fine_sides ?")
+      call archive%list("boundary_sides", mesh%boundary_sides, "fine_sides ?")
+      call archive%list("face_nodes", mesh%face_nodes, "3, 2, fine_faces ?; 1:fine_nodes")
+      call archive%list("face_cells", mesh%face_cells, "2, fine_faces ?; 1:fine_cells")
+      call archive%list("face_at_tip", mesh%face_at_tip, "fine_faces ?")
+      call archive%list("face_tip", mesh%face_tip, "fine_faces ?")
+      call archive%list("face_s", mesh%face_s, "3, fine_faces ?")
+      call archive%list("face_tangent", mesh%face_tangent, "2, fine_faces ?")
+      call archive%list("face_length", mesh%face_length, "fine_faces ?")
       call archive%leave()
    end subroutine visit_fine_mesh
 
@@ -49,13 +61,13 @@ contains
       type(contact_t), intent(inout) :: contact
 
       call archive%enter(name)
-      call archive%list("jump", contact%jump)
-      call archive%list("slip_before", contact%slip_before)
-      call archive%list("slip_path", contact%slip_path)
-      call archive%list("opened", contact%opened)
-      call archive%list("apart", contact%apart)
-      call archive%list("traction", contact%traction)
-      call archive%list("state", contact%state)
+      call archive%list("jump", contact%jump, "2, 3, fine_faces")
+      call archive%list("slip_before", contact%slip_before, "3, fine_faces")
+      call archive%list("slip_path", contact%slip_path, "3, fine_faces")
+      call archive%list("opened", contact%opened, "3, fine_faces")
+      call archive%list("apart", contact%apart, "3, fine_faces")
+      call archive%list("traction", contact%traction, "2, 3, fine_faces")
+      call archive%list("state", contact%state, "3, fine_faces")
       call archive%item("iterations", contact%iterations)
       call archive%item("was_restarted", contact%was_restarted)
       call archive%item("residual", contact%residual)
@@ -68,14 +80,14 @@ contains
       type(fine_loads_t), intent(inout) :: loads
 
       call archive%enter(name)
-      call archive%list("boundary_displacement", loads%boundary_displacement)
-      call archive%list("force", loads%force)
+      call archive%list("boundary_displacement", loads%boundary_displacement, "2, fine_nodes ?")
+      call archive%list("force", loads%force, "2, fine_nodes ?")
       call archive%item("body_force", loads%body_force)
-      call archive%list("initial_stress", loads%initial_stress)
-      call archive%list("pore_pressure", loads%pore_pressure)
-      call archive%list("traction", loads%traction)
-      call archive%list("fluid_pressure", loads%fluid_pressure)
-      call archive%list("jump", loads%jump)
+      call archive%list("initial_stress", loads%initial_stress, "3, fine_vertices ?")
+      call archive%list("pore_pressure", loads%pore_pressure, "fine_vertices ?")
+      call archive%list("traction", loads%traction, "2, fine_faces ?")
+      call archive%list("fluid_pressure", loads%fluid_pressure, "fine_faces ?")
+      call archive%list("jump", loads%jump, "2, 3, fine_faces ?")
       call archive%leave()
    end subroutine visit_loads
 
@@ -86,11 +98,9 @@ contains
       integer(lk) :: n
 
       call archive%enter(name)
-      call archive%list("condition", conditions%condition)
-      call archive%list("dilation", conditions%dilation)
-      n = -1_lk
-      if (allocated(conditions%law)) n = size(conditions%law, kind=lk)
-      call archive%count("law", n)
+      call archive%list("condition", conditions%condition, "fine_faces")
+      call archive%list("dilation", conditions%dilation, "fine_faces")
+      call archive%extent("law", conditions%law, n, "fine_faces")
       if (archive%is_loading) then
          if (allocated(conditions%law)) deallocate (conditions%law)
          if (n >= 0_lk) allocate (conditions%law(n))

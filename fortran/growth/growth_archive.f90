@@ -23,6 +23,16 @@ contains
       call archive%enter(name)
       call visit_network(archive, "network", front%network)
       call visit_tips(archive, "tip", front%tip)
+      if (archive%is_loading .and. .not. allocated(archive%fault)) then
+         if (.not. (allocated(front%tip) .and. allocated(front%network%first))) then
+            call archive%set_fault(name)
+            return
+         end if
+         associate (tip => front%tip, n => size(front%network%first) - 1)
+            if (any(tip%fracture < 1 .or. tip%fracture > n .or. tip%end < 1 .or. tip%end > 2) &
+                .or. any(max(tip%target, tip%path_target) > n)) call archive%set_fault(name)
+         end associate
+      end if
       call archive%leave()
    end subroutine visit_front
 
@@ -32,9 +42,7 @@ contains
       type(tip_t), allocatable, intent(inout), target :: tip(:)
       integer(lk) :: n
 
-      n = -1_lk
-      if (allocated(tip)) n = size(tip, kind=lk)
-      call archive%count(name, n)
+      call archive%extent(name, tip, n, "tips ?")
       if (archive%is_loading) then
          if (allocated(tip)) deallocate (tip)
          if (n >= 0_lk) allocate (tip(n))
@@ -48,9 +56,7 @@ contains
       type(segment_t), allocatable, intent(inout), target :: segment(:)
       integer(lk) :: n
 
-      n = -1_lk
-      if (allocated(segment)) n = size(segment, kind=lk)
-      call archive%count(name, n)
+      call archive%extent(name, segment, n, "tips ?")
       if (archive%is_loading) then
          if (allocated(segment)) deallocate (segment)
          if (n >= 0_lk) allocate (segment(n))
@@ -64,10 +70,10 @@ contains
       type(interaction_t), intent(inout) :: interaction
 
       call archive%enter(name)
-      call archive%list("measured", interaction%measured)
-      call archive%list("matrix", interaction%matrix)
-      call archive%list("is_known", interaction%is_known)
-      call archive%list("known_at", interaction%known_at)
+      call archive%list("measured", interaction%measured, "tips, tips ?")
+      call archive%list("matrix", interaction%matrix, "tips, tips ?")
+      call archive%list("is_known", interaction%is_known, "tips ?")
+      call archive%list("known_at", interaction%known_at, "tips ?")
       call archive%leave()
    end subroutine visit_interaction
 
@@ -77,9 +83,9 @@ contains
       type(tip_groups_t), intent(inout) :: groups
 
       call archive%enter(name)
-      call archive%list("kind", groups%kind)
-      call archive%list("usual", groups%usual)
-      call archive%list("is_alone", groups%is_alone)
+      call archive%list("kind", groups%kind, "tips ?")
+      call archive%list("usual", groups%usual, "tips ?")
+      call archive%list("is_alone", groups%is_alone, "tips ?")
       call archive%leave()
    end subroutine visit_groups
 

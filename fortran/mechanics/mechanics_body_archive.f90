@@ -3,7 +3,7 @@
 submodule(mechanics_body) mechanics_body_archive
    use, intrinsic :: iso_c_binding, only: c_loc
    use base_kinds, only: lk
-   use fine_archive, only: visit_contact, visit_fine_mesh, visit_loads
+   use fine_archive, only: set_fine_extents, visit_contact, visit_fine_mesh, visit_loads
    use mesh_archive, only: visit_mesher, visit_mesher_and_mesh
    implicit none(type, external)
 
@@ -24,10 +24,11 @@ contains
          call self%set_up(scene, start, network, timers, error)
          if (allocated(error)) return
       end if
+      call set_fine_extents(archive, self%model%mesh)
       call visit_loads(archive, "loads", self%loads)
-      call archive%list("displacement", self%displacement)
+      call archive%list("displacement", self%displacement, "2, fine_nodes ?")
       call visit_contact(archive, "contact", self%contact)
-      call archive%list("given_jump", self%given_jump)
+      call archive%list("given_jump", self%given_jump, "2, 3, fine_faces ?")
       call visit_intensities(archive, self%intensity)
       has_probes = allocated(self%probe)
       call archive%item("has_probes", has_probes)
@@ -52,9 +53,7 @@ contains
       type(intensity_t), allocatable, intent(inout), target :: intensity(:)
       integer(lk) :: n
 
-      n = -1_lk
-      if (allocated(intensity)) n = size(intensity, kind=lk)
-      call archive%count("intensity", n)
+      call archive%extent("intensity", intensity, n)
       if (archive%is_loading) then
          if (allocated(intensity)) deallocate (intensity)
          if (n >= 0_lk) allocate (intensity(n))

@@ -461,13 +461,13 @@ contains
       call archive%item("misfit", self%misfit)
       call archive%item("advance_sum", self%advance_sum)
       call self%tries%visit(archive)
-      call archive%list("group", self%group)
-      call archive%list("known_group", self%known_group)
-      call archive%list("matrix", self%matrix)
+      call archive%list("group", self%group, "group ?")
+      call archive%list("known_group", self%known_group, "known_group ?")
+      call archive%list("matrix", self%matrix, "known_group, known_group ?")
       call archive%item("known_since", self%known_since)
       call archive%item("started", self%started)
       call archive%item("was_loose", self%was_loose)
-      call archive%list("pace", self%pace)
+      call archive%list("pace", self%pace, "tips ?")
       call archive%leave()
    end subroutine visit
 

@@ -44,7 +44,7 @@ contains
       call self%increment%visit(archive)
       call self%dead_load%visit(archive)
       call archive%item("was_bifurcation", self%was_bifurcation)
-      call archive%list("was_uncertain", self%was_uncertain)
+      call archive%list("was_uncertain", self%was_uncertain, "tips ?")
       call visit_network(archive, "shown_network", self%shown_network)
       call visit_mesh(archive, "shown_mesh", self%shown_mesh)
       n = merge(1_lk, -1_lk, allocated(self%good))

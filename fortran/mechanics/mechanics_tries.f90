@@ -298,7 +298,7 @@ contains
       call visit_network(archive, "network_before", self%network_before)
       call visit_tips(archive, "tip_before", self%tip_before)
       call archive%item("longest", self%longest)
-      call archive%list("tip_group", self%tip_group)
+      call archive%list("tip_group", self%tip_group, "tips ?")
    end subroutine visit
 
 end module mechanics_tries

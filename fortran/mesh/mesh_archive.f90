@@ -40,18 +40,27 @@ contains
       call archive%list("xy", network%xy)
       call archive%list("s_start", network%s_start)
       call archive%texts("names", network%names)
-      if (archive%is_loading .and. allocated(network%first) .and. allocated(network%xy)) then
-         associate (first => network%first)
-            if (size(first) < 1 .or. .not. within(first, size(network%xy, 2, kind=ik) + 1)) then
-               call archive%set_fault(name)
-            else if (any(first(2:) < first(:size(first) - 1)) .or. &
-                     first(size(first)) /= size(network%xy, 2) + 1) then
-               call archive%set_fault(name)
-            end if
-         end associate
+      if (archive%is_loading .and. (allocated(network%first) .or. allocated(network%xy))) then
+         if (.not. is_network(network)) call archive%set_fault(name)
       end if
       call archive%leave()
    end subroutine visit_network
+
+   !> Whether the arrays fit each other, and every fracture has two points.
+   pure logical function is_network(network)
+      type(network_t), intent(in) :: network
+
+      is_network = allocated(network%first) .and. allocated(network%xy) .and. &
+                   allocated(network%s_start)
+      if (.not. is_network) return
+      associate (first => network%first, n => size(network%first) - 1)
+         is_network = size(network%s_start) == n .and. size(network%xy, 1) == 2
+         if (allocated(network%names)) is_network = is_network .and. size(network%names) == n
+         if (.not. is_network .or. n < 0) return
+         is_network = first(1) == 1 .and. first(n + 1) == size(network%xy, 2) + 1 .and. &
+                      all(first(2:) >= first(:n) + 2)
+      end associate
+   end function is_network
 
    subroutine visit_fracture_mesh(archive, name, mesh)
       type(archive_t), intent(inout) :: archive
@@ -62,19 +71,25 @@ contains
       call archive%item("n_cells", mesh%n_cells)
       call archive%item("n_points", mesh%n_points)
       call archive%item("n_tips", mesh%n_tips)
-      call archive%list("cell_fracture", mesh%cell_fracture)
-      call archive%list("cell_points", mesh%cell_points)
-      call archive%list("cell_faces", mesh%cell_faces)
-      call archive%list("cell_s", mesh%cell_s)
-      call archive%list("point_xy", mesh%point_xy)
-      call archive%list("point_kind", mesh%point_kind)
+      call archive%set_extent("own_cells", mesh%n_cells)
+      call archive%set_extent("own_points", mesh%n_points)
+      call archive%set_extent("own_tips", mesh%n_tips)
+      call archive%list("cell_fracture", mesh%cell_fracture, "own_cells ?; 1:fractures")
+      call archive%list("cell_points", mesh%cell_points, "2, own_cells ?; 1:own_points")
+      call archive%list("cell_faces", mesh%cell_faces, "2, own_cells ?")
+      call archive%list("cell_s", mesh%cell_s, "2, own_cells ?")
+      call archive%list("point_xy", mesh%point_xy, "2, own_points ?")
+      call archive%list("point_kind", mesh%point_kind, "own_points ?")
       call visit_lists(archive, "point_cells", mesh%point_cells)
-      call archive%list("tip_point", mesh%tip_point)
-      call archive%list("tip_node", mesh%tip_node)
-      call archive%list("tip_fracture", mesh%tip_fracture)
-      call archive%list("tip_end", mesh%tip_end)
-      call archive%list("tip_direction", mesh%tip_direction)
-      call archive%list("tip_radius", mesh%tip_radius)
+      call archive%list("tip_point", mesh%tip_point, "own_tips ?; 1:own_points")
+      call archive%list("tip_node", mesh%tip_node, "own_tips ?")
+      call archive%list("tip_fracture", mesh%tip_fracture, "own_tips ?; 1:fractures")
+      call archive%list("tip_end", mesh%tip_end, "own_tips ?")
+      call archive%list("tip_direction", mesh%tip_direction, "2, own_tips ?")
+      call archive%list("tip_radius", mesh%tip_radius, "own_tips ?")
+      if (archive%is_loading .and. any([mesh%n_cells, mesh%n_points, mesh%n_tips] /= 0)) then
+         if (.not. is_complete(mesh)) call archive%set_fault(name)
+      end if
       call archive%leave()
    end subroutine visit_fracture_mesh
 
@@ -150,37 +165,35 @@ contains
       call archive%leave()
    end subroutine visit_mesher_and_mesh
 
-   !> Whether the arrays of the fractures have the lengths of the mesh, and its indices.
+   !> Whether there are all arrays of the fractures, with indices of the mesh.
    pure logical function is_sound(mesh, f)
       type(mesh_t), intent(in) :: mesh
       type(fracture_mesh_t), intent(in) :: f
 
-      is_sound = allocated(f%cell_fracture) .and. allocated(f%cell_points) .and. &
-                 allocated(f%cell_faces) .and. allocated(f%cell_s) .and. allocated(f%point_xy) &
-                 .and. allocated(f%point_kind) .and. allocated(f%tip_point) .and. &
-                 allocated(f%tip_node) .and. allocated(f%tip_fracture) .and. &
-                 allocated(f%tip_end) .and. allocated(f%tip_direction) .and. &
-                 allocated(f%tip_radius) .and. allocated(f%point_cells%first) .and. &
-                 allocated(f%point_cells%item)
-      if (.not. is_sound) return
-      is_sound = all([size(f%cell_fracture), size(f%cell_points), size(f%cell_faces), &
-                      size(f%cell_s), size(f%point_xy), size(f%point_kind)] == &
-                     [f%n_cells, 2*f%n_cells, 2*f%n_cells, 2*f%n_cells, 2*f%n_points, f%n_points]) &
-                 .and. all([size(f%tip_point), size(f%tip_node), size(f%tip_fracture), &
-                            size(f%tip_end), size(f%tip_direction), size(f%tip_radius)] == &
-                           f%n_tips*[1, 1, 1, 1, 2, 1]) &
-                 .and. size(f%point_cells%first) == f%n_points + 1
-      if (.not. is_sound) return
-      associate (first => f%point_cells%first)
-         is_sound = within([f%cell_points], f%n_points) .and. &
-                    within([f%cell_faces], mesh%n_faces) .and. within(f%tip_point, f%n_points) &
-                    .and. within(f%tip_node, mesh%n_nodes) .and. within(f%tip_end, 2) .and. &
-                    within([f%cell_fracture, f%tip_fracture], f%n_cells) .and. &
-                    within(f%point_cells%item, f%n_cells) .and. &
-                    first(1) == 1 .and. first(size(first)) == size(f%point_cells%item) + 1 .and. &
-                    all(first(2:) >= first(:size(first) - 1))
-      end associate
+      is_sound = is_complete(f)
+      if (is_sound) is_sound = within([f%cell_faces], mesh%n_faces) .and. &
+                               within(f%tip_node, mesh%n_nodes)
    end function is_sound
+
+   !> Whether there are all arrays, and lists of cells at points that fit them.
+   pure logical function is_complete(f)
+      type(fracture_mesh_t), intent(in) :: f
+
+      is_complete = allocated(f%cell_fracture) .and. allocated(f%cell_points) .and. &
+                    allocated(f%cell_faces) .and. allocated(f%cell_s) .and. &
+                    allocated(f%point_xy) .and. allocated(f%point_kind) .and. &
+                    allocated(f%tip_point) .and. allocated(f%tip_node) .and. &
+                    allocated(f%tip_fracture) .and. allocated(f%tip_end) .and. &
+                    allocated(f%tip_direction) .and. allocated(f%tip_radius) .and. &
+                    allocated(f%point_cells%first) .and. allocated(f%point_cells%item)
+      if (.not. is_complete) return
+      associate (first => f%point_cells%first, item => f%point_cells%item)
+         is_complete = size(first) == f%n_points + 1 .and. within(f%tip_end, 2)
+         if (is_complete) is_complete = within(item, f%n_cells) .and. first(1) == 1 .and. &
+                                        first(size(first)) == size(item) + 1 .and. &
+                                        all(first(2:) >= first(:size(first) - 1))
+      end associate
+   end function is_complete
 
    !> Whether the arrays of cells and faces have indices of the mesh.
    pure logical function has_indices(mesh)

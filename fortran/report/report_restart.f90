@@ -6,7 +6,7 @@
 module report_restart
    use base_archive, only: archive_t
    use base_errors, only: error_t
-   use base_kinds, only: lk
+   use base_kinds, only: ik, lk
    use base_timers, only: timers_t
    use growth_archive, only: visit_front
    use mesh_archive, only: visit_network
@@ -55,8 +55,12 @@ contains
 
       call archive%enter("simulation")
       call visit_network(archive, "start", simulation%start)
+      if (allocated(simulation%start%first)) call archive%set_extent("fractures", &
+                                                     size(simulation%start%first, kind=ik) - 1)
       call visit_network(archive, "network_before", simulation%network_before)
       call visit_front(archive, "front", simulation%front_state_t)
+      if (allocated(simulation%network%xy)) call archive%set_extent("vertices", &
+                                                        size(simulation%network%xy, 2, kind=ik))
       call visit_summary(archive, simulation%summary)
       call simulation%watch%visit(archive)
       call simulation%catalogue%visit(archive)
@@ -65,9 +69,9 @@ contains
       call archive%item("owes_state", simulation%owes_state)
       call archive%item("shows_growth", simulation%shows_growth)
       call archive%item("start_time", simulation%start_time)
-      call archive%list("has_slipped", simulation%has_slipped)
-      call archive%list("has_opened", simulation%has_opened)
-      call archive%list("position_error", simulation%position_error)
+      call archive%list("has_slipped", simulation%has_slipped, "fractures ?")
+      call archive%list("has_opened", simulation%has_opened, "fractures ?")
+      call archive%list("position_error", simulation%position_error, "tips ?")
       call archive%leave()
    end subroutine visit_simulation
 
@@ -98,9 +102,7 @@ contains
       call archive%item("increments", summary%increments)
       call archive%item("meshes_whole", summary%meshes_whole)
       call archive%item("meshes_patched", summary%meshes_patched)
-      n = -1_lk
-      if (allocated(summary%dofs)) n = size(summary%dofs, kind=lk)
-      call archive%count("dofs", n)
+      call archive%extent("dofs", summary%dofs, n)
       if (archive%is_loading) then
          if (allocated(summary%dofs)) deallocate (summary%dofs)
          if (n >= 0_lk) allocate (summary%dofs(n))

@@ -1,7 +1,7 @@
 !> Slip events in an archive (base_archive).
 submodule(report_slip) report_slip_archive
    use, intrinsic :: iso_c_binding, only: c_loc
-   use base_kinds, only: lk
+   use base_kinds, only: ik, lk
    implicit none(type, external)
 
 contains
@@ -15,17 +15,13 @@ contains
       call archive%item("least_slip", self%least_slip)
       call archive%item("seismic_rate", self%seismic_rate)
       call archive%item("n", self%n)
-      n = -1_lk
-      if (allocated(self%news)) n = size(self%news, kind=lk)
-      call archive%count("news", n)
+      call archive%extent("news", self%news, n)
       if (archive%is_loading) then
          if (allocated(self%news)) deallocate (self%news)
          if (n >= 0_lk) allocate (self%news(n))
       end if
       if (n > 0_lk) call archive%plain("news", c_loc(self%news), n*storage_size(self%news)/8_lk)
-      n = -1_lk
-      if (allocated(self%live)) n = size(self%live, kind=lk)
-      call archive%count("live", n)
+      call archive%extent("live", self%live, n)
       if (archive%is_loading) then
          if (allocated(self%live)) deallocate (self%live)
          if (n >= 0_lk) allocate (self%live(n))
@@ -40,9 +36,7 @@ contains
             call archive%item("steps", live%steps)
          end associate
       end do
-      n = -1_lk
-      if (allocated(self%patch)) n = size(self%patch, kind=lk)
-      call archive%count("patch", n)
+      call archive%extent("patch", self%patch, n)
       if (archive%is_loading) then
          if (allocated(self%patch)) deallocate (self%patch)
          if (n >= 0_lk) allocate (self%patch(n))
@@ -55,9 +49,12 @@ contains
       type(archive_t), intent(inout) :: archive
       type(shear_t), intent(inout) :: shear
 
-      call archive%list("fracture", shear%fracture)
-      call archive%list("s", shear%s)
-      call archive%list("traction", shear%traction)
+      call archive%set_extent("shear", -1_ik)
+      call archive%list("fracture", shear%fracture, "shear ?; 1:fractures")
+      call archive%list("s", shear%s, "2, shear ?")
+      call archive%list("traction", shear%traction, "shear ?")
+      if (allocated(shear%fracture) .neqv. (allocated(shear%s) .and. allocated(shear%traction))) &
+         & call archive%set_fault("shear")
    end subroutine visit_shear
 
 end submodule report_slip_archive

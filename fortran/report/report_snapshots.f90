@@ -444,6 +444,10 @@ contains
             call archive%item("n_files", collection%n_files)
             call archive%item("last", collection%last)
             call collection%entries%visit(archive)
+            if (min(collection%n_files, self%n_written) < 0 .or. &
+                max(collection%n_files, self%n_written) > collection%entries%length) then
+               if (i == 1) call archive%set_fault("n_written")
+            end if
             if (archive%is_loading) collection%written = 0
          end associate
       end do

@@ -113,6 +113,9 @@ contains
       type(archive_t), intent(inout) :: archive
 
       call archive%item("length", self%length)
+      if (archive%is_loading .and. self%length /= len(self%storage, kind=lk)) then
+         call archive%set_fault("length")
+      end if
       self%stored = self%length
    end subroutine visit_length
 
@@ -124,7 +127,9 @@ contains
 
       if (.not. archive%is_loading .and. self%stored > 0_lk) text = self%storage(:self%stored)
       call archive%list("text", text)
-      if (archive%is_loading .and. allocated(text)) call move_alloc(text, self%storage)
+      if (.not. archive%is_loading) return
+      if (.not. allocated(text)) text = ""
+      call move_alloc(text, self%storage)
    end subroutine visit_text
 
    !> Write the text as a file.

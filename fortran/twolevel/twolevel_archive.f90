@@ -2,7 +2,7 @@
 module twolevel_archive
    use, intrinsic :: iso_c_binding, only: c_loc
    use base_archive, only: archive_t
-   use base_kinds, only: lk
+   use base_kinds, only: ik, lk
    use coarse_archive, only: visit_state
    use contact_archive, only: visit_laws
    use fine_archive, only: visit_contact, visit_fine_mesh
@@ -30,11 +30,11 @@ contains
       call archive%enter(name)
       call visit_state(archive, "coarse", now%coarse)
       call visit_network(archive, "coarse_network", now%coarse_network)
-      call archive%list("grown", now%grown)
+      call archive%list("grown", now%grown, "grown ?; 1:fcells")
       call archive%item("has_new_mesh", now%has_new_mesh)
       call archive%item("undrained", now%undrained)
       call visit_segments(archive, "segment", now%segment)
-      call archive%list("active", now%active)
+      call archive%list("active", now%active, "tips ?")
       call visit_interaction(archive, "interaction", now%interaction)
       call visit_groups(archive, "groups", now%groups)
       call visit_windows_state(archive, "windows", now%windows)
@@ -42,8 +42,8 @@ contains
       call visit_trend(archive, "trend", now%trend)
       call now%stated_errors%visit(archive)
       call archive%plain("fluid", c_loc(now%fluid), storage_size(now%fluid)/8_lk)
-      call archive%list("given", now%given)
-      call archive%list("at_limit", now%at_limit)
+      call archive%list("given", now%given, "places ?")
+      call archive%list("at_limit", now%at_limit, "controlled ?")
       call archive%leave()
    end subroutine visit_levels
 
@@ -54,31 +54,28 @@ contains
       integer(lk) :: i, m, n
 
       call archive%enter(name)
-      n = -1_lk
-      if (allocated(known%tip)) n = size(known%tip, kind=lk)
-      call archive%count("tip", n)
+      call archive%extent("tip", known%tip, n, "tips ?")
       if (archive%is_loading) then
          if (allocated(known%tip)) deallocate (known%tip)
          if (n >= 0_lk) allocate (known%tip(n))
       end if
       if (n > 0_lk) call archive%plain("tip", c_loc(known%tip), n*storage_size(known%tip)/8_lk)
-      n = -1_lk
-      if (allocated(known%history)) n = size(known%history, kind=lk)
-      call archive%count("history", n)
+      call archive%extent("history", known%history, n, "history_"//name//" ?")
       if (archive%is_loading) then
          if (allocated(known%history)) deallocate (known%history)
          if (n >= 0_lk) allocate (known%history(n))
       end if
       do i = 1_lk, n
          associate (history => known%history(i))
-            m = merge(1_lk, -1_lk, allocated(history%contact))
-            call archive%count("contact", m)
-            if (archive%is_loading .and. m > 0_lk) allocate (history%contact)
-            if (m > 0_lk) call visit_contact(archive, "contact", history%contact)
             m = merge(1_lk, -1_lk, allocated(history%mesh))
             call archive%count("mesh", m)
             if (archive%is_loading .and. m > 0_lk) allocate (history%mesh)
             if (m > 0_lk) call visit_fine_mesh(archive, "mesh", history%mesh)
+            if (m < 0_lk) call archive%set_extent("fine_faces", -1_ik)  ! that of the window
+            m = merge(1_lk, -1_lk, allocated(history%contact))
+            call archive%count("contact", m)
+            if (archive%is_loading .and. m > 0_lk) allocate (history%contact)
+            if (m > 0_lk) call visit_contact(archive, "contact", history%contact)
          end associate
       end do
       call archive%leave()
@@ -91,11 +88,11 @@ contains
 
       call archive%enter(name)
       call archive%item("dt", trend%dt)
-      call archive%list("rock", trend%rock)
-      call archive%list("fracture", trend%fracture)
-      call archive%list("jump", trend%jump)
-      call archive%list("knows_rock", trend%knows_rock)
-      call archive%list("knows_fracture", trend%knows_fracture)
+      call archive%list("rock", trend%rock, "cells ?")
+      call archive%list("fracture", trend%fracture, "fcells ?")
+      call archive%list("jump", trend%jump, "2, fcells ?")
+      call archive%list("knows_rock", trend%knows_rock, "cells ?")
+      call archive%list("knows_fracture", trend%knows_fracture, "fcells ?")
       call archive%item("pressure", trend%pressure)
       call archive%item("jumps", trend%jumps)
       call archive%item("least_pressure", trend%least_pressure)
@@ -143,9 +140,9 @@ contains
       call archive%item("of_length", errors%of_length)
       call archive%item("of_slip", errors%of_slip)
       call archive%item("of_opening", errors%of_opening)
-      call archive%list("of_wells", errors%of_wells)
-      call archive%list("flows", errors%flows)
-      call archive%list("risen", errors%risen)
+      call archive%list("of_wells", errors%of_wells, "all_wells ?")
+      call archive%list("flows", errors%flows, "all_wells ?")
+      call archive%list("risen", errors%risen, "all_wells ?")
       call archive%item("of_rock", errors%of_rock)
       call archive%plain("step", c_loc(errors%step), storage_size(errors%step)/8_lk)
       call visit_followed(archive, "quantities", errors%quantities)
@@ -160,20 +157,22 @@ contains
       type(archive_t), intent(inout) :: archive
       character(len=*), intent(in) :: name
       type(followed_t), intent(inout) :: followed
+      character(len=:), allocatable :: of
 
+      of = "followed_"//name//" ?"
       call archive%enter(name)
       call archive%item("time", followed%time)
       call archive%item("step", followed%step)
       call archive%item("n_steps", followed%n_steps)
       call archive%item("squares", followed%squares)
-      call archive%list("first", followed%first)
-      call archive%list("value", followed%value)
-      call archive%list("rate", followed%rate)
-      call archive%list("largest", followed%largest)
-      call archive%list("of_step", followed%of_step)
-      call archive%list("sum", followed%sum)
-      call archive%list("linear", followed%linear)
-      call archive%list("error", followed%error)
+      call archive%list("first", followed%first, of)
+      call archive%list("value", followed%value, of)
+      call archive%list("rate", followed%rate, of)
+      call archive%list("largest", followed%largest, of)
+      call archive%list("of_step", followed%of_step, of)
+      call archive%list("sum", followed%sum, of)
+      call archive%list("linear", followed%linear, of)
+      call archive%list("error", followed%error, of)
       call archive%leave()
    end subroutine visit_followed
 
@@ -183,13 +182,13 @@ contains
       type(coarse_values_t), intent(inout) :: values
 
       call archive%enter(name)
-      call archive%list("of", values%of)
-      call archive%list("nodal", values%nodal)
-      call archive%list("displacement", values%displacement)
-      call archive%list("gradient", values%gradient)
+      call archive%list("of", values%of, "3, blocks ?")
+      call archive%list("nodal", values%nodal, "3, nodes ?")
+      call archive%list("displacement", values%displacement, "2, nodes ?")
+      call archive%list("gradient", values%gradient, "2, 2, nodes ?")
       call visit_laws(archive, "law", values%law)
-      call archive%list("is_grown", values%is_grown)
-      call archive%list("viscous", values%viscous)
+      call archive%list("is_grown", values%is_grown, "fcells ?")
+      call archive%list("viscous", values%viscous, "fcells ?")
       call archive%item("undrained", values%undrained)
       call archive%leave()
    end subroutine visit_values

@@ -251,7 +251,7 @@ contains
 
       call archive%item("length", self%length)
       call archive%item("pressure", self%pressure)
-      call archive%list("tip", self%tip)
+      call archive%list("tip", self%tip, "tips ?")
       call archive%item("by_leads", self%by_leads)
       call archive%item("has_grown", self%has_grown)
       call archive%item("may_have_grown", self%may_have_grown)

@@ -282,19 +282,17 @@ contains
       type(archive_t), intent(inout) :: archive
       integer(lk) :: n
 
-      n = -1_lk
-      if (allocated(self%approach)) n = size(self%approach, kind=lk)
-      call archive%count("approach", n)
+      call archive%extent("approach", self%approach, n, "tips ?")
       if (archive%is_loading) then
          if (allocated(self%approach)) deallocate (self%approach)
          if (n >= 0_lk) allocate (self%approach(n))
       end if
       if (n > 0_lk) call archive%plain("approach", c_loc(self%approach), &
          & n*storage_size(self%approach)/8_lk)
-      call archive%list("is_uncertain", self%is_uncertain)
+      call archive%list("is_uncertain", self%is_uncertain, "tips ?")
       call archive%item("was_bifurcation", self%was_bifurcation)
-      call archive%list("relation", self%relation)
-      call archive%list("has_separated", self%has_separated)
+      call archive%list("relation", self%relation, "tips, tips ?")
+      call archive%list("has_separated", self%has_separated, "tips ?")
       call self%jumps%visit(archive)
    end subroutine visit
 

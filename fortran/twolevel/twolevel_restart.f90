@@ -48,6 +48,13 @@ contains
          end if
       end if
       call visit_simulation(archive, self)
+      call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
+      associate (mesh => self%problem%mesh)
+         call archive%set_extent("cells", mesh%n_cells)
+         call archive%set_extent("nodes", mesh%n_nodes)
+         call archive%set_extent("fcells", mesh%fracture%n_cells)
+         call archive%set_extent("mesh_tips", mesh%fracture%n_tips)
+      end associate
       call visit_levels(archive, "now", self%now)
       call visit_state(archive, "before", self%before)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
@@ -87,16 +94,23 @@ contains
 
       call archive%enter("problem")
       associate (problem => self%problem, model => self%problem%model)
-         call visit_mesher_and_mesh(archive, "mesh", problem%mesher, problem%mesh)
          call archive%item("first_step", model%first_step)
          call visit_cells(archive, "cells", model%cells)
-         call archive%list("share", problem%share)
+         call archive%list("share", problem%share, "fcells, entries ?")
          if (allocated(archive%fault)) return
          if (archive%is_loading) then
             call model%set_mesh(problem%mesh, self%scene, timers, error)
             if (allocated(error)) return
             call problem%feed_wells(self%scene, error)
             if (allocated(error)) return
+            call archive%compare_extent("blocks", model%regions%n_blocks)
+            call archive%compare_extent("corners", model%regions%traction_count())
+            call archive%compare_extent("pairs", size(model%connections, 2, kind=ik))
+            call archive%compare_extent("branches", model%joints%branch_count())
+            call archive%compare_extent("joints", model%joints%n)
+            call archive%compare_extent("wells", model%wells%n_all)
+            call archive%compare_extent("rock_wells", model%rock_wells%n)
+            if (allocated(archive%fault)) return
          end if
          call visit_step_values(archive, "step", model)
          call visit_factors(archive, "factors", model, problem%mesh, error)
@@ -117,12 +131,10 @@ contains
       integer(lk) :: n, w
 
       call archive%enter(name)
-      n = -1_lk
-      if (allocated(windows%slot)) n = size(windows%slot, kind=lk)
-      call archive%count("slot", n)
+      call archive%extent("slot", windows%slot, n, "history_"//name//" ?")
       if (archive%is_loading .and. n >= 0_lk) allocate (windows%slot(n))
-      call archive%list("window_of", windows%window_of)
-      call archive%list("resistance", windows%resistance)
+      call archive%list("window_of", windows%window_of, "tips ?")
+      call archive%list("resistance", windows%resistance, "tips ?")
       call archive%item("is_beside_body", windows%is_beside_body)
       if (archive%is_loading .and. allocated(windows%window_of)) then
          if (any(windows%window_of < 1 .or. windows%window_of > n)) call archive%set_fault(name)

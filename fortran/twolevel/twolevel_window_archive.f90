@@ -1,7 +1,7 @@
 !> A window in an archive (base_archive): its meshes are stored, its model is made again from them.
 submodule(twolevel_window) twolevel_window_archive
    use base_kinds, only: lk
-   use fine_archive, only: visit_conditions, visit_loads
+   use fine_archive, only: set_fine_extents, visit_conditions, visit_loads
    use mesh_archive, only: visit_mesher, visit_mesher_and_mesh, visit_network
    implicit none(type, external)
 
@@ -18,7 +18,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call archive%enter("window")
-      call archive%list("serves", self%serves)
+      call archive%set_extent("serves", -1_ik)
+      call archive%set_extent("served", -1_ik)
+      call archive%list("serves", self%serves, "serves ?")
       if (archive%is_loading .and. allocated(self%serves)) then
          if (any(self%serves < 1 .or. self%serves > size(tips))) call archive%set_fault("serves")
       end if
@@ -51,13 +53,14 @@ contains
          if (allocated(self%made)) deallocate (self%made)
          if (n > 0_lk) allocate (self%made)
       end if
-      if (n < 0_lk) return
+      if (.not. allocated(self%made)) return
       associate (made => self%made)
          call visit_network(archive, "network", made%network)
-         call archive%list("kept", made%kept)
-         call archive%list("place", made%place)
-         call archive%list("is_free", made%is_free)
-         call archive%list("has_focus", made%has_focus)
+         call archive%list("kept", made%kept, "kept ?; 1:vertices")
+         call archive%set_extent("kept", -1_ik)
+         call archive%list("place", made%place, "2, tips")
+         call archive%list("is_free", made%is_free, "tips")
+         call archive%list("has_focus", made%has_focus, "tips")
          call archive%item("is_projected", made%is_projected)
       end associate
    end subroutine visit_made
@@ -78,25 +81,26 @@ contains
       call archive%item("undrained", undrained)
       call archive%item("has_stiffness", has_stiffness)
       call archive%item("is_ready", is_ready)
+      if (allocated(archive%fault)) return
       if (archive%is_loading) then
          self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
          call self%set_up(scene, tips, error)
          if (.not. allocated(error) .and. undrained) call self%set_rock(scene, undrained, error)
          if (allocated(error)) return
       end if
-      call archive%list("at", self%at)
+      call set_fine_extents(archive, self%model%mesh)
+      call archive%list("at", self%at, "served ?; 0:own_tips")
       call visit_loads(archive, "loads", self%loads)
-      call archive%list("displacement", self%displacement)
+      call archive%list("displacement", self%displacement, "2, fine_nodes ?")
       call visit_conditions(archive, "conditions", self%model%conditions)
+      if (allocated(archive%fault)) return
       if (archive%is_loading .and. is_ready) then
          call self%model%prepare(self%model%conditions, error, &
                                  self%sides%held_edge(self%model%mesh))
          if (allocated(error)) return
       end if
       if (.not. has_stiffness .and. archive%is_loading) deallocate (self%model%stiffness)
-      n = -1_lk
-      if (allocated(self%served)) n = size(self%served, kind=lk)
-      call archive%count("served", n)
+      call archive%extent("served", self%served, n, "served ?")
       if (archive%is_loading .and. n >= 0_lk) allocate (self%served(n))
       if (n >= 0_lk) call visit_served(self, archive, error)
    end subroutine visit_model
