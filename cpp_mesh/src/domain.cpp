@@ -72,6 +72,8 @@ void Domain::find_core() {
 
 // Edges meet only in the corners that they share, and run counter-clockwise.
 void Domain::check() const {
+    if (corners_.size() < 3 || edge_sides_.size() != corners_.size())
+        throw MeshError({FaultKind::number, {}, {}, "corners and sides do not fit each other"});
     const double gap = std::max(rounding_, least_gap * box_.diagonal());
     for (int k = 0; k < edge_count(); ++k) {
         if (edge_sides_[k] < 1)

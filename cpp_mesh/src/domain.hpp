@@ -52,6 +52,8 @@ public:
     // Does the open segment between two points of the body, or of its boundary, leave the body?
     bool is_left_by(Vec2 a, Vec2 b) const;
 
+    void check() const;
+
     // Every member in turn, to store or load it.
     template <typename Archive> void visit(Archive& archive) {
         archive(box_, is_rectangle_, corners_, edge_sides_, area_, core_centre_, core_radius_,
@@ -62,7 +64,6 @@ public:
     int corner_beside(Vec2 a, Vec2 b) const;
 
 private:
-    void check() const;
     void find_core();
     bool contains(Vec2 p) const;
 

@@ -21,6 +21,8 @@ contains
       call archive%enter("body")
       call visit_mesher_and_mesh(archive, "mesh", self%mesher, self%mesh)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
+         call archive%compare_range("mesh", self%mesh%face_side, "; 0:sides")
+         if (allocated(archive%fault)) return
          call self%set_up(scene, start, network, timers, error)
          if (allocated(error)) return
       end if

@@ -10,7 +10,7 @@ module mesh_archive
    use mesh_builder, only: mesher_t
    use mesh_c_arrays, only: copy_mesh
    use mesh_c_binding, only: cm_destroy, cm_load, cm_store
-   use mesh_types, only: fracture_mesh_t, mesh_t, network_t
+   use mesh_types, only: fracture_mesh_t, mesh_t, network_t, point_interior
    implicit none(type, external)
    private
 
@@ -189,6 +189,8 @@ contains
       if (.not. is_complete) return
       associate (first => f%point_cells%first, item => f%point_cells%item)
          is_complete = size(first) == f%n_points + 1 .and. within(f%tip_end, 2)
+         if (is_complete) is_complete = all(f%point_kind /= point_interior .or. &
+                                            first(2:) - first(:f%n_points) == 2)
          if (is_complete) is_complete = within(item, f%n_cells) .and. first(1) == 1 .and. &
                                         first(size(first)) == size(item) + 1 .and. &
                                         all(first(2:) >= first(:size(first) - 1))

@@ -12,6 +12,7 @@ module report_restart
    use mesh_archive, only: visit_network
    use report_rows, only: summary_t
    use report_simulation, only: simulation_t
+   use scene_outline, only: sides_of_scene
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -58,6 +59,7 @@ contains
       if (allocated(simulation%start%first)) call archive%set_extent("fractures", &
                                                      size(simulation%start%first, kind=ik) - 1)
       call visit_network(archive, "network_before", simulation%network_before)
+      call archive%set_extent("sides", size(sides_of_scene(simulation%scene), kind=ik))
       call visit_front(archive, "front", simulation%front_state_t)
       if (allocated(simulation%network%xy)) call archive%set_extent("vertices", &
                                                         size(simulation%network%xy, 2, kind=ik))

@@ -50,6 +50,9 @@ contains
       call visit_simulation(archive, self)
       call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
       associate (mesh => self%problem%mesh)
+         if (archive%is_loading .and. .not. allocated(archive%fault)) then
+            call archive%compare_range("mesh", mesh%face_side, "; 0:sides")
+         end if
          call archive%set_extent("cells", mesh%n_cells)
          call archive%set_extent("nodes", mesh%n_nodes)
          call archive%set_extent("fcells", mesh%fracture%n_cells)
