@@ -1,9 +1,13 @@
 !> Relative errors in space of the pressures of wells and fractures.
 !!
-!! - Where the fluid of a fracture leaks off: that of the layers next to the faces, 3 % where chains
-!!   resolve them (coarse_layers; measured: 1.2 to 2.5 %), else by the distance sqrt(c t) of
-!!   diffusion since the last switch over the size of a cell, z: sqrt(pi)/(2 z), and below 0.15/z**2
-!!   (measured: 0.07/z**2).
+!! - Where the fluid of a fracture leaks off: that of the layers next to the faces. Where chains
+!!   resolve them (coarse_layers) it follows from the chain (coarse_chain, uptake_error), with 10 %
+!!   for what the cells beyond it take up; at least 3 % while tips grow, as layers have all ages.
+!!   Else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell, z:
+!!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
+!! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
+!!   latter from place to place, and a cell has its mean. Error: twice the mean difference of the
+!!   fracture's cells from their mean. It falls as the rock drains, 1/(1 + 4 c t/h**2).
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -23,29 +27,45 @@ module twolevel_pressure_errors
    implicit none(type, external)
    private
 
-   public :: have_given_pressure, least, mean_pressures, of_layers, of_steps, of_well_in_rock
-   public :: unresolved_depth
+   public :: fracture_means, have_given_pressure, least, of_first_pressure, of_layers, of_steps, &
+             of_well_in_rock, undrained_share, unresolved_depth
 
-   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
+   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
+   real(rk), parameter :: of_rest = 0.1_rk  !< of what the cells beyond a chain take up [-]
+   real(rk), parameter :: least_flow = 5.0e-4_rk  !< of the flow round tips and along fractures [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
    !> relative errors of a well in the rock: of the cell's radius; of the pressure by the rings [-]
    real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
    !> the same by a side of the body, times the cell's area over its squared distance
    real(rk), parameter :: by_side = 0.45_rk
+   real(rk), parameter :: of_spread = 2.0_rk  !< error of first pressures, over their spread [-]
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains
 
    !> Relative error of the pressure and of the flux where fluid leaks off for a time [-].
-   real(rk) function of_layers(problem, time) result(error)
+   real(rk) function of_layers(problem, time, grows) result(error)
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: time  !< [s]
+      logical, intent(in) :: grows  !< fractures may grow
       real(rk) :: ratio
+      integer(ik) :: l, n
 
-      error = of_chain
-      if (problem%model%layers%n > 0) return
-      ratio = unresolved_depth(problem, time)
-      error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
+      error = 0.0_rk
+      if (.not. time > 0.0_rk) return
+      if (problem%model%layers%n > 0) then
+         n = 0
+         do l = 1, problem%model%layers%n
+            if (problem%model%layers%fracture_cell(l) == 0) cycle
+            n = n + 1
+            error = error + problem%model%layers%chain(l)%uptake_error(time, of_rest)
+         end do
+         error = least_flow + error/max(1, n)
+         if (grows) error = max(error, of_chain)
+      else
+         ratio = unresolved_depth(problem, time)
+         error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
+      end if
    end function of_layers
 
    !> Remaining error in time of a step of the pressures at faces and wells, as the layers
@@ -141,26 +161,57 @@ contains
       end associate
    end function distance_of_side
 
-   !> Mean pressure of each fracture [Pa].
-   function mean_pressures(scene, problem, state) result(mean)
+   !> Means of the values of the cells of each fracture.
+   pure function fracture_means(scene, problem, values) result(mean)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk), allocatable :: mean(:)
-      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
+      real(rk), intent(in) :: values(:)  !< (fracture cells)
+      real(rk) :: mean(size(scene%fractures))
       integer(ik) :: f
 
+      mean = 0.0_rk
       associate (fracture => problem%mesh%fracture)
-         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
-         pressure = problem%fracture_pressure(state)
-         allocate (mean(size(scene%fractures)), source=0.0_rk)
          do f = 1, size(mean, kind=ik)
-            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
-               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
+            associate (own => merge(fracture%cell_s(2, :) - fracture%cell_s(1, :), 0.0_rk, &
+                                    fracture%cell_fracture == f))
+               if (any(own > 0.0_rk)) mean(f) = sum(values*own)/sum(own)
             end associate
          end do
       end associate
-   end function mean_pressures
+   end function fracture_means
+
+   !> Error of the first pressure of each fracture [Pa].
+   function of_first_pressure(scene, problem, state) result(error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: error(size(scene%fractures))
+
+      associate (p => problem%fracture_pressure(state))
+         error = fracture_means(scene, problem, p)
+         error = of_spread*fracture_means(scene, problem, &
+                                          abs(p - error(problem%mesh%fracture%cell_fracture)))
+      end associate
+   end function of_first_pressure
+
+   !> Share of these errors that is left after a time [-].
+   function undrained_share(scene, problem, time) result(share)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: share(size(scene%fractures))
+      real(rk) :: drained(problem%mesh%fracture%n_cells)
+      integer(ik) :: i
+
+      associate (fracture => problem%mesh%fracture)
+         do i = 1, fracture%n_cells
+            drained(i) = diffusivity(problem, problem%mesh%face_cells(1, fracture%cell_faces(1, i)))
+         end do
+         drained = 4.0_rk*time*drained/max((fracture%cell_s(2, :) - fracture%cell_s(1, :))**2, &
+                                           tiny(1.0_rk))
+      end associate
+      share = fracture_means(scene, problem, 1.0_rk/(1.0_rk + drained))
+   end function undrained_share
 
    !> Whether a well keeps a pressure in each fracture.
    pure function have_given_pressure(scene) result(have)
