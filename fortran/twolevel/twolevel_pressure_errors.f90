@@ -1,13 +1,13 @@
 !> Relative errors in space of the pressures of wells and fractures.
 !!
 !! - Where the fluid of a fracture leaks off: that of the layers next to the faces. Where chains
-!!   resolve them (coarse_layers) it follows from the chain (coarse_chain, uptake_error), with 10 %
+!!   resolve them (coarse_layers) it follows from the chain (coarse_chain, uptake_error), with 4 %
 !!   for what the cells beyond it take up; at least 3 % while tips grow, as layers have all ages.
 !!   Else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell, z:
 !!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
 !! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
-!!   latter from place to place, and a cell has its mean. Error: twice the mean difference of the
-!!   fracture's cells from their mean. It falls as the rock drains, 1/(1 + 4 c t/h**2).
+!!   latter from place to place, and a cell has its mean. Error: 1.8 times the mean difference of
+!!   the fracture's cells from their mean. It falls as the rock drains, 1/(1 + 16 c t/h**2).
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -31,14 +31,14 @@ module twolevel_pressure_errors
              of_well_in_rock, undrained_share, unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
-   real(rk), parameter :: of_rest = 0.1_rk  !< of what the cells beyond a chain take up [-]
+   real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
    real(rk), parameter :: least_flow = 5.0e-4_rk  !< of the flow round tips and along fractures [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
    !> relative errors of a well in the rock: of the cell's radius; of the pressure by the rings [-]
    real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
    !> the same by a side of the body, times the cell's area over its squared distance
    real(rk), parameter :: by_side = 0.45_rk
-   real(rk), parameter :: of_spread = 2.0_rk  !< error of first pressures, over their spread [-]
+   real(rk), parameter :: of_spread = 1.8_rk  !< error of first pressures, over their spread [-]
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains
@@ -207,7 +207,7 @@ contains
          do i = 1, fracture%n_cells
             drained(i) = diffusivity(problem, problem%mesh%face_cells(1, fracture%cell_faces(1, i)))
          end do
-         drained = 4.0_rk*time*drained/max((fracture%cell_s(2, :) - fracture%cell_s(1, :))**2, &
+         drained = 16.0_rk*time*drained/max((fracture%cell_s(2, :) - fracture%cell_s(1, :))**2, &
                                            tiny(1.0_rk))
       end associate
       share = fracture_means(scene, problem, 1.0_rk/(1.0_rk + drained))

@@ -41,6 +41,8 @@ module twolevel_value_errors
 
    !> relative error of pressures by the solver: the limit of its forward error bound [-]
    real(rk), parameter :: of_solution = 1.0e-6_rk
+   !> error of a fracture's compliance, over the relative error of its volume [-]
+   real(rk), parameter :: of_compliance = 0.35_rk
    real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
 
    !> What the errors of a step need besides its row.
@@ -183,7 +185,8 @@ contains
          associate (s => problem%mesh%fracture%cell_s, fluid => abs(row%leakoff) &
                     + abs(row%fracture_fluid))
             self%of_flow = self%diffusing*layers
-            if (fluid > 0.0_rk) self%of_flow = self%of_flow + mean_share(jumps, s(2, :) - s(1, :)) &
+            if (fluid > 0.0_rk) self%of_flow = self%of_flow &
+                            + of_compliance*mean_share(jumps, s(2, :) - s(1, :)) &
                             *min(1.0_rk, abs(row%fracture_volume - self%quantities%first(volume)) &
                                  /fluid)
          end associate
