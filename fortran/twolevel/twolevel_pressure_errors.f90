@@ -27,8 +27,9 @@ module twolevel_pressure_errors
    implicit none(type, external)
    private
 
-   public :: fracture_means, have_given_pressure, least, of_first_pressure, of_layers, of_steps, &
-             of_well_in_rock, undrained_share, unresolved_depth
+   public :: fracture_means, have_given_pressure, leaking_share, least, mean_in_rock, &
+             mean_pressure, of_first_pressure, of_layers, of_steps, of_well_in_rock, &
+             undrained_share, unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
    real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
@@ -84,6 +85,18 @@ contains
          left = 1.0_rk - 0.75_rk*sum([(layers%chain(l)%scheme(2)%share, l=1, layers%n)])/layers%n
       end associate
    end function of_steps
+
+   !> Share of the error in time of a pressure at given rates: it is that of leak-off alone, since
+   !! the balance gives what the fractures hold. The shares of leak-off in the step and in all fluid
+   !! measure it; the safety factor is for earlier steps with more leak-off [-].
+   pure real(rk) function leaking_share(rates, of_all) result(share)
+      real(rk), intent(in) :: rates(2)  !< of leak-off and of the fluid in fractures [m2/s]
+      real(rk), intent(in) :: of_all  !< share of leak-off in the fluid so far [-]
+      real(rk), parameter :: safety = 3.0_rk
+
+      share = abs(rates(1))/max(sum(abs(rates)), tiny(1.0_rk))
+      share = min(1.0_rk, safety*max(share, of_all))
+   end function leaking_share
 
    !> Height of the cells next to the fractures over the distance of diffusion in a time, where no
    !! layer resolves it; 0 without fractures [-].
@@ -160,6 +173,24 @@ contains
          end do
       end associate
    end function distance_of_side
+
+   !> Mean pressure of the cells of the rock, less that in situ [Pa].
+   pure real(rk) function mean_in_rock(problem, state)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+
+      mean_in_rock = sum(state%unknowns(3, :problem%mesh%n_cells))/problem%mesh%n_cells
+   end function mean_in_rock
+
+   !> Mean pressure of the fractures [Pa].
+   pure real(rk) function mean_pressure(problem, state)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: length(problem%mesh%fracture%n_cells)
+
+      length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
+      mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
+   end function mean_pressure
 
    !> Means of the values of the cells of each fracture.
    pure function fracture_means(scene, problem, values) result(mean)

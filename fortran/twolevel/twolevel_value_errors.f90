@@ -23,9 +23,9 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, least, &
-                                       of_first_pressure, of_layers, of_steps, of_well_in_rock, &
-                                       undrained_share
+   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, leaking_share, least, &
+                                       mean_in_rock, mean_pressure, of_first_pressure, of_layers, &
+                                       of_steps, of_well_in_rock, undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -42,7 +42,7 @@ module twolevel_value_errors
    !> relative error of pressures by the solver: the limit of its forward error bound [-]
    real(rk), parameter :: of_solution = 1.0e-6_rk
    !> error of a fracture's compliance, over the relative error of its volume [-]
-   real(rk), parameter :: of_compliance = 0.35_rk
+   real(rk), parameter :: of_compliance = 0.5_rk
    real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
 
    !> What the errors of a step need besides its row.
@@ -64,7 +64,6 @@ module twolevel_value_errors
       real(rk) :: of_flow = 0.0_rk  !< the same of a flow that is not prescribed [-]
       real(rk) :: of_drive = 0.0_rk  !< the same, by the first pressure of the rock [-]
       real(rk) :: of_held = 0.0_rk  !< in space, of the volume of the fractures [m2]
-      real(rk) :: rise = 0.0_rk  !< of the mean pressure in the fractures [Pa]
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
       real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
@@ -124,24 +123,6 @@ contains
                                          zero, zero])
    end subroutine begin
 
-   !> Mean pressure of the cells of the rock, less that in situ [Pa].
-   pure real(rk) function mean_in_rock(problem, state)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-
-      mean_in_rock = sum(state%unknowns(3, :problem%mesh%n_cells))/problem%mesh%n_cells
-   end function mean_in_rock
-
-   !> Mean pressure of the fractures [Pa].
-   pure real(rk) function mean_pressure(problem, state)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk) :: length(problem%mesh%fracture%n_cells)
-
-      length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
-      mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
-   end function mean_pressure
-
    !> Errors of the row of an accepted state.
    subroutine note_state(self, scene, problem, state, row, stated, facts)
       class(value_errors_t), intent(inout) :: self
@@ -168,7 +149,11 @@ contains
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
       self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
-      if (all(scene%injections%has_given_flow())) call note_share_of_leakoff(self, problem)
+      if (all(scene%injections%has_given_flow())) then
+         self%step%left = of_steps(problem)*leaking_share(self%quantities%rate([leakoff, &
+                                                                fracture_fluid]), self%diffusing)
+         self%step%diffusing = 1.0_rk
+      end if
       call self%fractures%follow(self%step, fracture_means(scene, problem, &
                                                            problem%fracture_pressure(state)))
       self%row = history_errors_t()
@@ -186,19 +171,15 @@ contains
                     + abs(row%fracture_fluid))
             self%of_flow = self%diffusing*layers
             if (fluid > 0.0_rk) self%of_flow = self%of_flow &
-                            + of_compliance*mean_share(jumps, s(2, :) - s(1, :)) &
+                            + of_compliance*jumps%mean_share(s(2, :) - s(1, :)) &
                             *min(1.0_rk, abs(row%fracture_volume - self%quantities%first(volume)) &
                                  /fluid)
          end associate
-         associate (p => self%fractures)
-            self%of_drive = maxval(min(1.0_rk, self%undrained(scene, problem) &
-                                   /max(abs(p%value - p%first), tiny(1.0_rk))), &
-                                   mask=have_given_pressure(scene))
-            self%of_drive = max(0.0_rk, self%of_drive)
-         end associate
+         self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
+                                            /max(self%fractures%changes(), tiny(1.0_rk))), &
+                                            mask=have_given_pressure(scene)))
          self%of_pressure = 0.0_rk
          if (facts%has_given_rates) self%of_pressure = self%of_flow
-         self%rise = abs(values(pressure) - self%quantities%first(pressure))
          call self%jumps_of(scene, problem, state, jumps)
          if (self%quantities%n_steps == 0) self%of_start = jumps%volume
          call note_jumps(self, problem, jumps, row)
@@ -206,34 +187,6 @@ contains
       call note_fluid(self, scene, problem, row, facts, layers)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
-
-   !> At given rates the pressure has an error in time by leak-off alone: what the fractures hold
-   !! follows from the balance. It is measured by the share of leak-off, in the step or in all.
-   subroutine note_share_of_leakoff(self, problem)
-      class(value_errors_t), intent(inout) :: self
-      type(coarse_problem_t), intent(in) :: problem
-      real(rk), parameter :: safety = 3.0_rk
-      real(rk) :: share
-
-      associate (rate => abs(self%quantities%rate([leakoff, fracture_fluid])))
-         share = rate(1)/max(sum(rate), tiny(1.0_rk))
-      end associate
-      self%step%left = min(1.0_rk, safety*max(share, self%diffusing))*of_steps(problem)
-      self%step%diffusing = 1.0_rk
-   end subroutine note_share_of_leakoff
-
-   !> Mean relative error of the sums over zones, weighted by the jumps [-].
-   pure real(rk) function mean_share(jumps, length) result(share)
-      type(jumps_in_space_t), intent(in) :: jumps
-      real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
-      real(rk) :: total
-
-      associate (n => length*abs(jumps%n), t => length*jumps%t)
-         total = sum(n + t)
-         share = 0.0_rk
-         if (total > 0.0_rk) share = sum(n*jumps%opening%of_sum + t*jumps%slip%of_sum)/total
-      end associate
-   end function mean_share
 
    !> Errors of slip, opening, volume and moment.
    subroutine note_jumps(self, problem, jumps, row)
@@ -363,10 +316,8 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       real(rk), allocatable :: error(:)
 
-      associate (p => self%fractures)
-         error = merge(0.0_rk, self%of_flow*abs(p%value - p%first) &
-                       + self%undrained(scene, problem), have_given_pressure(scene))
-      end associate
+      error = merge(0.0_rk, self%of_flow*self%fractures%changes() &
+                    + self%undrained(scene, problem), have_given_pressure(scene))
       error = error(problem%mesh%fracture%cell_fracture)
    end function in_space
 
@@ -407,7 +358,9 @@ contains
 
       pressure_error = 0.0_rk
       if (.not. allocated(self%quantities%error)) return
-      pressure_error = self%quantities%error(pressure) + self%of_pressure*self%rise
+      associate (changes => self%quantities%changes())
+         pressure_error = self%quantities%error(pressure) + self%of_pressure*changes(pressure)
+      end associate
    end function pressure_error
 
    !> Relative error in time of pressures in the rock [-].
@@ -436,20 +389,20 @@ contains
       type(well_row_t), intent(inout) :: rows(:)
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
-      real(rk) :: by_length, first(size(scene%fractures)), flow, share
+      real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, share
       integer :: w
 
       if (size(rows) == 0) return
       call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
       by_length = effect_of_length(stated, facts)
+      changes = self%wells%changes()
       first = self%undrained(scene, problem)
       do w = 1, size(rows)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
             share = self%of_pressure
             if (well%fracture == 0) share = self%of_rock
-            error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
-                             + of_solution*abs(row%pressure)
+            error%pressure = time(w) + share*changes(w) + by_length + of_solution*abs(row%pressure)
             if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
             if (.not. well%has_given_flow()) then
                flow = max(share, self%of_flow) + self%of_drive
