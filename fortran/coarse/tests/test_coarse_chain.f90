@@ -72,37 +72,35 @@ contains
    !! resistance of the chain).
    subroutine test_uptake_error(first_volume)
       real(rk), intent(in) :: first_volume  !< [m]
-      real(rk), parameter :: of_rest = 1.0e-3_rk
       type(chain_t) :: chain
+      real(rk) :: depth  ! sqrt(c t) [m]
       integer :: k
 
       chain = new_chain(thickness, first_volume, length, conductivity, storage)
       call checks%is_close(chain%uptake_error(first_volume**2/diffusivity, 0.0_rk), 0.11_rk, &
                            0.02_rk, "a layer as thick as the first volume")
       do k = 0, 4
-         associate (depth => min(0.3_rk*thickness, 3.5_rk*first_volume*2.0_rk**k))
-            call checks%is_true(chain%uptake_error(depth**2/diffusivity, 0.0_rk) < 0.005_rk, &
-                                "thin layers")
-            call checks%is_close(effect(depth)/of_rest, exp(-2.0_rk*thickness/depth) &
-                                 /(1.0_rk + (0.25_rk*depth/thickness)**2), 0.02_rk, &
-                                 "what lies beyond the chain")
-         end associate
+         depth = min(0.3_rk*thickness, 3.5_rk*first_volume*2.0_rk**k)
+         call checks%is_true(chain%uptake_error(depth**2/diffusivity, 0.0_rk) < 0.005_rk, &
+                             "thin layers")
+         call checks%is_close(effect(chain, depth), exp(-2.0_rk*thickness/depth) &
+                              /(1.0_rk + (0.25_rk*depth/thickness)**2), 0.02_rk, &
+                              "what lies beyond the chain")
       end do
-      call checks%is_close(effect(100.0_rk*thickness)/of_rest, 1.0_rk/(1.0_rk + 25.0_rk**2), &
+      call checks%is_close(effect(chain, 100.0_rk*thickness), 1.0_rk/(1.0_rk + 25.0_rk**2), &
                            0.03_rk/(1.0_rk + 25.0_rk**2), "thick layers")
-
-   contains
-
-      !> Effect of the error of the rest, for a layer of a depth [-].
-      real(rk) function effect(depth)
-         real(rk), intent(in) :: depth  !< sqrt(c t) [m]
-
-         associate (time => depth**2/diffusivity)
-            effect = chain%uptake_error(time, of_rest) - chain%uptake_error(time, 0.0_rk)
-         end associate
-      end function effect
-
    end subroutine test_uptake_error
+
+   !> Effect of the error of the rest for a layer of a depth, over this error [-].
+   real(rk) function effect(chain, depth)
+      type(chain_t), intent(in) :: chain
+      real(rk), intent(in) :: depth  !< sqrt(c t) [m]
+      real(rk), parameter :: of_rest = 1.0e-3_rk
+
+      associate (time => depth**2/diffusivity)
+         effect = (chain%uptake_error(time, of_rest) - chain%uptake_error(time, 0.0_rk))/of_rest
+      end associate
+   end function effect
 
    !> Flow at the outer end in a step by the scalar at the face after it, over the step length, by
    !! the balance of a step from rest.
