@@ -3,15 +3,14 @@
 !!
 !! In space:
 !! - Slip, opening and their sums: twolevel_jump_errors.
-!! - The pressure in fractures, relative to its rise: where the fluid leaks off, the error of the
-!!   layers next to the faces (twolevel_pressure_errors); where the fractures hold the fluid, the
-!!   error of their compliance, that of opening. Both are weighted by their share of the fluid.
-!! - The pressure of wells in the rock: twolevel_pressure_errors.
-!!   A fracture whose well has a given pressure has none of these errors.
+!! - Pressures in fractures, relative to the changes of all stages: where the fluid leaks off, the
+!!   error of the layers next to the faces, by its share of the fluid; of what opens the fractures,
+!!   half of the relative error of the volume; and the error of the first pressure. Wells in the
+!!   rock: twolevel_pressure_errors. A given pressure has none.
 !! - Fluid volumes: the errors of leak-off and of what the fractures hold. Where all rates are
 !!   prescribed, their sum is exact, and each is at most the error of the other. The volume of the
-!!   fractures has that before the first step besides. What wells have produced in all may be
-!!   nothing where it is less than the error of the net volume.
+!!   fractures has that before the first step besides. A produced volume may be nothing where it is
+!!   less than the error of the net volume.
 !! Growing fractures: the relative error of the length, of all these quantities.
 module twolevel_value_errors
    use base_kinds, only: ik, rk
@@ -103,10 +102,9 @@ contains
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      real(rk) :: values(n_followed), zero(size(scene%injections))
+      real(rk) :: values(n_followed)
 
       values = 0.0_rk
-      zero = 0.0_rk
       values(in_rock) = mean_in_rock(problem, state)
       if (problem%mesh%fracture%n_cells > 0) then
          values(volume) = problem%fracture_volume(state)
@@ -120,7 +118,7 @@ contains
       call self%fractures%begin(state%time, fracture_means(scene, problem, &
                                                            problem%fracture_pressure(state)))
       call self%wells%begin(state%time, [well_pressures(scene, problem, state%time, state), &
-                                         zero, zero])
+                                         spread(0.0_rk, 1, 2*size(scene%injections))])
    end subroutine begin
 
    !> Errors of the row of an accepted state.
@@ -133,23 +131,23 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       type(jumps_in_space_t) :: jumps
-      real(rk) :: layers, values(n_followed)
+      real(rk) :: fluid, layers, values(n_followed)
 
       values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
                 row%rock_fluid, row%rock_outflow, row%fracture_volume, row%max_slip, &
                 row%max_opening, row%seismic_moment, row%max_slip_rate, 0.0_rk, &
                 mean_in_rock(problem, state)]
-      if (problem%mesh%fracture%n_cells > 0) values(pressure) = mean_pressure(problem, state)
+      fluid = max(abs(row%leakoff) + abs(row%fracture_fluid), tiny(1.0_rk))
       self%diffusing = 1.0_rk
       if (problem%mesh%fracture%n_cells > 0) then
-         self%diffusing = abs(row%leakoff)/max(abs(row%leakoff) + abs(row%fracture_fluid), &
-                                               tiny(1.0_rk))
+         values(pressure) = mean_pressure(problem, state)
+         self%diffusing = abs(row%leakoff)/fluid
       end if
       self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
       self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
-      if (all(scene%injections%has_given_flow())) then
+      if (all(scene%injections%has_given_flow() .and. scene%injections%fracture > 0)) then
          self%step%left = of_steps(problem)*leaking_share(self%quantities%rate([leakoff, &
                                                                 fracture_fluid]), self%diffusing)
          self%step%diffusing = 1.0_rk
@@ -167,13 +165,10 @@ contains
                    of_layers(problem, row%time - self%start, scene%growth%enabled))
       if (problem%mesh%fracture%n_cells > 0) then
          call self%jumps_of(scene, problem, state, jumps)
-         associate (s => problem%mesh%fracture%cell_s, fluid => abs(row%leakoff) &
-                    + abs(row%fracture_fluid))
-            self%of_flow = self%diffusing*layers
-            if (fluid > 0.0_rk) self%of_flow = self%of_flow &
-                            + of_compliance*jumps%mean_share(s(2, :) - s(1, :)) &
-                            *min(1.0_rk, abs(row%fracture_volume - self%quantities%first(volume)) &
-                                 /fluid)
+         associate (s => problem%mesh%fracture%cell_s)
+            self%of_flow = self%diffusing*layers + of_compliance &
+                           *jumps%mean_share(s(2, :) - s(1, :))*min(1.0_rk, &
+                            abs(row%fracture_volume - self%quantities%first(volume))/fluid)
          end associate
          self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
                                             /max(self%fractures%changes(), tiny(1.0_rk))), &
@@ -235,15 +230,19 @@ contains
       type(history_row_t), intent(in) :: row
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
-      real(rk) :: held, leak
+      real(rk) :: first, held, leak
 
-      associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error))
+      associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
+                 changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         leak = time(leakoff) + (layers + self%of_length + self%of_drive) &
-                *abs(row%leakoff) + lost
+         ! Both begin at the first pressure.
+         first = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk))) &
+                 *abs(row%fracture_fluid)
+         leak = time(leakoff) + (layers + self%of_length + self%of_drive + self%of_pressure) &
+                *abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
-                + max(least, self%of_pressure)*abs(row%fracture_fluid) + lost
+                + max(least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
@@ -358,8 +357,8 @@ contains
 
       pressure_error = 0.0_rk
       if (.not. allocated(self%quantities%error)) return
-      associate (changes => self%quantities%changes())
-         pressure_error = self%quantities%error(pressure) + self%of_pressure*changes(pressure)
+      associate (changes => self%quantities%changes(), time => self%quantities%error)
+         pressure_error = time(pressure) + self%of_pressure*changes(pressure)
       end associate
    end function pressure_error
 
