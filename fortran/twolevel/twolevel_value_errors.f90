@@ -230,19 +230,19 @@ contains
       type(history_row_t), intent(in) :: row
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
+      real(rk), parameter :: half = 0.5_rk  ! of the first pressure, where both begin, and of others
       real(rk) :: first, held, leak
 
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         ! Both begin at the first pressure.
-         first = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk))) &
+         first = half*min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk))) &
                  *abs(row%fracture_fluid)
-         leak = time(leakoff) + (layers + self%of_length + self%of_drive + self%of_pressure) &
+         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
                 *abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
-                + max(least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
+                + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
@@ -261,7 +261,8 @@ contains
             error%produced = lost
          end if
          if (problem%mesh%fracture%n_cells == 0) error%leakoff = 0.0_rk
-         error%rock_fluid = error%leakoff + error%rock_outflow + error%injected
+         error%rock_fluid = error%leakoff + error%rock_outflow &
+                            + merge(error%injected, 0.0_rk, any(scene%injections%fracture == 0))
       end associate
    end subroutine note_fluid
 
