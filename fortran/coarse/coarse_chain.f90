@@ -57,6 +57,7 @@ module coarse_chain
       procedure :: prepare
       procedure :: stored
       procedure :: inner
+      procedure :: uptake_error
    end type chain_t
 
 contains
@@ -272,5 +273,32 @@ contains
 
       p = rho - self%gamma*mu + self%alpha*at_face + self%beta*at_end
    end function inner
+
+   !> Relative error of what the rock takes up through the face within a time. The response of an
+   !! infinite body to a change exp(s t) at its face, s = 1/time, is compared with that of the chain
+   !! with the rest of such a body, whose own response is that of cells and has a relative error,
+   !! `of_rest` times 1/(1 + c time/(4 l)**2), l the thickness of the chain [-].
+   pure real(rk) function uptake_error(self, time, of_rest) result(error)
+      class(chain_t), intent(in) :: self
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: of_rest  !< [-]
+      real(rk) :: exact, off, response(2), resistance, thickness
+      integer(ik) :: i
+
+      thickness = 2.0_rk*self%place(1)*sum(self%volume)/self%volume(1)
+      resistance = 1.0_rk/(self%conductance(0)*self%place(1))  ! per length
+      associate (s => 1.0_rk/time, c_over_s => time*self%conductance(0)*self%place(1) &
+                 /(self%storage*self%volume(1)/(2.0_rk*self%place(1))))
+         exact = 1.0_rk/(resistance*sqrt(c_over_s))
+         off = of_rest/(1.0_rk + c_over_s/(4.0_rk*thickness)**2)
+         response = exact*[1.0_rk, 1.0_rk + off]
+         response = 1.0_rk/(1.0_rk/response + resistance*(thickness - self%place(self%n)))
+         do i = self%n, 1, -1
+            response = response + s*self%storage*self%volume(i)
+            response = 1.0_rk/(1.0_rk/response + 1.0_rk/self%conductance(i - 1))
+         end do
+      end associate
+      error = abs(response(1)/exact - 1.0_rk) + abs(response(2) - response(1))/exact
+   end function uptake_error
 
 end module coarse_chain

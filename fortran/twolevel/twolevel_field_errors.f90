@@ -11,6 +11,7 @@
 !! compliance of its faces and has no term here. Faces at a tip that have slipped and now stick with
 !! less than the friction hold a rest of the slip before them. A cell does not resolve how this
 !! rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi) s.
+!! Closed faces that slide with dilation have K_I = tan(psi) |K_II|, with its error.
 module twolevel_field_errors
    use base_kinds, only: ik, pi, rk
    use coarse_fields, only: cell_stress
@@ -149,6 +150,7 @@ contains
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then
                   of_k(2, i) = of_k(2, i) + sqrt(4.0_rk*half/pi)*rest(at)
                end if
+               of_k(1, i) = max(of_k(1, i), problem%model%cells%law(at)%dilation*of_k(2, i))
             end associate
          end do
       end associate

@@ -41,6 +41,8 @@ module twolevel_followed
       integer :: n_steps = 0  !< steps since the switch
       real(rk) :: squares = 0.0_rk  !< sum of the squares of the steps since the switch [s2]
       real(rk), allocatable :: first(:)  !< values at the start
+      !> values at the last switch, and the sum of the changes between switches up to then
+      real(rk), allocatable :: turn(:), varied(:)
       real(rk), allocatable :: value(:)  !< last values
       real(rk), allocatable :: rate(:)  !< rates in the last step [1/s]
       real(rk), allocatable :: largest(:)  !< decaying largest magnitudes of the rates [1/s]
@@ -50,6 +52,7 @@ module twolevel_followed
    contains
       procedure :: begin
       procedure :: follow
+      procedure :: changes
    end type followed_t
 
 contains
@@ -63,6 +66,8 @@ contains
       self%time = time
       self%first = values
       self%value = values
+      self%turn = values
+      self%varied = 0.0_rk*values
       associate (n => size(values))
          allocate (self%rate(n), self%largest(n), self%of_step(n), source=0.0_rk)
          allocate (self%sum(n), self%linear(n), self%error(n), source=0.0_rk)
@@ -81,6 +86,10 @@ contains
          if (.not. dt > 0.0_rk) return
          rate = (values - self%value)/dt
          change = dt*abs(rate - self%rate)
+         if (step%is_first) then
+            self%varied = self%changes()
+            self%turn = self%value
+         end if
          self%value = values
          self%of_step = 0.0_rk
          if (step%is_first) then
@@ -119,5 +128,14 @@ contains
          self%time = step%time
       end associate
    end subroutine follow
+
+   !> Sum of the magnitudes of the changes between switches: each stage adds a response, of which
+   !! errors in space are a share.
+   pure function changes(self)
+      class(followed_t), intent(in) :: self
+      real(rk) :: changes(size(self%value))
+
+      changes = self%varied + abs(self%value - self%turn)
+   end function changes
 
 end module twolevel_followed

@@ -43,6 +43,7 @@ module twolevel_jump_errors
       real(rk) :: slipped = 0.0_rk  !< error of the sum of slip [m2]
    contains
       procedure :: find
+      procedure :: mean_share
    end type jumps_in_space_t
 
 contains
@@ -92,6 +93,16 @@ contains
          self%slipped = sum(length*((self%slip%of_slip_sum + facts%of_length)*self%t + slid))
       end associate
    end subroutine find
+
+   !> Mean relative error of the sums over zones, weighted by the jumps [-].
+   pure real(rk) function mean_share(self, length) result(share)
+      class(jumps_in_space_t), intent(in) :: self
+      real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
+
+      associate (n => length*abs(self%n), t => length*self%t)
+         share = sum(n*self%opening%of_sum + t*self%slip%of_sum)/max(sum(n + t), tiny(1.0_rk))
+      end associate
+   end function mean_share
 
    !> Faces of each cell have moved.
    pure function moves(jump)

@@ -1,9 +1,13 @@
 !> Relative errors in space of the pressures of wells and fractures.
 !!
-!! - Where the fluid of a fracture leaks off: that of the layers next to the faces, 3 % where chains
-!!   resolve them (coarse_layers; measured: 1.2 to 2.5 %), else by the distance sqrt(c t) of
-!!   diffusion since the last switch over the size of a cell, z: sqrt(pi)/(2 z), and below 0.15/z**2
-!!   (measured: 0.07/z**2).
+!! - Where the fluid of a fracture leaks off: that of the layers next to the faces. Where chains
+!!   resolve them (coarse_layers) it follows from the chain (coarse_chain, uptake_error), with 4 %
+!!   for what the cells beyond it take up; at least 3 % while tips grow, as layers have all ages.
+!!   Else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell, z:
+!!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
+!! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
+!!   latter from place to place, and a cell has its mean. Error: 1.8 times the mean difference of
+!!   the fracture's cells from their mean. It falls as the rock drains, 1/(1 + 16 c t/h**2).
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -23,29 +27,46 @@ module twolevel_pressure_errors
    implicit none(type, external)
    private
 
-   public :: have_given_pressure, least, mean_pressures, of_layers, of_steps, of_well_in_rock
-   public :: unresolved_depth
+   public :: fracture_means, have_given_pressure, leaking_share, least, mean_in_rock, &
+             mean_pressure, of_first_pressure, of_layers, of_steps, of_well_in_rock, &
+             undrained_share, unresolved_depth
 
-   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of resolved layers [-]
+   real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
+   real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
+   real(rk), parameter :: least_flow = 5.0e-4_rk  !< of the flow round tips and along fractures [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
    !> relative errors of a well in the rock: of the cell's radius; of the pressure by the rings [-]
    real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
    !> the same by a side of the body, times the cell's area over its squared distance
    real(rk), parameter :: by_side = 0.45_rk
+   real(rk), parameter :: of_spread = 1.8_rk  !< error of first pressures, over their spread [-]
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains
 
    !> Relative error of the pressure and of the flux where fluid leaks off for a time [-].
-   real(rk) function of_layers(problem, time) result(error)
+   real(rk) function of_layers(problem, time, grows) result(error)
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: time  !< [s]
+      logical, intent(in) :: grows  !< fractures may grow
       real(rk) :: ratio
+      integer(ik) :: l, n
 
-      error = of_chain
-      if (problem%model%layers%n > 0) return
-      ratio = unresolved_depth(problem, time)
-      error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
+      error = 0.0_rk
+      if (.not. time > 0.0_rk) return
+      if (problem%model%layers%n > 0) then
+         n = 0
+         do l = 1, problem%model%layers%n
+            if (problem%model%layers%fracture_cell(l) == 0) cycle
+            n = n + 1
+            error = error + problem%model%layers%chain(l)%uptake_error(time, of_rest)
+         end do
+         error = least_flow + error/max(1, n)
+         if (grows) error = max(error, of_chain)
+      else
+         ratio = unresolved_depth(problem, time)
+         error = max(least, min(0.5_rk*sqrt(pi)*ratio, of_plain*ratio**2))
+      end if
    end function of_layers
 
    !> Remaining error in time of a step of the pressures at faces and wells, as the layers
@@ -64,6 +85,18 @@ contains
          left = 1.0_rk - 0.75_rk*sum([(layers%chain(l)%scheme(2)%share, l=1, layers%n)])/layers%n
       end associate
    end function of_steps
+
+   !> Share of the error in time of a pressure at given rates: it is that of leak-off alone, since
+   !! the balance gives what the fractures hold. The shares of leak-off in the step and in all fluid
+   !! measure it; the safety factor is for earlier steps with more leak-off [-].
+   pure real(rk) function leaking_share(rates, of_all) result(share)
+      real(rk), intent(in) :: rates(2)  !< of leak-off and of the fluid in fractures [m2/s]
+      real(rk), intent(in) :: of_all  !< share of leak-off in the fluid so far [-]
+      real(rk), parameter :: safety = 3.0_rk
+
+      share = abs(rates(1))/max(sum(abs(rates)), tiny(1.0_rk))
+      share = min(1.0_rk, safety*max(share, of_all))
+   end function leaking_share
 
    !> Height of the cells next to the fractures over the distance of diffusion in a time, where no
    !! layer resolves it; 0 without fractures [-].
@@ -141,26 +174,75 @@ contains
       end associate
    end function distance_of_side
 
-   !> Mean pressure of each fracture [Pa].
-   function mean_pressures(scene, problem, state) result(mean)
-      type(scene_t), intent(in) :: scene
+   !> Mean pressure of the cells of the rock, less that in situ [Pa].
+   pure real(rk) function mean_in_rock(problem, state)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      real(rk), allocatable :: mean(:)
-      real(rk) :: length(problem%mesh%fracture%n_cells), pressure(size(length))
+
+      mean_in_rock = sum(state%unknowns(3, :problem%mesh%n_cells))/problem%mesh%n_cells
+   end function mean_in_rock
+
+   !> Mean pressure of the fractures [Pa].
+   pure real(rk) function mean_pressure(problem, state)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: length(problem%mesh%fracture%n_cells)
+
+      length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
+      mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
+   end function mean_pressure
+
+   !> Means of the values of the cells of each fracture.
+   pure function fracture_means(scene, problem, values) result(mean)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: values(:)  !< (fracture cells)
+      real(rk) :: mean(size(scene%fractures))
       integer(ik) :: f
 
+      mean = 0.0_rk
       associate (fracture => problem%mesh%fracture)
-         length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
-         pressure = problem%fracture_pressure(state)
-         allocate (mean(size(scene%fractures)), source=0.0_rk)
          do f = 1, size(mean, kind=ik)
-            associate (own => merge(length, 0.0_rk, fracture%cell_fracture == f))
-               if (any(own > 0.0_rk)) mean(f) = sum(pressure*own)/sum(own)
+            associate (own => merge(fracture%cell_s(2, :) - fracture%cell_s(1, :), 0.0_rk, &
+                                    fracture%cell_fracture == f))
+               if (any(own > 0.0_rk)) mean(f) = sum(values*own)/sum(own)
             end associate
          end do
       end associate
-   end function mean_pressures
+   end function fracture_means
+
+   !> Error of the first pressure of each fracture [Pa].
+   function of_first_pressure(scene, problem, state) result(error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: error(size(scene%fractures))
+
+      associate (p => problem%fracture_pressure(state))
+         error = fracture_means(scene, problem, p)
+         error = of_spread*fracture_means(scene, problem, &
+                                          abs(p - error(problem%mesh%fracture%cell_fracture)))
+      end associate
+   end function of_first_pressure
+
+   !> Share of these errors that is left after a time [-].
+   function undrained_share(scene, problem, time) result(share)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: share(size(scene%fractures))
+      real(rk) :: drained(problem%mesh%fracture%n_cells)
+      integer(ik) :: i
+
+      associate (fracture => problem%mesh%fracture)
+         do i = 1, fracture%n_cells
+            drained(i) = diffusivity(problem, problem%mesh%face_cells(1, fracture%cell_faces(1, i)))
+         end do
+         drained = 16.0_rk*time*drained/max((fracture%cell_s(2, :) - fracture%cell_s(1, :))**2, &
+                                           tiny(1.0_rk))
+      end associate
+      share = fracture_means(scene, problem, 1.0_rk/(1.0_rk + drained))
+   end function undrained_share
 
    !> Whether a well keeps a pressure in each fracture.
    pure function have_given_pressure(scene) result(have)

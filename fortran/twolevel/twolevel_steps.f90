@@ -458,7 +458,8 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
       call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
-      call self%value_errors%note_wells(self%scene, rows, self%now%stated_errors, facts_of(self))
+      call self%value_errors%note_wells(self%scene, self%problem, rows, self%now%stated_errors, &
+                                        facts_of(self))
       self%chronicle%wells = [self%chronicle%wells, rows]
       if (.not. self%scene%has_entries()) return
       entries = entry_rows(self%problem, self%now%coarse)

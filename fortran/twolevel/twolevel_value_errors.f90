@@ -3,15 +3,14 @@
 !!
 !! In space:
 !! - Slip, opening and their sums: twolevel_jump_errors.
-!! - The pressure in fractures, relative to its rise: where the fluid leaks off, the error of the
-!!   layers next to the faces (twolevel_pressure_errors); where the fractures hold the fluid, the
-!!   error of their compliance, that of opening. Both are weighted by their share of the fluid.
-!! - The pressure of wells in the rock: twolevel_pressure_errors.
-!!   A fracture whose well has a given pressure has none of these errors.
+!! - Pressures in fractures, relative to the changes of all stages: where the fluid leaks off, the
+!!   error of the layers next to the faces, by its share of the fluid; of what opens the fractures,
+!!   half of the relative error of the volume; and the error of the first pressure. Wells in the
+!!   rock: twolevel_pressure_errors. A given pressure has none.
 !! - Fluid volumes: the errors of leak-off and of what the fractures hold. Where all rates are
 !!   prescribed, their sum is exact, and each is at most the error of the other. The volume of the
-!!   fractures has that before the first step besides. What wells have produced in all may be
-!!   nothing where it is less than the error of the net volume.
+!!   fractures has that before the first step besides. A produced volume may be nothing where it is
+!!   less than the error of the net volume.
 !! Growing fractures: the relative error of the length, of all these quantities.
 module twolevel_value_errors
    use base_kinds, only: ik, rk
@@ -23,8 +22,9 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: have_given_pressure, least, mean_pressures, of_layers, &
-                                       of_steps, of_well_in_rock
+   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, leaking_share, least, &
+                                       mean_in_rock, mean_pressure, of_first_pressure, of_layers, &
+                                       of_steps, of_well_in_rock, undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -40,6 +40,8 @@ module twolevel_value_errors
 
    !> relative error of pressures by the solver: the limit of its forward error bound [-]
    real(rk), parameter :: of_solution = 1.0e-6_rk
+   !> error of a fracture's compliance, over the relative error of its volume [-]
+   real(rk), parameter :: of_compliance = 0.5_rk
    real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
 
    !> What the errors of a step need besides its row.
@@ -59,8 +61,8 @@ module twolevel_value_errors
       real(rk) :: of_pressure = 0.0_rk  !< relative error in space of the pressure in fractures [-]
       real(rk) :: diffusing = 1.0_rk  !< share of the fluid that has leaked off [-]
       real(rk) :: of_flow = 0.0_rk  !< the same of a flow that is not prescribed [-]
+      real(rk) :: of_drive = 0.0_rk  !< the same, by the first pressure of the rock [-]
       real(rk) :: of_held = 0.0_rk  !< in space, of the volume of the fractures [m2]
-      real(rk) :: rise = 0.0_rk  !< of the mean pressure in the fractures [Pa]
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
       real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
@@ -68,6 +70,8 @@ module twolevel_value_errors
       real(rk), allocatable :: risen(:)  !< largest changes of the wells' pressures so far [Pa]
       real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
       type(followed_step_t) :: step  !< last step
+      real(rk) :: start = 0.0_rk  !< time of the first state [s]
+      real(rk), allocatable :: of_first(:)  !< of the fractures' first pressures [Pa]
       real(rk) :: of_start = 0.0_rk  !< of the fractures' volume before the first step [m2]
       type(followed_t) :: quantities
       type(followed_t) :: fractures  !< mean pressure of each
@@ -80,6 +84,7 @@ module twolevel_value_errors
       procedure :: note_wells
       procedure :: note_entries
       procedure :: note_probes
+      procedure :: undrained
       procedure :: in_space
       procedure :: jumps_of
       procedure :: given_volume
@@ -97,10 +102,9 @@ contains
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      real(rk) :: values(n_followed), zero(size(scene%injections))
+      real(rk) :: values(n_followed)
 
       values = 0.0_rk
-      zero = 0.0_rk
       values(in_rock) = mean_in_rock(problem, state)
       if (problem%mesh%fracture%n_cells > 0) then
          values(volume) = problem%fracture_volume(state)
@@ -109,28 +113,13 @@ contains
          values(pressure) = mean_pressure(problem, state)
       end if
       call self%quantities%begin(state%time, values)
-      call self%fractures%begin(state%time, mean_pressures(scene, problem, state))
+      self%start = state%time
+      self%of_first = of_first_pressure(scene, problem, state)
+      call self%fractures%begin(state%time, fracture_means(scene, problem, &
+                                                           problem%fracture_pressure(state)))
       call self%wells%begin(state%time, [well_pressures(scene, problem, state%time, state), &
-                                         zero, zero])
+                                         spread(0.0_rk, 1, 2*size(scene%injections))])
    end subroutine begin
-
-   !> Mean pressure of the cells of the rock, less that in situ [Pa].
-   pure real(rk) function mean_in_rock(problem, state)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-
-      mean_in_rock = sum(state%unknowns(3, :problem%mesh%n_cells))/problem%mesh%n_cells
-   end function mean_in_rock
-
-   !> Mean pressure of the fractures [Pa].
-   pure real(rk) function mean_pressure(problem, state)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk) :: length(problem%mesh%fracture%n_cells)
-
-      length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
-      mean_pressure = sum(problem%fracture_pressure(state)*length)/sum(length)
-   end function mean_pressure
 
    !> Errors of the row of an accepted state.
    subroutine note_state(self, scene, problem, state, row, stated, facts)
@@ -142,59 +131,57 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       type(jumps_in_space_t) :: jumps
-      real(rk) :: values(n_followed)
+      real(rk) :: fluid, layers, values(n_followed)
 
       values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
                 row%rock_fluid, row%rock_outflow, row%fracture_volume, row%max_slip, &
                 row%max_opening, row%seismic_moment, row%max_slip_rate, 0.0_rk, &
                 mean_in_rock(problem, state)]
-      if (problem%mesh%fracture%n_cells > 0) values(pressure) = mean_pressure(problem, state)
+      fluid = max(abs(row%leakoff) + abs(row%fracture_fluid), tiny(1.0_rk))
       self%diffusing = 1.0_rk
       if (problem%mesh%fracture%n_cells > 0) then
-         self%diffusing = abs(row%leakoff)/max(abs(row%leakoff) + abs(row%fracture_fluid), &
-                                               tiny(1.0_rk))
+         values(pressure) = mean_pressure(problem, state)
+         self%diffusing = abs(row%leakoff)/fluid
       end if
       self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
       self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
-      call self%fractures%follow(self%step, mean_pressures(scene, problem, state))
+      if (all(scene%injections%has_given_flow() .and. scene%injections%fracture > 0)) then
+         self%step%left = of_steps(problem)*leaking_share(self%quantities%rate([leakoff, &
+                                                                fracture_fluid]), self%diffusing)
+         self%step%diffusing = 1.0_rk
+      end if
+      call self%fractures%follow(self%step, fracture_means(scene, problem, &
+                                                           problem%fracture_pressure(state)))
       self%row = history_errors_t()
       self%of_length = 0.0_rk
       if (facts%has_estimate .and. row%fracture_length > 0.0_rk) then
          self%of_length = max(0.0_rk, stated%length)/row%fracture_length
       end if
       self%of_rock = of_well_in_rock(scene, problem, facts%since_switch)
+      ! Each stage has the age of its own layers.
+      layers = max(of_layers(problem, facts%since_switch, scene%growth%enabled), &
+                   of_layers(problem, row%time - self%start, scene%growth%enabled))
       if (problem%mesh%fracture%n_cells > 0) then
          call self%jumps_of(scene, problem, state, jumps)
          associate (s => problem%mesh%fracture%cell_s)
-            self%of_flow = self%diffusing*of_layers(problem, facts%since_switch) &
-                           + (1.0_rk - self%diffusing) &
-                           *max(least, mean_share(jumps, s(2, :) - s(1, :)))
+            self%of_flow = self%diffusing*layers + of_compliance &
+                           *jumps%mean_share(s(2, :) - s(1, :))*min(1.0_rk, &
+                            abs(row%fracture_volume - self%quantities%first(volume))/fluid)
          end associate
+         self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
+                                            /max(self%fractures%changes(), tiny(1.0_rk))), &
+                                            mask=have_given_pressure(scene)))
          self%of_pressure = 0.0_rk
          if (facts%has_given_rates) self%of_pressure = self%of_flow
-         self%rise = abs(values(pressure) - self%quantities%first(pressure))
          call self%jumps_of(scene, problem, state, jumps)
          if (self%quantities%n_steps == 0) self%of_start = jumps%volume
          call note_jumps(self, problem, jumps, row)
       end if
-      call note_fluid(self, scene, problem, row, facts)
+      call note_fluid(self, scene, problem, row, facts, layers)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
-
-   !> Mean relative error of the sums over zones, weighted by the jumps [-].
-   pure real(rk) function mean_share(jumps, length) result(share)
-      type(jumps_in_space_t), intent(in) :: jumps
-      real(rk), intent(in) :: length(:)  !< (fracture cells) [m]
-      real(rk) :: total
-
-      associate (n => length*abs(jumps%n), t => length*jumps%t)
-         total = sum(n + t)
-         share = 0.0_rk
-         if (total > 0.0_rk) share = sum(n*jumps%opening%of_sum + t*jumps%slip%of_sum)/total
-      end associate
-   end function mean_share
 
    !> Errors of slip, opening, volume and moment.
    subroutine note_jumps(self, problem, jumps, row)
@@ -236,27 +223,32 @@ contains
    end subroutine jumps_of
 
    !> Errors of the fluid volumes.
-   subroutine note_fluid(self, scene, problem, row, facts)
+   subroutine note_fluid(self, scene, problem, row, facts, layers)
       class(value_errors_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(history_row_t), intent(in) :: row
       type(step_facts_t), intent(in) :: facts
-      real(rk) :: held, layers, leak
+      real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
+      real(rk), parameter :: half = 0.5_rk  ! of the first pressure, where both begin, and of others
+      real(rk) :: first, held, leak
 
-      layers = of_layers(problem, facts%since_switch)
-      associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error))
+      associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
+                 changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         leak = time(leakoff) + (layers + self%of_length)*abs(row%leakoff) + lost
+         first = half*min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk))) &
+                 *abs(row%fracture_fluid)
+         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
+                *abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
-                + max(least, self%of_pressure)*abs(row%fracture_fluid) + lost
+                + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
-            error%injected = time(injected) + max(self%of_flow*abs(row%injected), self%of_held) &
-                             + lost
-            error%produced = time(produced) + self%of_flow*abs(row%produced) &
+            error%injected = time(injected) + max((self%of_flow + self%of_drive) &
+                                                        *abs(row%injected), self%of_held) + lost
+            error%produced = time(produced) + (self%of_flow + self%of_drive)*abs(row%produced) &
                              + min(row%produced, error%injected) + lost
          else
             error%leakoff = min(leak, held + error%outflow)
@@ -269,7 +261,8 @@ contains
             error%produced = lost
          end if
          if (problem%mesh%fracture%n_cells == 0) error%leakoff = 0.0_rk
-         error%rock_fluid = error%leakoff + error%rock_outflow + error%injected
+         error%rock_fluid = error%leakoff + error%rock_outflow &
+                            + merge(error%injected, 0.0_rk, any(scene%injections%fracture == 0))
       end associate
    end subroutine note_fluid
 
@@ -306,22 +299,31 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> Error in space of the pressure of each fracture cell by flow [Pa].
-   pure function in_space(self, scene, problem) result(error)
+   !> What is left of the errors of the fractures' first pressures [Pa].
+   function undrained(self, scene, problem) result(error)
+      class(value_errors_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk) :: error(size(scene%fractures))
+
+      error = self%of_first*undrained_share(scene, problem, self%quantities%time - self%start)
+   end function undrained
+
+   !> Error in space of the pressure of each fracture cell by flow, and of the first pressure [Pa].
+   function in_space(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk), allocatable :: error(:)
 
-      associate (p => self%fractures)
-         error = merge(0.0_rk, self%of_flow*abs(p%value - p%first), have_given_pressure(scene))
-      end associate
+      error = merge(0.0_rk, self%of_flow*self%fractures%changes() &
+                    + self%undrained(scene, problem), have_given_pressure(scene))
       error = error(problem%mesh%fracture%cell_fracture)
    end function in_space
 
    !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
    !! of the faces, which is that of the pressure beyond closure [Pa].
-   pure function cell_pressure_errors(self, scene, problem, jumps) result(error)
+   function cell_pressure_errors(self, scene, problem, jumps) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -356,7 +358,9 @@ contains
 
       pressure_error = 0.0_rk
       if (.not. allocated(self%quantities%error)) return
-      pressure_error = self%quantities%error(pressure) + self%of_pressure*self%rise
+      associate (changes => self%quantities%changes(), time => self%quantities%error)
+         pressure_error = time(pressure) + self%of_pressure*changes(pressure)
+      end associate
    end function pressure_error
 
    !> Relative error in time of pressures in the rock [-].
@@ -378,33 +382,36 @@ contains
    end function time_share
 
    !> Errors of the wells after a step; also those of rate and injectivity of the row.
-   subroutine note_wells(self, scene, rows, stated, facts)
+   subroutine note_wells(self, scene, problem, rows, stated, facts)
       class(value_errors_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
       type(well_row_t), intent(inout) :: rows(:)
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
-      real(rk) :: by_length, share
+      real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, share
       integer :: w
 
       if (size(rows) == 0) return
       call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
       by_length = effect_of_length(stated, facts)
+      changes = self%wells%changes()
+      first = self%undrained(scene, problem)
       do w = 1, size(rows)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
             share = self%of_pressure
             if (well%fracture == 0) share = self%of_rock
-            error%pressure = time(w) + share*abs(row%pressure - self%wells%first(w)) + by_length &
-                             + of_solution*abs(row%pressure)
+            error%pressure = time(w) + share*changes(w) + by_length + of_solution*abs(row%pressure)
+            if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
             if (.not. well%has_given_flow()) then
-               error%injected = time(2*n + w) + max(share*abs(row%injected), &
-                                                    self%of_flow*abs(row%injected), self%of_held)
+               flow = max(share, self%of_flow) + self%of_drive
+               error%injected = time(2*n + w) + max(flow*abs(row%injected), self%of_held)
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)
                if (abs(row%injected) > 0.0_rk) error%flow = &
                   & max(error%flow, 3.0_rk*abs(row%flow)*time(2*n + w)/abs(row%injected))
-               error%flow = error%flow + max(share, self%of_flow)*abs(row%flow)
+               error%flow = error%flow + flow*abs(row%flow)
                error%rate = error%flow
             end if
             error%head_pressure = error%pressure &

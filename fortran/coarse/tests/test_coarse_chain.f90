@@ -22,6 +22,7 @@ program test_coarse_chain
       call test_sums(first(i))
       call test_steady(first(i))
       call test_long_steps(first(i))
+      call test_uptake_error(first(i))
       call compare(first(i), given_scalar, 1.02_rk, 2.0_rk, 0.03_rk, "constant scalar")
       call compare(first(i), given_flux, 1.02_rk, 2.0_rk, 0.03_rk, "constant flux")
       call compare(first(i), given_supply, 1.02_rk, 2.0_rk, 0.03_rk, "constant supply")
@@ -63,6 +64,43 @@ contains
                              "no negative coefficients")
       end associate
    end subroutine test_sums
+
+   !> The error of what is taken up, against that of constant scalars at a face: 11 % once a layer is
+   !! as thick as the first volume, .5 % from three times that on (budget: the error of nodes at
+   !! geometric means). The rest of the rock counts by exp(-2 l/sqrt(c t)) where layers are thin,
+   !! and in full, as far as cells do not resolve them, where they are thick (budget: 3 %, the
+   !! resistance of the chain).
+   subroutine test_uptake_error(first_volume)
+      real(rk), intent(in) :: first_volume  !< [m]
+      type(chain_t) :: chain
+      real(rk) :: depth  ! sqrt(c t) [m]
+      integer :: k
+
+      chain = new_chain(thickness, first_volume, length, conductivity, storage)
+      call checks%is_close(chain%uptake_error(first_volume**2/diffusivity, 0.0_rk), 0.11_rk, &
+                           0.02_rk, "a layer as thick as the first volume")
+      do k = 0, 4
+         depth = min(0.3_rk*thickness, 3.5_rk*first_volume*2.0_rk**k)
+         call checks%is_true(chain%uptake_error(depth**2/diffusivity, 0.0_rk) < 0.005_rk, &
+                             "thin layers")
+         call checks%is_close(effect(chain, depth), exp(-2.0_rk*thickness/depth) &
+                              /(1.0_rk + (0.25_rk*depth/thickness)**2), 0.02_rk, &
+                              "what lies beyond the chain")
+      end do
+      call checks%is_close(effect(chain, 100.0_rk*thickness), 1.0_rk/(1.0_rk + 25.0_rk**2), &
+                           0.03_rk/(1.0_rk + 25.0_rk**2), "thick layers")
+   end subroutine test_uptake_error
+
+   !> Effect of the error of the rest for a layer of a depth, over this error [-].
+   real(rk) function effect(chain, depth)
+      type(chain_t), intent(in) :: chain
+      real(rk), intent(in) :: depth  !< sqrt(c t) [m]
+      real(rk), parameter :: of_rest = 1.0e-3_rk
+
+      associate (time => depth**2/diffusivity)
+         effect = (chain%uptake_error(time, of_rest) - chain%uptake_error(time, 0.0_rk))/of_rest
+      end associate
+   end function effect
 
    !> Flow at the outer end in a step by the scalar at the face after it, over the step length, by
    !! the balance of a step from rest.

@@ -17,6 +17,7 @@ program test_twolevel_followed
    call test_mode()
    call test_diffusion()
    call test_switch()
+   call test_changes()
    call checks%finish()
 
 contains
@@ -125,5 +126,20 @@ contains
       call followed%follow(followed_step_t(4.1_rk), [10.0_rk])
       call checks%is_close(followed%error(1), 0.0_rk, 1.0e-12_rk, "as before the jump")
    end subroutine test_switch
+
+   !> Changes between switches add up; one that is taken back in a stage does not.
+   subroutine test_changes()
+      type(followed_t) :: followed
+      real(rk) :: changes(1)
+
+      call followed%begin(0.0_rk, [1.0_rk])
+      call followed%follow(followed_step_t(1.0_rk, is_first=.true.), [3.0_rk])
+      call followed%follow(followed_step_t(2.0_rk), [2.0_rk])
+      changes = followed%changes()
+      call checks%is_close(changes(1), 1.0_rk, 1.0e-15_rk, "first stage")
+      call followed%follow(followed_step_t(3.0_rk, is_first=.true.), [-2.0_rk])
+      changes = followed%changes()
+      call checks%is_close(changes(1), 5.0_rk, 1.0e-15_rk, "two stages")
+   end subroutine test_changes
 
 end program test_twolevel_followed

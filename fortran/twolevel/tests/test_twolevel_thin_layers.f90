@@ -2,7 +2,7 @@
 program test_twolevel_thin_layers
    use base_kinds, only: rk
    use testing_checks, only: checks_t
-   use twolevel_coarse_errors, only: layer_t, thin_layer_errors
+   use twolevel_coarse_errors, only: drained_excess, layer_t, thin_layer_errors
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -42,6 +42,8 @@ contains
       errors = thin_layer_errors(known, k, .false., age, back_stress)
       call checks%is_close(errors(1), 0.2_rk*0.14_rk*k(1) - 0.15_rk*back_stress, &
                            1.0e-6_rk*k(1), "K_I with a layer")
+      call checks%is_close(drained_excess(layer, age), 0.16_rk*0.14_rk, 1.0e-5_rk, &
+                           "K_II of a drained tip")
    end subroutine test_thin_layer
 
    !> A layer of ten cells is resolved.
@@ -54,6 +56,10 @@ contains
       errors = thin_layer_errors(resolved, k, .false., age, 0.0_rk)
       call checks%is_true(all(errors < 0.0025_rk*(0.2_rk*0.14_rk*k + drained*of_layer)), &
                           "a wide layer")
+      call checks%is_true(drained_excess(resolved, age) < 0.0025_rk*0.16_rk*0.14_rk, &
+                          "a tip in drained rock")
+      resolved%cell = 0.0_rk
+      call checks%is_close(drained_excess(resolved, age), 0.0_rk, 0.0_rk, "no fracture cells")
    end subroutine test_wide_layer
 
 end program test_twolevel_thin_layers
