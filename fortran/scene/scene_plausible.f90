@@ -134,7 +134,7 @@ module scene_plausible
          "assumed, in a group that gives neither it nor intensities", &
          "nothing grows; enabled = .true. lets fractures grow, and .false. says that they do not"), &
       doubt_t("injection", "distance", "m", &
-         "above a tenth of the fracture's length, with fracture = 'nearest'", &
+         "above a tenth of the length of the fracture, if 'nearest'", &
          "the well is moved so far to reach the nearest fracture; give its name, or leave it "// &
          "out for a well in the rock"), &
       doubt_t("injection", "next distance", "m", &
