@@ -123,7 +123,9 @@ def test_terminal(done: Path) -> None:
         what = "injected" if net >= 0.0 else "produced"
         stated = shown(line, rf"{what} ([\d.e+-]+) {unit},")
         assert stated == pytest.approx(abs(net) * thickness, rel=6e-3)
-        assert shown(line, r"([\d.]+) MPa at the end") * 1e6 == pytest.approx(pressure[-1], rel=6e-3)
+        assert shown(line, r"([\d.]+) MPa at the end") * 1e6 == pytest.approx(
+            pressure[-1], rel=6e-3
+        )
         assert shown(line, r"at most ([\d.]+) MPa") * 1e6 == pytest.approx(pressure.max(), rel=6e-3)
 
 

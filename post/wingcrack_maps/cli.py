@@ -224,10 +224,9 @@ def _network(
     line_values = [line.attributes for line in content.lines]
     lines = content.lines
     wells = entry_values("injection", content.wells, content, path)
-    return Network(
-        lines, line_values, regions, region_values, body, cell, cells, given.growth,
-        content.wells, wells,
-    )  # type: ignore[arg-type]
+    entries = (line_values, regions, region_values, body, cell, cells, given.growth)
+    wells = entry_values("injection", content.wells, content, path)
+    return Network(lines, *entries, content.wells, wells)  # type: ignore[arg-type]
 
 
 def _heading(given: SimpleNamespace, path: str) -> str:

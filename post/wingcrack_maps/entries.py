@@ -82,7 +82,7 @@ def entry_values(
             if group_name == "injection" and number is not None:
                 # rates, with the ending of a unit too, which the solver knows
                 stem = next((n for n in ("rate", "pressure") if name.startswith(n)), "")
-                if stem and name.startswith(f"{stem}_") or name == stem:
+                if (stem and name.startswith(f"{stem}_")) or name == stem:
                     values[name] = number
                     continue
             if name in group.parameters and name not in _GEOMETRIC:
