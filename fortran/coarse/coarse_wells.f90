@@ -116,8 +116,9 @@ contains
    end function at_places
 
    !> The flows of the places from which the iteration of a step begins: those before it, and a
-   !! change of the rate distributed by the losses of the entries. Where nothing flows the losses
-   !! have no derivative, and Newton's method would begin as if there were none.
+   !! change of the rate distributed by the losses of the entries. Where nothing flows losses by
+   !! the square of the flow have no derivative, and Newton's method would begin as if there were
+   !! none.
    pure function first_flows(self, well_flow) result(flow)
       class(wells_t), intent(in) :: self
       real(rk), intent(in) :: well_flow(:)  !< of state_t [m2/s]
@@ -129,14 +130,14 @@ contains
       flow = self%at_places(well_flow)
       do w = 1, self%n
          loss = self%entries_loss(w)
-         if (.not. loss > 0.0_rk) cycle
+         if (.not. (loss > 0.0_rk .or. self%turbulence(w) > 0.0_rk)) cycle
          rate = merge(0.0_rk, self%rate(w), self%control(w) == control_shut)
          follows = self%control(w) == control_shut .or. (self%control(w) == control_rate &
                                                          .and. .not. self%storage(w) > 0.0_rk)
          associate (of_entries => flow(self%first_entry(w):self%last_entry(w)))
             if (any(abs(of_entries) > 0.0_rk) .and. .not. follows) cycle
-            of_entries = of_entries + (rate - flow(w)) &
-                         *sqrt(loss/pack(self%entry_loss, self%of_entry == w))
+            if (loss > 0.0_rk) of_entries = of_entries + (rate - flow(w)) &
+                                         *sqrt(loss/pack(self%entry_loss, self%of_entry == w))
             flow(w) = rate
          end associate
       end do

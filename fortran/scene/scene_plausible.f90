@@ -132,7 +132,7 @@ module scene_plausible
          "rates such as rate_l_s are those of this height of the fractures; give thickness"), &
       doubt_t("growth", "enabled", "logical", &
          "assumed, in a group that gives neither it nor intensities", &
-         "nothing grows; enabled = .true. lets fractures grow, and .false. says that they do not"), &
+        "nothing grows; enabled = .true. lets fractures grow, and .false. says that they do not"), &
       doubt_t("injection", "distance", "m", &
          "above a tenth of the length of the fracture, if 'nearest'", &
          "the well is moved so far to reach the nearest fracture; give its name, or leave it "// &
