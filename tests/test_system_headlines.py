@@ -17,6 +17,7 @@ import pytest
 from system_scene import TOP, call, rows, run
 
 import wingcrack
+from wingcrack.closing import closing_lines
 from wingcrack.figures import read_run
 from wingcrack.figures.facts import gather_facts
 from wingcrack.figures.report import report_rows
@@ -103,6 +104,58 @@ def done(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return out
 
 
+def test_units_are_those_of_the_thickness(done: Path) -> None:
+    """A body of 30 m has volumes in m3 or litres, one without a thickness per metre of it."""
+    is_thick = "thickness = 30.0" in (done / "scene.nml").read_text()
+    line = next(line for line in gather_facts(read_run(done)).results if "injected" in line)
+    assert ("²" in line) != is_thick
+
+
+def test_terminal(done: Path) -> None:
+    """The last lines have each well: net volume, pressures at the end and at most."""
+    exact = truth(done)
+    lines = closing_lines(done)
+    thickness = 30.0 if "thickness = 30.0" in (done / "scene.nml").read_text() else 1.0
+    for name, pressure in exact.pressure.items():
+        line = next(line for line in lines if line.startswith(f"{name}: "))
+        net = exact.injected[name] - exact.produced[name]
+        unit = "m2" if thickness == 1.0 else "m3"
+        what = "injected" if net >= 0.0 else "produced"
+        stated = shown(line, rf"{what} ([\d.e+-]+) {unit},")
+        assert stated == pytest.approx(abs(net) * thickness, rel=6e-3)
+        assert shown(line, r"([\d.]+) MPa at the end") * 1e6 == pytest.approx(
+            pressure[-1], rel=6e-3
+        )
+        assert shown(line, r"at most ([\d.]+) MPa") * 1e6 == pytest.approx(pressure.max(), rel=6e-3)
+
+
+def test_table_of_the_page(done: Path) -> None:
+    """The table of wells by stage on the page, cell by cell, against report.csv."""
+    page = (done / "figures" / "index.html").read_text()
+    table = re.search(r"<table><tr>(.*?)</tr>(.*?)</table>", page)
+    assert table, page[:500]
+    heads = re.findall(r"<th>(.*?)</th>", table[1])
+    volume = "m³" if "thickness = 30.0" in (done / "scene.nml").read_text() else "m²"
+    columns = {
+        "from [s]": ("begin_s", 1.0), "to [s]": ("end_s", 1.0),
+        "pressure at first [MPa]": ("pressure_at_begin_pa", 1e6),
+        "at last [MPa]": ("pressure_at_end_pa", 1e6), "highest [MPa]": ("highest_pressure_pa", 1e6),
+        f"injected [{volume}]": ("injected_m2", 30.0 if volume == "m³" else 1.0),
+        f"produced [{volume}]": ("produced_m2", 30.0 if volume == "m³" else 1.0),
+    }  # fmt: skip
+    with (done / "figures" / "report.csv").open(newline="") as file:
+        written = list(csv.DictReader(file))
+    lines = re.findall(r"<tr>(.*?)</tr>", table[2])
+    assert len(lines) == len(written)
+    for line, row in zip(lines, written, strict=True):
+        cells = dict(zip(heads, re.findall(r"<td>(.*?)</td>", line), strict=True))
+        assert (cells["well"], cells["stage"]) == (row["well"], row["stage"])
+        for head, (column, size) in columns.items():
+            factor = size if volume in head else 1.0 / size
+            expected = pytest.approx(float(row[column]) * factor, rel=6e-4)
+            assert float(cells[head]) == expected, head
+
+
 def shown(words: str, pattern: str) -> float:
     """Give the number in words that match."""
     found = re.search(pattern, words)
@@ -110,11 +163,12 @@ def shown(words: str, pattern: str) -> float:
     return float(found[1])
 
 
-UNITS = {"m²": 1.0, "cm²": 1e-4, "mm²": 1e-6, "km²": 1e6}
+UNITS = {"m²": 1.0, "cm²": 1e-4, "mm²": 1e-6, "m³": 1 / 30, "l": 1e-3 / 30, "ml": 1e-6 / 30}
+"""Those of volumes are over the only thickness here."""
 
 
 def area(words: str, what: str) -> float:
-    found = re.search(what + r":? ([\d.e+-]+) (\S*m²)", words)
+    found = re.search(what + r":? ([\d.e+-]+) (\S+?)[,<\n]", words + "\n")
     assert found, (what, words)
     return float(found[1]) * UNITS[found[2]]
 
@@ -221,3 +275,11 @@ def test_studies(done: Path) -> None:
         value, reason = measure(peak, done, {})
         assert value is not None, reason
         assert value * 1e6 == pytest.approx(pressure.max(), rel=1e-12)
+        net = Quantity(
+            name="net", unit="m2", file="wells.csv", column="injected_m2", take="last",
+            where={"well": name},
+        )  # fmt: skip
+        value, reason = measure(net, done, {})
+        assert value is not None, reason
+        expected = exact.injected[name] - exact.produced[name]
+        assert value == pytest.approx(expected, rel=1e-9, abs=1e-15)

@@ -15,11 +15,12 @@
 !! The entries of a well that is shut exchange fluid (cross-flow). Pressures here are relative to
 !! the state in situ, so that the fluid in the well has the weight of that in the fractures.
 !!
-!! Under a limit the terms are compared as shares, of the rate and of the pressure, the latter much
-!! reduced: a well that exceeds its limit at its rate is tried at the limit next, one that would
-!! flow backwards there is tried without flow, and the other way in the same order. Without this
-!! scaling the size of r depends on the step, and in short steps wells alternated between their rate
-!! and no flow without end.
+!! Under a limit the terms are compared as shares, of the rate and of the pressure. Above the limit
+!! the latter is much reduced: a well that exceeds its limit at its rate is tried at the limit next,
+!! one that would flow backwards there is tried without flow. Below the limit it is much enlarged:
+!! such a well has its rate, whatever the last iterate made of r. Without this scaling the size of r
+!! depends on the step, and in short steps wells alternated between their rate and no flow without
+!! end.
 module coarse_well_flow
    use base_kinds, only: ik, rk
    use coarse_fractures, only: conducting_aperture, fracture_system_t
@@ -136,6 +137,7 @@ contains
       real(rk), intent(in) :: flow  !< [m2/s]
       real(rk), intent(in) :: head  !< [Pa]
       real(rk), parameter :: weight = 0.1_rk  ! of the pressure's share, which is 2 at most
+      real(rk), parameter :: within = 1.0e3_rk  ! of it below the limit, where the rate is held
       real(rk) :: beyond, share
 
       associate (wells => eq%paths%wells)
@@ -144,6 +146,7 @@ contains
          share = (flow + wells%storage(w)*(head - eq%before%well_head(w))/eq%dt)/wells%rate(w)
          beyond = weight*sign(1.0_rk, wells%rate(w))*(head - wells%pressure(w)) &
                   /max(abs(head), abs(wells%pressure(w)), tiny(1.0_rk))
+         if (beyond < 0.0_rk) beyond = within*beyond
          condition = control_rate
          if (share - 1.0_rk < min(beyond, share)) then
             condition = merge(control_pressure, control_shut, beyond < share)

@@ -55,6 +55,7 @@ module coarse_wells
    contains
       procedure :: lost
       procedure :: at_places
+      procedure :: first_flows
       procedure :: flow_number
       procedure :: first_entry
       procedure :: last_entry
@@ -113,6 +114,34 @@ contains
 
       flow = [well_flow(:self%n), well_flow(self%n_all + 1:)]
    end function at_places
+
+   !> The flows of the places from which the iteration of a step begins: those before it, and a
+   !! change of the rate distributed by the losses of the entries. Where nothing flows losses by
+   !! the square of the flow have no derivative, and Newton's method would begin as if there were
+   !! none.
+   pure function first_flows(self, well_flow) result(flow)
+      class(wells_t), intent(in) :: self
+      real(rk), intent(in) :: well_flow(:)  !< of state_t [m2/s]
+      real(rk) :: flow(self%n + self%n_entries)  !< [m2/s]
+      real(rk) :: loss, rate
+      logical :: follows
+      integer(ik) :: w
+
+      flow = self%at_places(well_flow)
+      do w = 1, self%n
+         loss = self%entries_loss(w)
+         if (.not. (loss > 0.0_rk .or. self%turbulence(w) > 0.0_rk)) cycle
+         rate = merge(0.0_rk, self%rate(w), self%control(w) == control_shut)
+         follows = self%control(w) == control_shut .or. (self%control(w) == control_rate &
+                                                         .and. .not. self%storage(w) > 0.0_rk)
+         associate (of_entries => flow(self%first_entry(w):self%last_entry(w)))
+            if (any(abs(of_entries) > 0.0_rk) .and. .not. follows) cycle
+            if (loss > 0.0_rk) of_entries = of_entries + (rate - flow(w)) &
+                                         *sqrt(loss/pack(self%entry_loss, self%of_entry == w))
+            flow(w) = rate
+         end associate
+      end do
+   end function first_flows
 
    !> The well of each flow of a state, among all wells of the scene.
    pure function flow_number(self) result(number)

@@ -4,6 +4,7 @@
 module scene_exchange
    use base_kinds, only: ik, radians, rk
    use base_plane, only: nearest_place, norm2
+   use base_tolerances, only: round_off
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
                                     exchange_side, exchange_word, set_names, set_text, &
@@ -73,22 +74,31 @@ contains
    pure subroutine place_at_nearest(fractures, well)
       type(fracture_t), intent(in) :: fractures(:)
       type(injection_t), intent(inout) :: well
-      real(rk) :: least, place(2), point(2), segment(2, 2)
+      real(rk) :: distance(size(fractures)), place(2, size(fractures)), point(2)
       integer :: f, k
 
       point = [well%x, well%y]
-      least = huge(1.0_rk)
+      distance = huge(1.0_rk)
       do f = 1, size(fractures)
-         do k = 2, min(size(fractures(f)%x), size(fractures(f)%y))  ! unequal ones are refused later
-            segment(1, :) = fractures(f)%x(k - 1:k)
-            segment(2, :) = fractures(f)%y(k - 1:k)
-            place = nearest_place(point, segment)
-            if (.not. norm2(place - point) < least) cycle
-            least = norm2(place - point)
-            well%fracture = int(f, ik)
-            well%x = place(1)
-            well%y = place(2)
-         end do
+         associate (x => fractures(f)%x, y => fractures(f)%y)
+            do k = 2, min(size(x), size(y))  ! unequal ones are refused later
+               associate (near => nearest_place(point, reshape([x(k - 1), y(k - 1), x(k), y(k)], &
+                                                               [2, 2])))
+                  if (.not. norm2(near - point) < distance(f)) cycle
+                  distance(f) = norm2(near - point)
+                  place(:, f) = near
+               end associate
+            end do
+         end associate
+      end do
+      f = minloc(distance, dim=1)
+      well%fracture = int(f, ik)
+      well%x = place(1, f)
+      well%y = place(2, f)
+      well%moved = distance(f)
+      do k = 1, size(fractures)
+         if (norm2(place(:, k) - place(:, f)) > round_off*distance(f)) &
+            well%next_distance = min(well%next_distance, distance(k))
       end do
       if (allocated(well%entries)) then
          well%entries%fracture = well%fracture

@@ -41,7 +41,7 @@ module scene_plausible
                          of_dry = 26, of_overpressure = 27, of_viscous = 28, &
                          of_surplus = 29, of_friction_there = 30, of_wide = 31, &
                          of_sealed = 32, of_would_grow = 33, of_thickness = 34, &
-                         of_no_growth = 35
+                         of_no_growth = 35, of_moved = 36, of_next = 37
 
    ! The table keeps its own layout.
    !&<
@@ -132,7 +132,14 @@ module scene_plausible
          "rates such as rate_l_s are those of this height of the fractures; give thickness"), &
       doubt_t("growth", "enabled", "logical", &
          "assumed, in a group that gives neither it nor intensities", &
-         "nothing grows; enabled = .true. lets fractures grow, and .false. says that they do not")]
+        "nothing grows; enabled = .true. lets fractures grow, and .false. says that they do not"), &
+      doubt_t("injection", "distance", "m", &
+         "above a tenth of the length of the fracture, if 'nearest'", &
+         "the well is moved so far to reach the nearest fracture; give its name, or leave it "// &
+         "out for a well in the rock"), &
+      doubt_t("injection", "next distance", "m", &
+         "of another fracture within 5 % of that of the nearest, likewise", &
+         "two fractures are about equally near, and the nearest is fed; give its name")]
    !&>
 
    !> Distance below which an end reaches a target (twolevel_segments) [increments].
@@ -407,8 +414,14 @@ contains
       end associate
       if (scene%has_wells()) call doubt_seal(scene, list)
       do i = 1, merge(size(scene%injections), 0, allocated(scene%injections))
-         call add(list, scene%injections(i)%start >= scene%time%end, of_start, &
-                  scene%injections(i)%start)
+         associate (well => scene%injections(i))
+            call add(list, well%start >= scene%time%end, of_start, well%start)
+            if (.not. well%moved > 0.0_rk) cycle
+            call add(list, well%moved > 0.1_rk*scene%fractures(well%fracture)%length(), of_moved, &
+                     well%moved, " '"//trim(well%name)//"'")
+            call add(list, well%next_distance < 1.05_rk*well%moved, of_next, well%next_distance, &
+                     " '"//trim(well%name)//"'")
+         end associate
       end do
       associate (interval => scene%output%interval)
          call add(list, interval > 0.0_rk .and. &

@@ -167,6 +167,9 @@ module scene_types
       !> in the cell nearest to (x, y), and not the whole initial fracture
       logical :: at_point = .false.
       real(rk) :: x = 0.0_rk, y = 0.0_rk  !< point of injection [m]
+      ! Distances of the point in the file from the nearest fracture, where it is placed, and from
+      ! the next one elsewhere:
+      real(rk) :: moved = 0.0_rk, next_distance = huge(1.0_rk)  !< [m]
       real(rk) :: start = 0.0_rk, end = huge(1.0_rk)  !< [s]
       !> (stages) start times; unallocated: one stage from start [s]
       real(rk), allocatable :: time(:)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -24,7 +25,8 @@ def closing_lines(directory: Path) -> list[str]:
     wells: dict[str, list[Mapping[str, str]]] = {}
     for row in _rows(directory / "wells.csv"):
         wells.setdefault(row["well"], []).append(row)
-    lines = [_well_line(name, rows) for name, rows in wells.items()]
+    thickness = _thickness(directory / "scene.nml")
+    lines = [_well_line(name, rows, thickness) for name, rows in wells.items()]
     counts = Counter(row["kind"] for row in _rows(directory / "events.csv"))
     events = [
         f"{counts[kind]} {words[counts[kind] > 1]}"
@@ -40,13 +42,21 @@ def _rows(path: Path) -> Iterator[Mapping[str, str]]:
             yield from csv.DictReader(file)
 
 
-def _well_line(name: str, rows: list[Mapping[str, str]]) -> str:
+def _thickness(scene: Path) -> float:
+    """Thickness of the body [m], which the scene of every run has as a line."""
+    text = scene.read_text(encoding="utf-8") if scene.is_file() else ""
+    found = re.search(r"^  thickness = (\S+)", text, flags=re.MULTILINE)
+    return float(found[1]) if found else 1.0
+
+
+def _well_line(name: str, rows: list[Mapping[str, str]], thickness: float) -> str:
     highest = max(rows, key=lambda row: float(row["pressure_pa"]))
     last = rows[-1]
     volume = float(last["injected_m2"])
     what = "injected" if volume >= 0.0 else "produced"
+    size = f"{abs(volume):.3g} m2" if thickness == 1.0 else f"{abs(volume) * thickness:.3g} m3"
     return (
-        f"{name}: {what} {abs(volume):.3g} m2, {pressure_text(last['pressure_pa'])} at the end,"
+        f"{name}: {what} {size}, {pressure_text(last['pressure_pa'])} at the end,"
         f" at most {pressure_text(highest['pressure_pa'])} at {time_text(highest['time_s'])}"
     )
 

@@ -179,7 +179,7 @@ def _body(given: SimpleNamespace, content: Map, base: Base | None) -> Polygon | 
         return base.body()
     if outline is not None:
         return Polygon(outline.points)
-    return rectangle_around(content.lines, given.margin)
+    return rectangle_around([*content.lines, *content.wells], given.margin)
 
 
 def _limits(given: SimpleNamespace, content: Map) -> Limits:
@@ -223,7 +223,10 @@ def _network(
         content.note("cells", words)
     line_values = [line.attributes for line in content.lines]
     lines = content.lines
-    return Network(lines, line_values, regions, region_values, body, cell, cells, given.growth)  # type: ignore[arg-type]
+    wells = entry_values("injection", content.wells, content, path)
+    entries = (line_values, regions, region_values, body, cell, cells, given.growth)
+    wells = entry_values("injection", content.wells, content, path)
+    return Network(lines, *entries, content.wells, wells)  # type: ignore[arg-type]
 
 
 def _heading(given: SimpleNamespace, path: str) -> str:

@@ -28,6 +28,7 @@ def give_names(content: Map, taken: set[str]) -> None:
     kinds: tuple[tuple[str, Sequence[Line | Area], set[str]], ...] = (
         ("f", content.lines, set(taken)),
         ("r", content.areas, set()),
+        ("w", content.wells, set()),
     )
     for stem, items, used in kinds:
         for number, item in enumerate(items, start=1):
@@ -39,7 +40,7 @@ def give_names(content: Map, taken: set[str]) -> None:
             if wanted and item.name != wanted:
                 content.note("renamed", f"{item.source}: '{wanted}' is called '{item.name}'")
     if nameless:
-        content.note("unnamed", f"{nameless} features without a name are called f1, f2 or r1, r2")
+        content.note("unnamed", f"{nameless} features without a name are called f1, f2, r1 or w1")
 
 
 def _allowed(name: str) -> str:
@@ -77,6 +78,13 @@ def entry_values(
             name = word.strip().lower()
             if name in NAMES or name == "kind" or value in (None, ""):
                 continue
+            number = _number(value)
+            if group_name == "injection" and number is not None:
+                # rates, with the ending of a unit too, which the solver knows
+                stem = next((n for n in ("rate", "pressure") if name.startswith(n)), "")
+                if (stem and name.startswith(f"{stem}_")) or name == stem:
+                    values[name] = number
+                    continue
             if name in group.parameters and name not in _GEOMETRIC:
                 where = f"{path}: {feature.source}"
                 values[name] = entry_value(group.parameters[name], value, where)

@@ -54,6 +54,7 @@ class Map:
 
     lines: list[Line] = field(default_factory=list)
     areas: list[Area] = field(default_factory=list)
+    wells: list[Line] = field(default_factory=list)  # of one place each
     notes: list[Note] = field(default_factory=list)
     system: str = ""  # coordinate system that the map states
     # places nearer than this are one [m]: numbers of the map's size have no more digits
@@ -61,8 +62,8 @@ class Map:
 
     @property
     def features(self) -> list[Line | Area]:
-        """Lines and areas."""
-        return [*self.lines, *self.areas]
+        """Lines, areas and wells."""
+        return [*self.lines, *self.areas, *self.wells]
 
     def note(self, kind: str, what: str) -> None:
         """Add a note."""

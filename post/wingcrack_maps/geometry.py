@@ -13,7 +13,9 @@ from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Area, Attributes, Line, Map, Points
 
 NAMES = ("name", "label", "id", "fid")
-ROLES = ("boundary", "region", "fracture")
+ROLES = ("boundary", "region", "fracture", "well", "")
+_FITTING = {"LineString": ("fracture", ""), "Polygon": ROLES[:3] + ROLES[4:], "Point": ROLES[3:]}
+_WORDS = {"LineString": "line", "Polygon": "polygon", "Point": "point"}
 
 
 def add_geometry(
@@ -36,17 +38,22 @@ def add_geometry(
             name = f"{name}.{number}"
         if part.has_z:
             content.note("height left out", f"{source}: heights are ignored")
-        if isinstance(part, LineString):
-            if role not in ("", "fracture"):
-                raise SceneError(
-                    f"{path}: {source} is a line but its kind is '{role}': it takes a polygon"
-                )
+        if role not in _FITTING.get(part.geom_type, ROLES):
+            raise SceneError(
+                f"{path}: {source} is a {_WORDS[part.geom_type]} but its kind is '{role}': it takes"
+                f" a {'point' if role == 'well' else 'polygon'}"
+            )
+        if role == "well":
+            well = Line(name, _points(part.coords, path, source), attributes, source)
+            content.wells.append(well)
+        elif isinstance(part, LineString):
             line = Line(name, _points(part.coords, path, source), attributes, source)
             content.lines.append(line)
         elif isinstance(part, Polygon):
             _add_polygon(content, part, Area(name, _no_points(), role, attributes), path, source)
         else:
-            content.note("left out", f"{source} is a {part.geom_type}, no line and no polygon")
+            words = f"{source} is a {part.geom_type}; a point with the kind 'well' is a well"
+            content.note("left out", words)
 
 
 def _joined(geometry: BaseGeometry, content: Map, source: str) -> BaseGeometry:
@@ -83,6 +90,14 @@ def name_of(attributes: Attributes) -> str:
     return ""
 
 
+def is_well(attributes: Attributes) -> bool:
+    """Whether the kind of a feature is a well."""
+    return any(
+        word.lower() == "kind" and str(value).strip().lower() == "well"
+        for word, value in attributes.items()
+    )
+
+
 def _role(attributes: Attributes, path: str, source: str) -> str:
     for word in list(attributes):
         if word.lower() == "kind":
@@ -90,7 +105,7 @@ def _role(attributes: Attributes, path: str, source: str) -> str:
             if role and role not in ROLES:
                 raise SceneError(
                     f"{path}: {source} has the kind '{role}', but it must be one of"
-                    f" {', '.join(ROLES)}"
+                    f" {', '.join(ROLES[:-1])}"
                 )
             return role
     return ""

@@ -6,12 +6,12 @@ from itertools import accumulate
 
 import numpy as np
 import shapely
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Point
 
 from wingcrack.figures.text_files import csv_rows
 from wingcrack.scenes.errors import SceneError
 from wingcrack_maps.features import Attributes, Line, Map
-from wingcrack_maps.geometry import add_geometry, name_of
+from wingcrack_maps.geometry import add_geometry, is_well, name_of
 from wingcrack_maps.units import in_degrees
 
 _DEEPEST = 100  # brackets within one another: GEOS ends the process at some thousand
@@ -173,6 +173,9 @@ class _Table:
         """Give the map, once all rows are added."""
         for name, places in self.vertices.items():
             attributes, source = self.first[name]
+            if len(places) == 1 and is_well(attributes):
+                add_geometry(self.found, Point(places[0]), attributes, self.path, source)
+                continue
             if len(places) < 2:
                 raise SceneError(
                     f"{self.path}: {source}: '{name}' has one vertex, but it takes two"

@@ -80,6 +80,8 @@ class Network:
     cell: float | None  # of all fractures [m]
     cells: Sequence[float]  # of each where there is none for all [m]
     grows: bool = False
+    wells: Sequence[Line] = ()
+    well_values: Sequence[dict[str, Value]] = ()
 
 
 def cell_sizes(lines: Sequence[Line]) -> tuple[list[float], str]:
@@ -138,13 +140,14 @@ def scene_text(network: Network, heading: str, base: Base | None) -> str:
         The scene that it is added to; without one all that a scene needs is written.
     """
     comment = "".join(f"! {line}\n" for line in heading.splitlines())
-    groups = _geometry(network, base)
+    groups = _geometry(network, base) + _wells(network)
     if base is not None:
         growth = _GROWTH if network.grows else ""
         return f"{base.text.rstrip()}\n\n{comment}{groups}{growth}"
     holds = _RECTANGLE if "x_min" in domain_values(_body(network)) else _POLYGON
+    well = "" if network.wells else _WELL + _well(network.lines)
     time = _TIME_WITH_GROWTH + _GROWTH if network.grows else _TIME + _NO_GROWTH
-    return f"{comment}\n{groups}\n{_ROCK}{holds}{_WELL}{_well(network.lines)}{time}"
+    return f"{comment}\n{groups}\n{_ROCK}{holds}{well}{time}"
 
 
 def _body(network: Network) -> Polygon:
@@ -181,6 +184,18 @@ def _sizes(network: Network) -> dict[str, Value]:
     far = min(_COARSENING * near, high_x - low_x, high_y - low_y, float(edges.min()))
     own: dict[str, Value] = {} if network.cell is None else {"size_fracture": network.cell}
     return {**own, "size_boundary": max(far, least)}
+
+
+def _wells(network: Network) -> str:
+    """Write the wells of the map: each in the nearest fracture, with a radius in the rock."""
+    pieces = []
+    for well, values in zip(network.wells, network.well_values, strict=True):
+        x, y = map(float, well.points[0])
+        where: dict[str, Value] = {} if "radius" in values else {"fracture": "nearest"}
+        pieces.append(
+            group_text("injection", {"name": well.name, **where, "x": x, "y": y, **values})
+        )
+    return "".join(pieces)
 
 
 def _well(lines: Sequence[Line]) -> str:

@@ -263,6 +263,16 @@ contains
       s%injections%start = 3600.0_rk
       call expect(s, "&injection: start is 3600.0 s: ", "a well that never runs")
       s = sound()
+      s%injections(1)%name = "w"
+      s%injections(1)%moved = 0.019_rk
+      s%injections(1)%next_distance = 0.021_rk
+      call expect(s, "", "a tenth of 0.2 m")
+      s%injections(1)%next_distance = 0.0199_rk
+      call expect(s, "&injection 'w': next distance is 0.0199 m: two fractures", "both near")
+      s%injections(1)%moved = 0.021_rk
+      s%injections(1)%next_distance = 1.0_rk
+      call expect(s, "&injection 'w': distance is 0.021 m: the well is moved", "far away")
+      s = sound()
       s%material%biot = 0.7_rk
       s%material%porosity = 0.01_rk
       s%time%end = 0.899_rk**2/diffusivity

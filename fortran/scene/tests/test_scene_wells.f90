@@ -83,6 +83,9 @@ contains
                              abs(well%y - 0.3_rk) < 1.0e-12_rk, "the second, at its nearest place")
          call checks%is_true(well%entries(1)%fracture == 2 .and. &
                              abs(well%entries(1)%y - 0.3_rk) < 1.0e-12_rk, "its entry too")
+         call checks%is_close(well%moved, 0.1_rk, 1.0e-12_rk, "moved by a tenth")
+         call checks%is_true(well%next_distance > 0.3_rk .and. well%next_distance < 0.4_rk, &
+                             "the first one is next")
       end associate
       call expect_same()
       call refuse("&injection fracture='nearest' rate=1e-7 /", ":10: &injection: fracture is "// &

@@ -101,7 +101,7 @@ def test_mechanics_only_has_no_pressure_and_no_balance(dry_run: Path) -> None:
 def test_balance_adds_up_as_written(wet_run: Path) -> None:
     figure = balance(read_run(wet_run))
     volumes, errors = figure.axes
-    assert volumes.get_ylabel() == "volume per metre of thickness [cm²]"
+    assert volumes.get_ylabel() == "volume per thickness [cm²]"
     injected, leaked, kept = (np.asarray(line.get_ydata()) for line in volumes.lines[:3])
     assert injected[-1] == pytest.approx(5e-9 * times()[-1] * 1e4, rel=1e-12)
     assert np.allclose(leaked, 0.6 * injected, rtol=1e-12)

@@ -7,7 +7,7 @@ import pytest
 
 from synthetic_run import HOUR
 from wingcrack.figures.durations import parse_times
-from wingcrack.figures.units import area_unit, displacement_unit, time_unit
+from wingcrack.figures.units import displacement_unit, time_unit, volume_unit
 
 
 def test_times_in_all_units() -> None:
@@ -27,5 +27,7 @@ def test_units_keep_numbers_readable() -> None:
     assert displacement_unit(np.array([-2e-4, np.nan])).name == "mm"
     assert displacement_unit(np.array([4e-5])).name == "µm"
     assert displacement_unit(np.zeros(3)).name == "mm"
-    assert area_unit(np.array([7e-4])).name == "cm²"
+    assert volume_unit(1.0, np.array([7e-4])).name == "cm²"
+    whole = volume_unit(30.0, np.array([7e-4]))
+    assert (whole.name, float(whole.of(7e-4))) == ("l", pytest.approx(21.0))
     assert displacement_unit(np.array([2e-4])).of(2e-4) == pytest.approx(0.2, rel=1e-15)

@@ -407,3 +407,58 @@ def test_short_traces_and_vertices_are_left_out_on_request(tmp_path: Path) -> No
     assert "1 traces shorter than 1 m, together 0.5 m" in notes
     assert "1 of 7 vertices" in notes
     assert imported(path, "--unit", "m", "--drop-shorter", "99", "--overwrite")[0] == 2
+
+
+def point(x: float, y: float, **properties: object) -> dict[str, object]:
+    """Give a point of a GeoJSON map."""
+    geometry = {"type": "Point", "coordinates": [x, y]}
+    return {"type": "Feature", "properties": properties, "geometry": geometry}
+
+
+def test_points_become_wells(tmp_path: Path) -> None:
+    """Each in the nearest fracture, with a radius in the rock; units and origin as of the lines."""
+    wells = (
+        point(0.002, 0.0001, kind="well", name="GT 1", rate_l_s=0.01, pressure_mpa=33, depth=3),
+        point(0.012, 0.008, kind="Well", rate=-1e-6, radius=0.1, end=1800),
+        point(0.0, 0.0, name="sample"),
+    )
+    lines = (feature((0, 0), (0.01, 0)), feature((0.005, 0.003), (0.005, 0.009)))
+    path = geojson(tmp_path / "m.geojson", *lines, *wells)
+    status, scene = imported(path, "--unit", "km", "--origin", "0,1")
+    assert status == 0
+    first, second = (dict(group) for group in f90nml.read(scene)["injection"])
+    assert first == {
+        "name": "GT_1", "fracture": "nearest", "x": 2.0, "y": pytest.approx(-0.9),
+        "rate_l_s": 0.01, "pressure_mpa": 33.0,
+    }  # fmt: skip
+    assert second == {
+        "name": "w2", "x": 12.0, "y": 7.0, "rate": -1e-6, "radius": 0.1, "end": 1800.0
+    }  # fmt: skip
+    assert ("left out", "", "") in rows(scene, "noted")
+
+
+def test_wells_of_a_table(tmp_path: Path) -> None:
+    path = tmp_path / "m.csv"
+    path.write_text("name;x;y;kind;rate\na;0;0;;\na;10;0;;\nw;2,5;0,1;well;1e-6\n")
+    status, scene = imported(path)
+    assert status == 0
+    assert dict(f90nml.read(scene)["injection"]) == {
+        "name": "w", "fracture": "nearest", "x": 2.5, "y": 0.1, "rate": 1e-6
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (point(2, 0, kind="well"), "a well needs a rate"),
+        (point(2, 0, kind="well", rate="much"), "rate is 'much' but must be"),
+        (feature((2, 0), (3, 1), kind="well"), "takes a point"),
+        (point(2, 0, kind="region"), "takes a polygon"),
+    ],
+)
+def test_wrong_wells_are_refused(
+    wrong: dict[str, object], words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, _ = imported(geojson(tmp_path / "m.geojson", *LINES, wrong), "--unit", "m")
+    assert status == 2
+    assert words in capsys.readouterr().err

@@ -12,7 +12,7 @@ from wingcrack.figures.pressures import highest_pressures, pumped_volumes
 from wingcrack.figures.read import Run
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.slip import slip_words
-from wingcrack.figures.units import MEGAPASCAL, area_unit, displacement_unit, stress_unit
+from wingcrack.figures.units import MEGAPASCAL, displacement_unit, stress_unit, volume_unit
 
 _MOST_WELLS = 4  # with a line of their own, those with the highest pressures
 
@@ -94,10 +94,10 @@ def _results(run: Run) -> list[str]:
         lines.append(f"highest load factor: {moments[highest]:.4g} in state {highest + 1}")
     if history.has("injected_m2"):
         injected, produced = pumped_volumes(run)
-        area = area_unit(injected, produced)
-        line = f"injected: {float(area.of(injected)):.3g} {area.name}"
+        size = volume_unit(run.thickness_m, injected, produced)
+        line = f"injected: {float(size.of(injected)):.3g} {size.name}"
         if produced > 0.0:
-            line += f", produced: {float(area.of(produced)):.3g} {area.name}"
+            line += f", produced: {float(size.of(produced)):.3g} {size.name}"
         elif injected > 0.0 and history.has("leakoff_m2"):
             line += f", leaked off {100.0 * history.number('leakoff_m2')[-1] / injected:.0f} %"
         lines.append(line)

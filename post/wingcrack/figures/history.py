@@ -22,7 +22,14 @@ from wingcrack.figures.scales import jump_scale, run_length_unit, without_round_
 from wingcrack.figures.states import growth_start, settled_rows
 from wingcrack.figures.table import BoolArray, FloatArray, Table
 from wingcrack.figures.tabulated import intensities_table, state_table
-from wingcrack.figures.units import MEGAPASCAL, Unit, area_unit, displacement_unit, intensity_unit
+from wingcrack.figures.units import (
+    MEGAPASCAL,
+    Unit,
+    displacement_unit,
+    intensity_unit,
+    volume_label,
+    volume_unit,
+)
 
 _Mode: TypeAlias = tuple[str, str, str, str | None, str | None]
 
@@ -253,14 +260,14 @@ def balance(run: Run) -> Figure:
     ):
         if table.has(name) and np.any(table.number(name) != 0.0):
             series.append((label, table.number(name)))
-    unit = area_unit(*(values for _, values in series))
+    unit = volume_unit(run.thickness_m, *(values for _, values in series))
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.6)
     volumes, errors = figure.subplots(1, 2)
     for index, (label, values) in enumerate(series):
         dashes = style.LINE_STYLES[index % len(style.LINE_STYLES)]
         volumes.plot(time, unit.of(values), dashes, color=style.CYCLE[index], label=label)
     volumes.legend()
-    _finish(volumes, "fluid volumes", f"volume per metre of thickness [{unit.name}]", below)
+    _finish(volumes, "fluid volumes", volume_label(unit), below)
     error = np.abs(table.number("mass_error_relative"))
     # zero cannot stand on a logarithmic axis; such steps are exact to round-off
     shown = np.maximum(error, np.finfo(float).eps)

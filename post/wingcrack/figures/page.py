@@ -35,6 +35,7 @@ _REPORTED = {  # columns of report.csv on the page
     "growth_events": "growth",
     "seismic_events": "seismic",
 }
+_PUMPED = ("injected", "produced")
 _MATH = ((r"$K_\mathrm{eq}/K_\mathrm{IC}$", "K_eq/K_IC"), ("$M_w$", "M_w"), ("$", ""))
 
 _PAGE = Template("""\
@@ -110,10 +111,16 @@ def _report(rows: Sequence[Mapping[str, Cell]]) -> str:
     """The wells by stage as a table, in units that are easy to read; nothing without wells."""
     if not rows:
         return ""
-    head = "".join(f"<th>{words}</th>" for words in ("well", "stage", *_REPORTED.values()))
+    reported = dict(_REPORTED)
+    if any(row[f"{kind}_m3"] != row[f"{kind}_m2"] for row in rows for kind in _PUMPED):
+        reported = {  # of the whole thickness
+            column.replace("ed_m2", "ed_m3"): words.replace("[m²]", "[m³]")
+            for column, words in _REPORTED.items()
+        }
+    head = "".join(f"<th>{words}</th>" for words in ("well", "stage", *reported.values()))
     lines = [
         f"<td>{html.escape(str(row['well']))}</td><td>{row['stage']}</td>"
-        + "".join(f"<td>{_shown(column, row.get(column, ''))}</td>" for column in _REPORTED)
+        + "".join(f"<td>{_shown(column, row.get(column, ''))}</td>" for column in reported)
         for row in rows
     ]
     body = "".join(f"<tr>{line}</tr>" for line in lines)

@@ -39,6 +39,11 @@ class Run:
     fracture_fields: tuple[Snapshot, ...]
 
     @property
+    def thickness_m(self) -> float:
+        """Thickness of the body [m]; 1 where the scene has none."""
+        return self.scene.thickness_m if self.scene else 1.0
+
+    @property
     def name(self) -> str:
         """Name of the scene, or of the directory where no file tells it."""
         if self.record and isinstance(self.record.get("scene"), str):

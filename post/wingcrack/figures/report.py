@@ -64,9 +64,13 @@ def _stage_row(run: Run, table: Table, well: str, before: int, rows: Rows) -> di
         "highest_pressure_time_s": float(time[highest]),
         "injected_m2": float(np.sum(flowed[flowed > 0.0])),
         "produced_m2": float(np.sum(np.abs(flowed[flowed < 0.0]))),
+        "injected_m3": 0.0,
+        "produced_m3": 0.0,
         "injectivity_m2_s_pa": float(table.number("injectivity_m2_s_pa")[last]),
         "injectivity_error_m2_s_pa": _error(table, "injectivity_error_m2_s_pa", last),
     }
+    for kind in ("injected", "produced"):
+        row[f"{kind}_m3"] = run.thickness_m * float(row[f"{kind}_m2"])
     moments = run.history.moments()
     at = int(np.argmin(np.abs(moments - time[last])))
     for name in _LENGTHS:

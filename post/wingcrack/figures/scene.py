@@ -66,6 +66,7 @@ class Scene:
     # components xx and yy of the rock elsewhere [m2]
     permeability_m2: tuple[float, float] | None = None
     breadth_m: float = 1.0  # assumed length of the fractures out of the plane [m]
+    thickness_m: float = 1.0  # of the body, for volumes of wells [m]
     # how growth in equilibrium takes the load along, 'length' or 'dead'; '' with a fluid, or
     # without such growth
     control: str = ""
@@ -155,6 +156,7 @@ def read_scene(path: Path) -> Scene | None:
         regions=_regions(path, groups, outline),
         permeability_m2=None if along_x is None or along_y is None else (along_x, along_y),
         breadth_m=number("output", "out_of_plane_length") or 1.0,
+        thickness_m=number("scene", "thickness") or 1.0,
         control=control_of(groups),
         drive=drive_of(groups),
         window_m=number("fine", "window") if "fluid" in first else None,

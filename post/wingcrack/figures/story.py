@@ -27,7 +27,7 @@ from wingcrack.figures.slip import ASEISMIC_COLOUR, SEISMIC_COLOUR, seismic, sli
 from wingcrack.figures.states import growth_start
 from wingcrack.figures.story_map import HALO, draw_map
 from wingcrack.figures.table import FloatArray, Table
-from wingcrack.figures.units import MEGAPASCAL, area_unit, rate_unit, time_unit
+from wingcrack.figures.units import MEGAPASCAL, rate_unit, time_unit, volume_label, volume_unit
 from wingcrack.figures.wells import MOST_WELLS, well_rows
 
 _SIZE = (style.DOUBLE_COLUMN, 9.4)  # [inch] on A4
@@ -235,7 +235,7 @@ def _draw_fluid(axes: Axes, run: Run) -> None:
         table.number("rock_outflow_m2") + table.number("outflow_m2"),
     ]
     given = table.number("injected_m2") + table.number("prefilled_m2")
-    unit = area_unit(*parts, given)
+    unit = volume_unit(run.thickness_m, *parts, given)
     below = np.zeros_like(time)
     for (name, colour, hatch), part in zip(_FLUID, parts, strict=True):
         if np.abs(part).max() <= 1.0e-6 * np.abs(given).max():
@@ -256,7 +256,7 @@ def _draw_fluid(axes: Axes, run: Run) -> None:
         "injected, less produced" if np.any(injected_and_produced(table)[1] > 0.0) else "injected"
     )
     axes.plot(time, unit.of(given), color="#000000", lw=1.0, label=label)
-    axes.set(title="where the fluid is", ylabel=f"volume per thickness [{unit.name}]")
+    axes.set(title="where the fluid is", ylabel=volume_label(unit))
     axes.set_ylim(bottom=min(0.0, float(unit.of(below).min())))
     _legend_above(axes)
 
@@ -373,10 +373,10 @@ def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
         return f"{float(unit.of(table.number(column)[-1])):.3g} {unit.name}"
 
     lines = [f"after {at(float(table.moments()[-1]))}:"]
-    area = area_unit(injected, produced)
-    lines.append(f"injected {float(area.of(injected)):.3g} {area.name}")
+    size = volume_unit(run.thickness_m, injected, produced)
+    lines.append(f"injected {float(size.of(injected)):.3g} {size.name}")
     if produced > 0.0:
-        lines.append(f"produced {float(area.of(produced)):.3g} {area.name}")
+        lines.append(f"produced {float(size.of(produced)):.3g} {size.name}")
     elif injected > 0.0:
         share = table.number("leakoff_m2")[-1] / injected
         lines.append(f"leaked off {100.0 * share:.0f} %")

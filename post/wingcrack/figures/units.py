@@ -29,6 +29,7 @@ MEGAPASCAL = Unit("MPa", 1e6)
 _SMALL_LENGTHS = (METRE, Unit("mm", 1e-3), Unit("µm", 1e-6), Unit("nm", 1e-9), Unit("pm", 1e-12))
 _STRESSES = (MEGAPASCAL, Unit("kPa", 1e3), Unit("Pa", 1.0))
 _AREAS = (Unit("m²", 1.0), Unit("cm²", 1e-4), Unit("mm²", 1e-6))
+_VOLUMES = (Unit("m³", 1.0), Unit("l", 1e-3), Unit("ml", 1e-6))
 _RATES = (
     Unit("m²/s", 1.0),
     *(Unit(rf"$10^{{-{power}}}$ m²/s", 10.0**-power) for power in (3, 6, 9, 12)),
@@ -68,9 +69,18 @@ def intensity_unit(*values: npt.ArrayLike) -> Unit:
     return Unit(rf"{stress.name}$\,\sqrt{{\mathrm{{m}}}}$", stress.size)
 
 
-def area_unit(*values: npt.ArrayLike) -> Unit:
-    """Unit for volumes per metre of thickness."""
-    return _fitting(_AREAS, values)
+def volume_unit(thickness_m: float, *values: npt.ArrayLike) -> Unit:
+    """Unit for volumes per metre [m2]: of the whole thickness where that is not 1 m."""
+    if thickness_m == 1.0:
+        return _fitting(_AREAS, values)
+    whole = tuple(thickness_m * np.asarray(value, dtype=float) for value in values)
+    unit = _fitting(_VOLUMES, whole)
+    return Unit(unit.name, unit.size / thickness_m)
+
+
+def volume_label(unit: Unit) -> str:
+    """Label of an axis of volumes."""
+    return f"volume{' per thickness' if '²' in unit.name else ''} [{unit.name}]"
 
 
 def _fitting(units: tuple[Unit, ...], values: tuple[npt.ArrayLike, ...]) -> Unit:

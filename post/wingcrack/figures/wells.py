@@ -14,7 +14,7 @@ from wingcrack.figures import style
 from wingcrack.figures.load import abscissa
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.table import FloatArray, Table
-from wingcrack.figures.units import MEGAPASCAL, area_unit
+from wingcrack.figures.units import MEGAPASCAL, volume_label, volume_unit
 
 MOST_WELLS = len(style.CYCLE)  # more have no colour of their own
 _GREY = "#555555"
@@ -41,7 +41,7 @@ def well_histories(run: Run) -> Figure:
     figure = style.new_figure(style.DOUBLE_COLUMN, 4.6)
     panels = list(figure.subplots(2, 2).flat)
     pressure, flow, volume, injectivity = panels
-    unit = area_unit(table.number("injected_m2"))
+    unit = volume_unit(run.thickness_m, table.number("injected_m2"))
     for index, _, rows in well_rows(table):
         time, below = abscissa(run, table.moments()[rows])
         colour = style.CYCLE[index % MOST_WELLS]
@@ -55,7 +55,7 @@ def well_histories(run: Run) -> Figure:
     for axes, title, label in (
         (pressure, "pressure", "pressure [MPa]"),
         (flow, "rate at the head, flow into fracture or rock", "flow [m²/s]"),
-        (volume, "volume so far", f"volume per thickness [{unit.name}]"),
+        (volume, "volume so far", volume_label(unit)),
         (injectivity, "injectivity: flow over rise of pressure", "injectivity [m²/(s Pa)]"),
     ):
         axes.set(title=title, ylabel=label)
