@@ -1,4 +1,4 @@
-"""`wingcrack import` and `wingcrack network`: scenes of fractures."""
+"""`wingcrack import`: scenes of fracture maps and of random networks."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ def make_scene(given: SimpleNamespace) -> int:
         content, path = _content(given)
         report = _make(given, content, path)
     except SceneError as reason:
-        print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
+        print(f"wingcrack import: {reason}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"wingcrack {given.command}: interrupted; nothing was written", file=sys.stderr)
+        print("wingcrack import: interrupted; nothing was written", file=sys.stderr)
         return 130
     left = report.number("left")
     if left and given.repair is None:
@@ -65,7 +65,7 @@ def _tell(done: int, left: int) -> None:
 
 def _content(given: SimpleNamespace) -> tuple[Map, str]:
     """Give what there is to be written, and where it comes from."""
-    if given.command == "network":
+    if given.map is None:
         laws = zip(given.density, given.length, given.orientation, strict=True)
         sets = [Set(*three) for three in laws]
         network = random_network(sets, given.box, given.seed, given.distance, given.crossings)
@@ -90,8 +90,7 @@ def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
     if extent(content.lines) == 0.0:
         raise SceneError(f"{path}: all its lines lie at one place and have no length")
     give_names(content, base.names if base is not None else set())
-    if given.command == "import":
-        set_regions(given.region, content)
+    set_regions(given.region, content)
     _add_entries(given, content, path, base)
     body = _body(given, content, base)
     if base is None:
@@ -227,8 +226,8 @@ def _network(
 
 
 def _heading(given: SimpleNamespace, path: str) -> str:
-    if given.command == "network":
-        return f"Fractures drawn by wingcrack network with seed {given.seed}."
+    if given.map is None:
+        return f"Random fractures with seed {given.seed}."
     words = "as they are" if given.repair is None else f"repaired within {given.repair:g} m"
     return f"Fractures of {Path(path).name}, {words}; {given.out.stem}.repairs.csv has details."
 
