@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -16,7 +17,7 @@ from shapely.geometry import LineString, Polygon
 
 from wingcrack.scenes.errors import SceneError
 from wingcrack.scenes.parameters import groups
-from wingcrack.scenes.solver import check
+from wingcrack.scenes.solver import call, check
 from wingcrack_maps.base import Base, read_base
 from wingcrack_maps.body import assign_roles, boundary_of, rectangle_around
 from wingcrack_maps.contacts import weld
@@ -250,13 +251,20 @@ def _write(out: Path, text: str, report: Report) -> None:
             raise SceneError(f"check refuses the scene, so nothing is written: {said}{hint}")
         for file_path, content in file_texts(report, out).items():
             file_path.write_text(content, encoding="utf-8")
+        print(f"\n{words.rstrip().replace(trial.stem, out.stem)}")
+        print(f"{_cost(trial)}\n")
         trial.chmod(0o666 & ~_mask())
         trial.replace(out)
-        print(f"\n{words.rstrip().replace(trial.stem, out.stem)}\n")
     except OSError as reason:
         raise SceneError(f"{out}: it cannot be written: {reason.strerror}") from None
     finally:
         trial.unlink(missing_ok=True)
+
+
+def _cost(scene: Path) -> str:
+    """What a run costs, by the solver; maps took one to three times as long as it expects."""
+    seconds = float(json.loads(call("check", scene, "--stress").stdout)["cost"]["cpu_s"])
+    return f"a run:        {seconds:.2g} to {3.0 * seconds:.2g} CPU s, without its figures"
 
 
 def _mask() -> int:

@@ -384,7 +384,7 @@ def test_sizes_follow_from_the_lengths_and_their_cost_is_told(tmp_path: Path) ->
     assert status == 0
     found = [fracture["cell_size"] for fracture in fractures(scene).values()]
     assert found == pytest.approx([0.5, 0.5, 0.5, 2.0, 0.2], rel=0.01)
-    assert "minutes on one core" in scene.with_suffix(".repairs.csv").read_text()
+    assert "CPU s, without its figures" in scene.with_suffix(".repairs.csv").read_text()
 
 
 def test_a_large_network_has_coarser_cells(tmp_path: Path) -> None:
