@@ -14,6 +14,7 @@ import matplotlib
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -26,6 +27,7 @@ R = TypeVar("R")
 _LAYOUT = ContextVar("layout", default="page")
 _ENLARGED, _LARGER_TEXT = 1.25, 1.6  # of slides, compared with pages
 
+_PAGE, _PAGE_DPI = 9.0, 200.0  # height from which on a figure is a page for the screen [inch]
 SINGLE_COLUMN = 3.5  # [inch], as most journals have it
 DOUBLE_COLUMN = 7.1  # [inch]
 
@@ -227,8 +229,13 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     for form in formats:
         aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
         try:
-            more = _PNG if form == "png" else {}
-            figure.savefig(aside, metadata=_METADATA[form], **more)
+            if form == "png":
+                is_page = figure.get_figheight() > _PAGE
+                figure.set_dpi(min(RC["savefig.dpi"], _PAGE_DPI if is_page else np.inf))
+                # savefig draws twice, first for the layout; this draws once
+                FigureCanvasAgg(figure).print_png(aside, metadata=_METADATA["png"], **_PNG)
+            else:
+                figure.savefig(aside, metadata=_METADATA[form])
             written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))
         finally:
             aside.unlink(missing_ok=True)
