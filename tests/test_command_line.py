@@ -20,7 +20,6 @@ COMMANDS = (
     "view",
     "new",
     "import",
-    "network",
     "study",
     "verify",
     "reproduce",
@@ -98,7 +97,7 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["new", "--out", "nowhere/scene.nml"], "the scene cannot go to nowhere/scene.nml"),
         (["new", "--out", "Störung 1.nml"], "may have letters, digits"),
         (["new", "--out", str(SCENE)], "onset.nml is there already; --overwrite replaces it"),
-        (["import"], "missing argument 'MAP'"),
+        (["import"], "a MAP is missing"),
         (["import", "nowhere.csv"], "there is no map nowhere.csv"),
         (["import", "."], ". is a folder, not a map"),
         (["import", str(SCENE)], "which says what it is"),
@@ -112,17 +111,18 @@ def test_help_names_every_subcommand(tmp_path: Path) -> None:
         (["import", str(MAP), "--origin", "1;2"], "'1;2' must be X,Y, centre or corner"),
         (["import", str(MAP), "--scene", "none.nml"], "there is no scene file none.nml"),
         (["import", str(MAP), "--out", str(SCENE)], "onset.nml is there already"),
-        (["network"], "missing option '--box'"),
-        (["network", *LAWS], "missing option '--out'"),
-        (["network", *LAWS[:-2], "--out", "n.nml"], "missing option '--orientation'"),
-        (["network", *LAWS, *LAWS[2:4], "--out", "n.nml"], "must be given equally often"),
-        (["network", *LAWS, "--box", "1,0,0,1"], "'1,0,0,1' must be X0,Y0,X1,Y1 with X0 < X1"),
-        (["network", *LAWS, "--density", "p32=1"], "'p32=1' must be p20=N or p21=L"),
-        (["network", *LAWS, "--length", "power:2,1"], "'power:2,1' has 2 numbers after its name"),
-        (["network", *LAWS, "--length", "power:2,4,1"], "MIN must be less than MAX"),
-        (["network", *LAWS, "--length", "constant:-1"], "lengths must be greater than 0"),
-        (["network", *LAWS, "--orientation", "fisher:1,2"], "is none of uniform, constant"),
-        (["network", *LAWS, "--seed", "1.5"], "'1.5' is no whole number from 0 on"),
+        (["import", str(MAP), *LAWS], "are for a network without MAP"),
+        (["import", *LAWS], "--orientation and --out"),
+        (["import", *LAWS[:-2], "--out", "n.nml"], "a MAP is missing"),
+        (["import", *LAWS, "--out", "n.nml", "--unit", "m"], "are of a MAP"),
+        (["import", *LAWS, *LAWS[2:4], "--out", "n.nml"], "must be given equally often"),
+        (["import", *LAWS, "--box", "1,0,0,1"], "'1,0,0,1' must be X0,Y0,X1,Y1 with X0 < X1"),
+        (["import", *LAWS, "--density", "p32=1"], "'p32=1' must be p20=N or p21=L"),
+        (["import", *LAWS, "--length", "power:2,1"], "'power:2,1' has 2 numbers after its name"),
+        (["import", *LAWS, "--length", "power:2,4,1"], "MIN must be less than MAX"),
+        (["import", *LAWS, "--length", "constant:-1"], "lengths must be greater than 0"),
+        (["import", *LAWS, "--orientation", "fisher:1,2"], "is none of uniform, constant"),
+        (["import", *LAWS, "--seed", "1.5"], "'1.5' is no whole number from 0 on"),
         (["reproduce", "paper_e"], "there is no paper 'paper_e'"),
         (["reproduce", "paper_b", "--out", str(SCENE)], "onset.nml, which is a file"),
         (["verify", "--fast"], "no such option '--fast'"),
@@ -195,7 +195,7 @@ def test_help_wins_over_what_else_is_said(tmp_path: Path, arguments: list[str]) 
     assert "./wingcrack run" in done.stdout
 
 
-@pytest.mark.parametrize("words", [["help", "run"], ["help"], ["help", "network"]])
+@pytest.mark.parametrize("words", [["help", "run"], ["help"], ["help", "import"]])
 def test_help_is_a_word_too(tmp_path: Path, words: list[str]) -> None:
     said = [call(tmp_path, *words), call(tmp_path, *words[1:], "--help")]
     assert said[0].stdout == said[1].stdout

@@ -335,7 +335,7 @@ def test_what_maps_take_is_not_for_everyone(own_tree: Tree) -> None:
     (own_tree.root / "requirements_maps.txt").write_text("no-such-thing==2.0\n")
     (own_tree.place / "m.csv").write_text("x1,y1,x2,y2\n0,0,1,1\n")
     laws = ["--box=0,0,9,9", "--density=p20=1", "--length=constant:1", "--orientation=uniform"]
-    for call in (["import", "m.csv"], ["network", *laws, "--out", "n.nml"]):
+    for call in (["import", "m.csv"], ["import", *laws, "--out", "n.nml"]):
         done = own_tree.call(*call, WINGCRACK_NO_INSTALL="1")
         assert done.returncode == 3
         assert "no-such-thing==2.0" in done.stderr
@@ -365,7 +365,7 @@ def test_a_wrong_call_is_refused_before_anything_is_set_up(bare_tree: Tree) -> N
     assert not (bare_tree.root / "build").exists()
 
 
-@pytest.mark.parametrize("command", ["verify", "bench", "plot", "view", "new", "import", "network"])
+@pytest.mark.parametrize("command", ["verify", "bench", "plot", "view", "new", "import"])
 def test_help_does_not_wait_for_an_installation(bare_tree: Tree, command: str) -> None:
     done = bare_tree.call(command, "--help")
     assert (done.returncode, done.stderr) == (0, "")

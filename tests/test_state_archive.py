@@ -153,6 +153,7 @@ MADE_AGAIN = {
     "series_t": _each("path written", _FILES)
     | {"names": _RULE, "is_written": _RULE, "column": _EMPTY, "fault": "the run fails with it"},
     "snapshots_t": {"directory": _FILES, "material": _RULE, "counts": _RULE},
+    "snapshot_t": {"windows": "of scenes with a fluid, whose fields are made again"},
     "collection_t": {"path": _FILES, "is_falling": _RULE},
     "network_record_t": {"path": _FILES, "names": _RULE, "clock": _RULE},
     "tape_t": _each("own own_mark taken_mark", _EMPTY) | {"is_recording": _RULE},

@@ -5,6 +5,7 @@
 #include "judge.hpp"
 #include "locate.hpp"
 #include "mesh.hpp"
+#include "planned_sizes.hpp"
 #include "store.hpp"
 
 #include <memory>
@@ -237,7 +238,7 @@ void cm_last_fault(cm_fault* fault) {
 }
 
 int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity, cm_joint* joints,
-             int32_t* n_joints) {
+             int32_t* n_joints, double* n_cells) {
     return guarded([&] {
         require(n_joints != nullptr, "no place was given for the number of joints");
         *n_joints = 0;
@@ -245,8 +246,14 @@ int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity, c
         const Specification wanted = specification_from(spec, fractures.size());
         const Graph graph = judged_graph(wanted, fractures);
         check_fixed_points(graph);
+        std::vector<RosettePlan> plans;
         if (wanted.rosette_sectors > 0)
-            plan_rosettes(graph, wanted.domain, wanted.rosette_radii);
+            plans = plan_rosettes(graph, wanted.domain, wanted.rosette_radii);
+        if (n_cells != nullptr) {
+            const ExpectedCells expected = expected_cells(wanted, graph, plans);
+            n_cells[0] = expected.cells;
+            n_cells[1] = expected.fracture_cells;
+        }
         const std::vector<Joint> found = joints_of(graph);
         *n_joints = static_cast<int32_t>(found.size());
         for (int32_t k = 0; k < std::min(capacity, *n_joints); ++k)

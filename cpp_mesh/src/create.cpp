@@ -7,7 +7,7 @@
 #include "judge.hpp"
 #include "lone_sectors.hpp"
 #include "mesh.hpp"
-#include "narrow_places.hpp"
+#include "planned_sizes.hpp"
 #include "rosette.hpp"
 #include "skeleton.hpp"
 #include "smooth.hpp"
@@ -15,13 +15,6 @@
 namespace cpp_mesh {
 
 namespace {
-
-// Meshes with a singular tip, a polygon or fixed points are those of finite elements on whole
-// bodies.
-bool is_for_elements(const Specification& spec) {
-    return !spec.is_window &&
-           (spec.rosette_sectors > 0 || !spec.domain.is_rectangle() || !spec.fixed_points.empty());
-}
 
 // The ends of guides on the boundary have the nodes from the given number on.
 void embed_guides(const GuideEdges& guides, int first_on_boundary, Region& region,
@@ -49,38 +42,10 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     const Tolerances tolerances = tolerances_for(domain.box(), specification.size_fracture);
 
     Graph graph = judged_graph(specification, network);
-    if (wanted != nullptr) {
-        mesh.size = SizeField(std::move(wanted));
-    } else {
-        std::vector<SizeSource> sources;
-        for (const GraphEdge& edge : graph.edges)
-            sources.push_back({graph.points[edge.point[0]].xy, graph.points[edge.point[1]].xy,
-                               specification.size_along(edge.fracture),
-                               specification.largest_along(edge.fracture)});
-        mesh.size = SizeField(std::move(sources), domain, specification.size_boundary);
-        mesh.size.arrange();
-        mesh.size.set_foci(specification.foci);
-    }
-    if (mesh.size.follows_other_mesh() || is_for_elements(specification))
-        mesh.size.make_scale_free();
-
     std::vector<RosettePlan> plans;
     if (specification.rosette_sectors > 0)
         plans = plan_rosettes(graph, domain, specification.rosette_radii);
-    mesh.size.set_discs(
-        rosette_discs(graph, plans, specification.rosette_sectors, specification.ring_slope));
-    if (specification.joint_size > 0.0)
-        for (const Joint& joint : joints_of(graph))
-            mesh.size.add(corner_disc(joint.xy, specification.joint_size));
-    for (const Vec2& place : specification.refined)
-        mesh.size.add(corner_disc(place, specification.refined_size));
-    // Cells between fractures that meet, or almost do, must not be much longer than what is left
-    // for them.
-    if (mesh.size.is_scale_free() ||
-        (!specification.is_window &&
-         (!joints_of(graph).empty() || has_near_ends(graph, domain, mesh.size))))
-        limit_sizes_in_narrow_places(graph, domain, mesh.size);
-    mesh.size.arrange();
+    mesh.size = planned_sizes(specification, graph, plans, std::move(wanted));
 
     const std::size_t n_given = graph.points.size();
     GuideEdges guides;
@@ -116,7 +81,7 @@ Mesh make_mesh(const Specification& specification, const Network& network,
     mesh.plane.fracture_cells = std::move(skeleton.cells);
     mesh.plane.rosettes = std::move(skeleton.rosettes);
     smooth(mesh.plane, n_fixed);
-    if (!specification.is_window && !is_for_elements(specification))
+    if (!specification.is_window && !specification.is_for_elements())
         divide_lone_sectors(mesh.plane);
 
     check_fracture_length(mesh.plane.fracture_cells, xy, network, domain, tolerances);

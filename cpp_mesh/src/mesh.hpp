@@ -31,6 +31,12 @@ struct Specification {
     double ring_slope = 0.3;      // growth of sizes per distance beyond three radii of rosettes
     std::vector<double> own_size; // along each fracture, 0: the usual one; empty: of all
 
+    // Meshes with a singular tip, a polygon or fixed points are those of finite elements on whole
+    // bodies.
+    bool is_for_elements() const {
+        return !is_window &&
+               (rosette_sectors > 0 || !domain.is_rectangle() || !fixed_points.empty());
+    }
     double size_along(int fracture) const { return size_along(fracture, size_fracture); }
     double size_along(int fracture, double usual) const {
         if (own_size.empty() || !(own_size[fracture] > 0.0))

@@ -18,7 +18,7 @@ void refuse(Checks& checks, const cm_spec& spec, const std::vector<Polyline>& fr
     const cm_network view = network.view();
     int32_t n_joints = 0;
     cm_fault fault;
-    checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints) != 0, reason + ": refused");
+    checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints, nullptr) != 0, reason + ": refused");
     const std::string message = cm_last_error();
     cm_last_fault(&fault);
     checks.is_equal(fault.kind, kind, reason + ": kind");
@@ -108,7 +108,7 @@ void fixed_points(Checks& checks) {
         spec.n_fixed = 2;
         spec.fixed = xy.data();
         int32_t n_joints = 0;
-        const bool is_good = cm_check(&spec, &view, 0, nullptr, &n_joints) == 0;
+        const bool is_good = cm_check(&spec, &view, 0, nullptr, &n_joints, nullptr) == 0;
         checks.is_equal(is_good, x == 0.7, "a point on a fracture: refused but at the tip");
         if (is_good)
             continue;
@@ -133,7 +133,7 @@ void joints(Checks& checks) {
     const cm_network view = network.view();
     int32_t n_joints = 0;
     cm_joint found[8];
-    checks.is_true(cm_check(&spec, &view, 8, found, &n_joints) == 0, cm_last_error());
+    checks.is_true(cm_check(&spec, &view, 8, found, &n_joints, nullptr) == 0, cm_last_error());
     checks.is_equal(n_joints, 4, "joints");
     const auto has = [&](int32_t a, int32_t b, double x, double y) {
         for (int32_t k = 0; k < n_joints; ++k)
@@ -148,7 +148,7 @@ void joints(Checks& checks) {
     cm_fault fault;
     cm_last_fault(&fault);
     checks.is_equal(fault.kind, cm_fault_none, "no fault");
-    checks.is_true(cm_check(&spec, &view, 1, found, &n_joints) == 0 && n_joints == 4,
+    checks.is_true(cm_check(&spec, &view, 1, found, &n_joints, nullptr) == 0 && n_joints == 4,
                    "more joints than there is room for");
 }
 
@@ -170,7 +170,7 @@ void many_segments(Checks& checks) {
     std::vector<cm_joint> found(columns * rows);
     int32_t n_joints = 0;
     const std::clock_t start = std::clock();
-    checks.is_true(cm_check(&spec, &view, columns * rows, found.data(), &n_joints) == 0,
+    checks.is_true(cm_check(&spec, &view, columns * rows, found.data(), &n_joints, nullptr) == 0,
                    cm_last_error());
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     checks.is_close(seconds, 0.0, 10.0, "10,002 segments in 10 s");
@@ -196,6 +196,6 @@ int main() {
     fixed_points(checks);
     joints(checks);
     cm_last_fault(nullptr);
-    checks.is_true(cm_check(nullptr, nullptr, 0, nullptr, nullptr) != 0, "nothing to check");
+    checks.is_true(cm_check(nullptr, nullptr, 0, nullptr, nullptr, nullptr) != 0, "nothing to check");
     return checks.finish();
 }

@@ -35,13 +35,14 @@ module app_cost
 contains
 
    !> Estimate the cost of a scene.
-   function cost_of_scene(scene) result(cost)
+   function cost_of_scene(scene, n_cells) result(cost)
       type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: n_cells(2)  !< by the mesh library
       type(cost_t) :: cost
       type(estimate_t) :: size_of
       real(rk) :: cells, factor, tips
 
-      size_of = size_of_scene(scene)
+      size_of = size_of_scene(scene, n_cells)
       cost%cells = size_of%cells
       cost%steps = size_of%steps
       tips = 2.0_rk*real(size(scene%fractures), rk)

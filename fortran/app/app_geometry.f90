@@ -22,17 +22,18 @@ module app_geometry
 
 contains
 
-   !> Refuse a scene whose body or fractures cannot be meshed.
-   subroutine check_geometry(sheet, scene, error)
+   !> Refuse a scene whose body or fractures cannot be meshed; expect so many cells otherwise.
+   subroutine check_geometry(sheet, scene, n_cells, error)
       type(sheet_t), intent(in) :: sheet  !< file of the scene
       type(scene_t), intent(in) :: scene
+      real(rk), intent(out) :: n_cells(2)  !< cells, fracture cells
       type(error_t), allocatable, intent(out) :: error
       type(network_t) :: network
       type(joint_t), allocatable :: joints(:)
       type(fault_t), allocatable :: fault
 
       network = network_of_scene(scene)
-      call check_mesh_input(first_mesh(scene, network), network, joints, fault)
+      call check_mesh_input(first_mesh(scene, network), network, joints, fault, n_cells)
       if (allocated(fault)) call refuse_fault(sheet, scene, fault, error)
       if (allocated(error) .or. .not. allocated(scene%regions)) return
       if (scene%growth%intensities) call check_interfaces(sheet, scene, network, joints, error)

@@ -47,8 +47,9 @@ module app_size
 contains
 
    !> Estimate the size of a scene.
-   function size_of_scene(scene) result(estimate)
+   function size_of_scene(scene, n_cells) result(estimate)
       type(scene_t), intent(in) :: scene
+      real(rk), intent(in), optional :: n_cells(2)  !< by the mesh library, where it is known
       type(estimate_t) :: estimate
       real(rk) :: length, touching_cells, values, written
 
@@ -57,6 +58,10 @@ contains
          estimate%fracture_cells = anint(length/usual_cell(scene))
       end if
       estimate%cells = anint(number_of_cells(scene, length))
+      if (present(n_cells)) then
+         estimate%cells = anint(n_cells(1))
+         estimate%fracture_cells = n_cells(2)
+      end if
       estimate%steps = real(scene%load%steps, rk)
       if (allocated(scene%load%factors)) then
          estimate%steps = estimate%steps*real(size(scene%load%factors), rk)
@@ -115,7 +120,8 @@ contains
       end if
    end function number_of_steps
 
-   !> Number of cells: the integral of 1/area over the body. Sizes increase linearly with the
+   !> Number of cells before the mesh library has seen the scene: the integral of 1/area over the
+   !! body. Sizes increase linearly with the
    !! distance from the fractures, up to half of that of the farthest point (size_field.cpp). The
    !! area within a distance d of n fractures of total length L is 2 L d + n pi d**2; since these
    !! areas overlap, the fraction exp(-(2 L d + n pi d**2)/area) of the body is farther away for
@@ -166,16 +172,17 @@ contains
    end function number_of_cells
 
    !> Refuse a scene that is too large for the machine, or for this program on any machine.
-   subroutine check_size(sheet, scene, memory, error)
+   subroutine check_size(sheet, scene, memory, error, n_cells)
       type(sheet_t), intent(in) :: sheet  !< file of the scene
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: memory  !< memory of the machine [byte]
       type(error_t), allocatable, intent(out) :: error
+      real(rk), intent(in), optional :: n_cells(2)  !< by the mesh library, where it is known
       type(estimate_t) :: size
       character(len=:), allocatable :: steps, cells, fracture_cells, needed
       real(rk) :: bytes
 
-      size = size_of_scene(scene)
+      size = size_of_scene(scene, n_cells)
       bytes = size%bytes_of_cells + size%bytes_of_contact + size%bytes_of_tables
       steps = "asks for about "//number(size%steps)//" steps"
       cells = "the sizes ask for about "//number(size%cells)//" cells"
@@ -233,8 +240,9 @@ contains
    end function number
 
    !> Print the scene's contents and its estimated size.
-   subroutine describe_scene(scene, unit)
+   subroutine describe_scene(scene, n_cells, unit)
       type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: n_cells(2)  !< by the mesh library
       integer, intent(in) :: unit
 
       type(estimate_t) :: estimate
@@ -243,7 +251,7 @@ contains
 
       associate (body => scene%domain)
          length = total_length(network_of_scene(scene))
-         estimate = size_of_scene(scene)
+         estimate = size_of_scene(scene, n_cells)
          write (unit, "(2a)") "scene:        ", trim(scene%name)
          if (len_trim(scene%title) > 0) write (unit, "(2a)") "title:        ", trim(scene%title)
          write (unit, "(a,2(es10.3,a))") "body:        ", body%x_max - body%x_min, " x", &

@@ -59,8 +59,9 @@ contains
    end function grows_at
 
    !> The description of a scene, as JSON.
-   function stress_description(scene) result(text)
+   function stress_description(scene, n_cells) result(text)
       type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: n_cells(2)  !< cells, fracture cells, by the mesh library
       character(len=:), allocatable :: text
       type(json_t) :: json
       type(far_stress_t) :: far
@@ -80,7 +81,7 @@ contains
          call add_well(scene, scene%injections(i), json)
       end do
       call json%end_array()
-      cost = cost_of_scene(scene)
+      cost = cost_of_scene(scene, n_cells)
       call json%begin_object("cost")
       call json%add("steps", nint(cost%steps, ik))
       call json%add("increments", nint(cost%increments, ik))

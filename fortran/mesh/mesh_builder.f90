@@ -245,11 +245,12 @@ contains
    end subroutine destroy_mesher
 
    !> Judge what build_mesh would mesh, by the same code.
-   subroutine check_mesh_input(spec, network, joints, fault)
+   subroutine check_mesh_input(spec, network, joints, fault, n_cells)
       type(mesh_spec_t), intent(in) :: spec
       type(network_t), intent(in) :: network
       type(joint_t), allocatable, intent(out) :: joints(:)  !< none if there is a fault
       type(fault_t), allocatable, intent(out) :: fault  !< unallocated: it can be meshed
+      real(rk), intent(out) :: n_cells(2)  !< expected cells, fracture cells; 0 if there is a fault
       type(error_t), allocatable :: error
       type(cm_spec_t) :: c_spec
       type(cm_network_t) :: c_network
@@ -258,6 +259,7 @@ contains
       type(cm_joint_t), allocatable :: found(:)
       integer(ik) :: i, n
 
+      n_cells = 0.0_rk
       kept = spec
       allocate (joints(0), found(0))
       call prepare_network(network, arrays, c_network, error)
@@ -267,7 +269,7 @@ contains
          allocate (fault%culprits(0))
          return
       end if
-      if (cm_check(c_spec, c_network, 0_ik, found, n) /= 0) then
+      if (cm_check(c_spec, c_network, 0_ik, found, n, n_cells) /= 0) then
          fault = last_fault()
          return
       end if

@@ -105,15 +105,16 @@ module mesh_c_binding
          type(cm_fault_t), intent(out) :: fault
       end subroutine cm_last_fault
 
-      function cm_check(spec, network, capacity, joints, n_joints) result(status) &
+      function cm_check(spec, network, capacity, joints, n_joints, n_cells) result(status) &
          bind(C, name="cm_check")
-         import :: c_int, c_int32_t, cm_joint_t, cm_network_t, cm_spec_t
+         import :: c_double, c_int, c_int32_t, cm_joint_t, cm_network_t, cm_spec_t
          implicit none(type, external)
          type(cm_spec_t), intent(in) :: spec
          type(cm_network_t), intent(in) :: network
          integer(c_int32_t), value :: capacity
          type(cm_joint_t), intent(out) :: joints(capacity)
          integer(c_int32_t), intent(out) :: n_joints
+         real(c_double), intent(out), optional :: n_cells(2)
          integer(c_int) :: status
       end function cm_check
 

@@ -7,7 +7,7 @@ module report_describe
    use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
                              probe_columns, slip_event_columns, tip_columns, well_columns
    use report_keys, only: fracture_fields, intersection_fields, matrix_fields, network_keys, &
-                          record_keys
+                          record_keys, window_fields
    use report_limits, only: limits
    use report_text, only: json_t
    use report_words, only: contact_words, end_words, event_words, joint_words, slip_words, &
@@ -219,6 +219,9 @@ contains
       call put_file(json, "intersections.vtu", &
                     "Fields of the intersections of fractures; written only with a fluid and "// &
                     "if there are any.", intersection_fields)
+      call put_file(json, "windows.vtu", &
+                    "With windows of &output: the elements of all windows, as their corners.", &
+                    window_fields)
    end subroutine put_files
 
    !> A file, its rows and its columns, keys or fields.

@@ -9,6 +9,7 @@ module report_keys
    private
 
    public :: fracture_fields, intersection_fields, matrix_fields, network_keys, record_keys
+   public :: window_fields
 
    ! The tables keep their own layout.
    !&<
@@ -178,6 +179,9 @@ module report_keys
          "Fluid pressure at intersections and at fracture ends on sides with prescribed "// &
          "pressure", "pressure_error"), &
       column_t("pressure_error", "Pa", with_fluid, "Estimated error of pressure", an_error)]
+
+   type(column_t), parameter :: window_fields(*) = [ &
+      column_t("tip", "-", with_fluid, "Number of a tip that the window evaluates", label)]
    !&>
 
 end module report_keys

@@ -14,7 +14,7 @@ module report_rows
    public :: fracture_fields_t
    public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
    public :: matrix_fields_t, probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
-   public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t
+   public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t, window_fields_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
    type :: fluid_totals_t
@@ -230,6 +230,13 @@ module report_rows
       real(rk), allocatable :: pressure(:)  !< (n) [Pa]
       real(rk), allocatable :: pressure_error(:)  !< (n) its estimated error [Pa]
    end type intersection_fields_t
+
+   !> The meshes of all windows.
+   type :: window_fields_t
+      real(rk), allocatable :: xy(:, :)  !< (2, n_points) [m]
+      integer(ik), allocatable :: cell_nodes(:, :)  !< (3, n_cells)
+      integer(ik), allocatable :: tip(:)  !< (n_cells) number of the first tip that is evaluated
+   end type window_fields_t
 
    !> Unknowns of one kind.
    type :: dof_block_t

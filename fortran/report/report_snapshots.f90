@@ -11,7 +11,7 @@ module report_snapshots
    use base_number, only: exact_text
    use base_texts, only: text_t
    use mesh_types, only: fracture_mesh_t, mesh_t
-   use report_keys, only: fracture_fields, intersection_fields, matrix_fields
+   use report_keys, only: fracture_fields, intersection_fields, matrix_fields, window_fields
    use report_files, only: copy_file, make_directory, remove_file, write_text_file
    use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use report_simulation, only: snapshot_t
@@ -24,8 +24,8 @@ module report_snapshots
    public :: collection_t, snapshots_t
 
    character(len=*), parameter :: folder = "vtu"  !< folder of the VTU files in the run's directory
-   character(len=*), parameter :: dimension_names(3) = [character(len=13) :: "matrix", &
-      & "fractures", "intersections"]
+   character(len=*), parameter :: dimension_names(4) = [character(len=13) :: "matrix", &
+      & "fractures", "intersections", "windows"]
 
    !> One collection, of complete files only.
    type :: collection_t
@@ -46,7 +46,7 @@ module report_snapshots
       integer :: n_written = 0  !< number of written times
       character(len=:), allocatable, private :: directory
       type(material_t), private :: material
-      type(collection_t), private :: collections(3)
+      type(collection_t), private :: collections(size(dimension_names))
       logical, private :: counts = .false.  !< times of collections are rows of history.csv
    contains
       procedure :: open => open_snapshots
@@ -75,7 +75,7 @@ contains
       self%directory = directory
       self%counts = allocated(scene%load%factors)
       self%material = scene%material
-      do i = 1, 3
+      do i = 1, size(dimension_names)
          call self%collections(i)%open(directory//"/"//trim(dimension_names(i))//".pvd", &
                                        is_falling=scene%load%to < scene%load%from .and. &
                                        .not. self%counts)
@@ -99,7 +99,7 @@ contains
       integer :: i, n
 
       do n = 0, self%n_written - 1
-         do i = 1, 3
+         do i = 1, size(dimension_names)
             inquire (file=origin//"/"//file_name(i, n), exist=exists)
             if (.not. exists) cycle
            call copy_file(origin//"/"//file_name(i, n), self%directory//"/"//file_name(i, n), error)
@@ -128,6 +128,12 @@ contains
             call write_one(self, 3, fields%time, history_row, grid, error)
          end if
       end if
+      if (.not. allocated(error) .and. allocated(fields%windows)) then
+         call grid%begin(fields%windows%xy, fields%windows%cell_nodes, vtk_triangle, fields%time)
+         call grid%add("tip", fields%windows%tip)
+         call grid%set_units(window_fields%name, window_fields%unit)
+         call write_one(self, 4, fields%time, history_row, grid, error)
+      end if
       if (.not. allocated(error)) self%n_written = self%n_written + 1
    end subroutine write_snapshot
 
@@ -137,7 +143,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer :: i
 
-      do i = 1, 3
+      do i = 1, size(dimension_names)
          call self%collections(i)%flush(error)
          if (allocated(error)) return
       end do
@@ -287,7 +293,7 @@ contains
       integer :: n, i
 
       associate (directory => self%directory)
-         do i = 1, 3
+         do i = 1, size(dimension_names)
             if (first == 0) call remove_file(directory//"/"//trim(dimension_names(i))//".pvd", &
                                              was_there)
          end do
@@ -298,7 +304,7 @@ contains
             n = n + 1
          end do
          do n = n, first, -1
-            do i = 3, 1, -1
+            do i = size(dimension_names), 1, -1
                call remove_file(directory//"/"//file_name(i, n), was_there)
                call remove_file(directory//"/"//file_name(i, n)//".part", was_there)
             end do

@@ -276,6 +276,7 @@ contains
          call exchange_growth(record, scene%growth)
       case ("output")
          call exchange(record, "vtu", scene%output%vtu)
+         call exchange(record, "windows", scene%output%windows)
          call exchange(record, "interval", scene%output%interval, nothing=0.0_rk)
          call exchange(record, "growth_states", scene%output%growth_states)
          call exchange(record, "stimulated_jump", scene%output%stimulated_jump)

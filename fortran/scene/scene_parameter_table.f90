@@ -466,6 +466,8 @@ module scene_parameter_table
       parameter_t("probe", "x", unit="m", need=need_always, meaning="x, within the domain"), &
       parameter_t("probe", "y", unit="m", need=need_always, meaning="y, within the domain"), &
       parameter_t("output", "vtu", kind_logical, default=".true.", meaning="Write VTU fields"), &
+      parameter_t("output", "windows", kind_logical, default=".false.", scenes=in_fluid, &
+         meaning="With them the meshes of the windows of the tips, windows.pvd"), &
       parameter_t("output", "interval", unit="s", range=at_least_zero, scenes=in_fluid, &
          absent="the regular step", derived=.true., &
          meaning="Time between written fields; 0: the regular step"), &
@@ -486,8 +488,7 @@ module scene_parameter_table
                  "passes it, an event of slip_events.csv ends and another one begins"), &
       parameter_t("output", "checkpoint", unit="s", range=at_least_zero, default="600.0", &
          meaning="Wall time between checkpoints, from which run --restart goes on; others are "// &
-                 "written at the beginning of stages of wells, after a signal and at the end. "// &
-                 "0: none"), &
+                 "written when stages of wells begin, after a signal and at the end; 0: none"), &
       parameter_t("output", "checkpoint_states", kind_integer, range=at_least_zero, default="0", &
          meaning="Number of accepted states between checkpoints; 0: the wall time decides")]
    !&>

@@ -256,6 +256,7 @@ module scene_types
    !> Output.
    type :: output_t
       logical :: vtu = .true.  !< VTU files are written
+      logical :: windows = .false.  !< with the meshes of the windows
       real(rk) :: interval = 0.0_rk  !< time between written fields [s]
       !> largest number of additional states of growth with VTU files
       integer(ik) :: growth_states = 200

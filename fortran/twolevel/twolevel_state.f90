@@ -496,6 +496,10 @@ contains
                                    fields%fracture)
       end if
       call note_joint_errors(self%value_errors, fields%intersection)
+      if (self%scene%output%windows .and. allocated(self%windows%slot)) then
+         fields%windows = self%windows%meshes(self%tip)
+         if (size(fields%windows%tip) == 0) deallocate (fields%windows)
+      end if
    end subroutine snapshot
 
    !> Time of the present state [s].

@@ -15,6 +15,7 @@ module twolevel_windows
    use growth_tip, only: tip_t
    use mesh_types, only: network_t
    use scene_types, only: scene_t
+   use report_rows, only: window_fields_t
    use report_scene, only: has_other_toughness, relative_toughness
    use fine_tip_types, only: intensity_t
    use growth_front, only: front_state_t
@@ -67,6 +68,7 @@ module twolevel_windows
       procedure :: share_body
       procedure :: all_in_body
       procedure :: n_unknowns
+      procedure :: meshes
    end type windows_t
 
 contains
@@ -465,5 +467,28 @@ contains
          end associate
       end do
    end function n_unknowns
+
+   !> The elements of all windows with active tips, as triangles of their corners.
+   pure function meshes(self, tips) result(all)
+      class(windows_t), intent(in) :: self
+      type(tip_t), intent(in) :: tips(:)
+      type(window_fields_t) :: all
+      integer(ik) :: w, before
+
+      allocate (all%xy(2, 0), all%cell_nodes(3, 0), all%tip(0))
+      do w = 1, size(self%slot, kind=ik)
+         associate (window => self%slot(w)%window)
+            if (.not. allocated(window%made) .or. .not. self%is_active(w, tips)) cycle
+            associate (mesh => window%model%mesh)
+               before = size(all%xy, 2, kind=ik)
+               all%xy = reshape([all%xy, mesh%xy(:, :mesh%n_vertices)], &
+                                [2_ik, before + mesh%n_vertices])
+               all%tip = [all%tip, spread(window%serves(1), 1, mesh%n_cells)]
+               all%cell_nodes = reshape([all%cell_nodes, before + mesh%cell_nodes(:3, :)], &
+                                        [3, size(all%tip)])
+            end associate
+         end associate
+      end do
+   end function meshes
 
 end module twolevel_windows

@@ -1,7 +1,8 @@
-"""`wingcrack import` and `wingcrack network`: scenes of fractures."""
+"""`wingcrack import`: scenes of fracture maps and of random networks."""
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import sys
@@ -16,7 +17,7 @@ from shapely.geometry import LineString, Polygon
 
 from wingcrack.scenes.errors import SceneError
 from wingcrack.scenes.parameters import groups
-from wingcrack.scenes.solver import check
+from wingcrack.scenes.solver import call, check
 from wingcrack_maps.base import Base, read_base
 from wingcrack_maps.body import assign_roles, boundary_of, rectangle_around
 from wingcrack_maps.contacts import weld
@@ -38,10 +39,10 @@ def make_scene(given: SimpleNamespace) -> int:
         content, path = _content(given)
         report = _make(given, content, path)
     except SceneError as reason:
-        print(f"wingcrack {given.command}: {reason}", file=sys.stderr)
+        print(f"wingcrack import: {reason}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"wingcrack {given.command}: interrupted; nothing was written", file=sys.stderr)
+        print("wingcrack import: interrupted; nothing was written", file=sys.stderr)
         return 130
     left = report.number("left")
     if left and given.repair is None:
@@ -65,7 +66,7 @@ def _tell(done: int, left: int) -> None:
 
 def _content(given: SimpleNamespace) -> tuple[Map, str]:
     """Give what there is to be written, and where it comes from."""
-    if given.command == "network":
+    if given.map is None:
         laws = zip(given.density, given.length, given.orientation, strict=True)
         sets = [Set(*three) for three in laws]
         network = random_network(sets, given.box, given.seed, given.distance, given.crossings)
@@ -90,8 +91,7 @@ def _make(given: SimpleNamespace, content: Map, path: str) -> Report:
     if extent(content.lines) == 0.0:
         raise SceneError(f"{path}: all its lines lie at one place and have no length")
     give_names(content, base.names if base is not None else set())
-    if given.command == "import":
-        set_regions(given.region, content)
+    set_regions(given.region, content)
     _add_entries(given, content, path, base)
     body = _body(given, content, base)
     if base is None:
@@ -230,8 +230,8 @@ def _network(
 
 
 def _heading(given: SimpleNamespace, path: str) -> str:
-    if given.command == "network":
-        return f"Fractures drawn by wingcrack network with seed {given.seed}."
+    if given.map is None:
+        return f"Random fractures with seed {given.seed}."
     words = "as they are" if given.repair is None else f"repaired within {given.repair:g} m"
     return f"Fractures of {Path(path).name}, {words}; {given.out.stem}.repairs.csv has details."
 
@@ -254,13 +254,20 @@ def _write(out: Path, text: str, report: Report) -> None:
             raise SceneError(f"check refuses the scene, so nothing is written: {said}{hint}")
         for file_path, content in file_texts(report, out).items():
             file_path.write_text(content, encoding="utf-8")
+        print(f"\n{words.rstrip().replace(trial.stem, out.stem)}")
+        print(f"{_cost(trial)}\n")
         trial.chmod(0o666 & ~_mask())
         trial.replace(out)
-        print(f"\n{words.rstrip().replace(trial.stem, out.stem)}\n")
     except OSError as reason:
         raise SceneError(f"{out}: it cannot be written: {reason.strerror}") from None
     finally:
         trial.unlink(missing_ok=True)
+
+
+def _cost(scene: Path) -> str:
+    """What a run costs, by the solver; maps took one to three times as long as it expects."""
+    seconds = float(json.loads(call("check", scene, "--stress").stdout)["cost"]["cpu_s"])
+    return f"a run:        {seconds:.2g} to {3.0 * seconds:.2g} CPU s, without its figures"
 
 
 def _mask() -> int:

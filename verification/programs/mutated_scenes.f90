@@ -88,11 +88,12 @@ contains
       character(len=:), allocatable, intent(out) :: fault  !< what is wrong; unallocated: nothing
       type(sheet_t) :: sheet
       type(scene_t) :: scene, scene_again
+      real(rk) :: n_cells(2)
       type(error_t), allocatable :: error
 
       call read_scene(path, scene, error, sheet)  ! as `check` does
       if (.not. allocated(error)) call check_size(sheet, scene, memory, error)
-      if (.not. allocated(error)) call check_geometry(sheet, scene, error)
+      if (.not. allocated(error)) call check_geometry(sheet, scene, n_cells, error)
       is_refused = allocated(error)
       if (is_refused) then
          call judge_message(error%message, fault)

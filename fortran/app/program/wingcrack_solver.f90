@@ -51,6 +51,7 @@ contains
 
    subroutine run()
       type(scene_t) :: scene
+      real(rk) :: n_cells(2)
       type(error_t), allocatable :: error
       character(len=:), allocatable :: directory, origin, source, text
       real(rk) :: end_time
@@ -97,13 +98,13 @@ contains
       call prepare_memory()
       call begin_ranks()
       if (origin == "") then
-         call read_judged(source, scene)
+         call read_judged(source, scene, n_cells)
          if (len(directory) == 0) directory = "out/"//trim(scene%name)
          call run_scene(scene, source, directory, quiet, simulation, refused, was_interrupted, &
                         error)
       else
          if (source == "") source = origin//"/scene.nml"
-         call read_judged(source, scene)
+         call read_judged(source, scene, n_cells)
          if (end_time > 0.0_rk) scene%time%end = end_time
          if (len(directory) == 0) directory = origin
          call run_scene(scene, "", directory, quiet, simulation, refused, was_interrupted, error, &
@@ -119,22 +120,24 @@ contains
 
    subroutine check()
       type(scene_t) :: scene
+      real(rk) :: n_cells(2)
 
       if (command_argument_count() > 2 .and. argument(3) /= "--stress") then
          call leave("unknown argument "//argument(3)//"; "//usage, exit_usage)
       end if
-      call read_judged(argument(2), scene)
+      call read_judged(argument(2), scene, n_cells)
       if (argument(3) == "--stress") then
-         write (output_unit, "(a)") stress_description(scene)
+         write (output_unit, "(a)") stress_description(scene, n_cells)
       else
-         call describe_scene(scene, output_unit)
+         call describe_scene(scene, n_cells, output_unit)
       end if
    end subroutine check
 
    !> Read and check a scene; a fault ends the program.
-   subroutine read_judged(path, scene)
+   subroutine read_judged(path, scene, n_cells)
       character(len=*), intent(in) :: path
       type(scene_t), intent(out) :: scene
+      real(rk), intent(out) :: n_cells(2)  !< expected cells, fracture cells
       type(sheet_t) :: sheet
       type(error_t), allocatable :: error
 
@@ -145,7 +148,8 @@ contains
                                            exit_environment)
       end if
       if (.not. allocated(error)) call check_size(sheet, scene, machine_memory(), error)
-      if (.not. allocated(error)) call check_geometry(sheet, scene, error)
+      if (.not. allocated(error)) call check_geometry(sheet, scene, n_cells, error)
+      if (.not. allocated(error)) call check_size(sheet, scene, machine_memory(), error, n_cells)
       if (allocated(error)) call leave(error%message, exit_usage)
    end subroutine read_judged
 

@@ -2,6 +2,7 @@
 program test_app_geometry
    use app_geometry, only: check_geometry
    use base_errors, only: error_t
+   use base_kinds, only: rk
    use scene_namelist, only: read_scene
    use scene_sheet, only: sheet_t
    use scene_test_files, only: delete_file, put_changed
@@ -189,11 +190,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(scene_t) :: scene
       type(sheet_t) :: sheet
+      real(rk) :: n_cells(2)
 
       call put_changed(path, good, line_1, text_1, line_2, text_2)
       call read_scene(path, scene, error, sheet)
       call checks%no_error(error, "read: "//trim(text_1))
-      if (.not. allocated(error)) call check_geometry(sheet, scene, error)
+      if (.not. allocated(error)) call check_geometry(sheet, scene, n_cells, error)
    end subroutine judge
 
 end program test_app_geometry

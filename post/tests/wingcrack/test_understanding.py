@@ -53,7 +53,7 @@ def understood(way: str, words: list[str], place: Path) -> tuple[int, str, str]:
         ["study", str(SCENE), "--cluster", "local", "--jobs", "3", "--quick"],
         ["new", "wells", "--out", "a.nml"],
         ["import", str(SCENE.parents[1] / "examples" / "outcrop.geojson"), "--set", "friction=1"],
-        ["network", *LAWS, "--out", "n.nml", "--distance", "1"],
+        ["import", *LAWS, "--out", "n.nml", "--distance", "1"],
         ["verify", "--quick", "onset_c1"],
         ["reproduce", "paper_b", "--quick"],
         ["bench", "b1", "--repeat", "5"],
@@ -80,7 +80,7 @@ def test_both_ways_give_the_same_call(words: list[str], tmp_path: Path) -> None:
         ["plot", ".", "--no-such"],
         ["study"],
         ["import", "nowhere.csv"],
-        ["network", *LAWS],
+        ["import", *LAWS],
         ["verify", "no_such_case"],
         ["view", ".", ".."],
     ],
@@ -93,7 +93,7 @@ def test_both_ways_refuse_the_same(words: list[str], tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("words", [["--help"], ["network", "--help"], ["plot", ".", "-h"]])
+@pytest.mark.parametrize("words", [["--help"], ["import", "--help"], ["plot", ".", "-h"]])
 def test_both_ways_help(words: list[str], tmp_path: Path) -> None:
     for way in ("with", "without"):
         status, out, error = understood(way, words, tmp_path)

@@ -64,7 +64,7 @@ def short_form(words: list[str]) -> list[str] | None:
     command, *rest = words
     if "--help" in rest or command in ("--help", "--version", "check"):
         return words
-    if command in ("new", "import", "network"):
+    if command in ("new", "import"):
         return [*words, "--overwrite"]
     if command == "run" and "--restart" in rest:
         return None
@@ -92,7 +92,7 @@ def understand(words: list[str]) -> None:
             assert option.partition("=")[0] in help_of(command), f"{command} has no {option}"
     elif rest or command not in ("run", "check"):
         # pages make the same files
-        overwrite = ["--overwrite"] if command in ("new", "import", "network") else []
+        overwrite = ["--overwrite"] if command in ("new", "import") else []
         command_line.understand([*words, *overwrite])
     if command == "test":
         for name in rest:

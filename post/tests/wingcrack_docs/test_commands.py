@@ -14,7 +14,7 @@ from wingcrack.scenes import solver
 from workplaces import make_workplace
 
 # Subcommands that cannot be understood without more: their names are enough in a sentence.
-_ALONE = ("plot", "analyse", "study", "import", "network", "view")
+_ALONE = ("plot", "analyse", "study", "import", "view")
 _WRITTEN = re.compile(r"Write this into `([\w.]+)`")
 
 

@@ -160,7 +160,7 @@ def test_what_cannot_be_is_refused(
 @needs_solver
 def test_two_sets_become_a_scene_that_the_solver_takes(tmp_path: Path) -> None:
     out = tmp_path / "r.nml"
-    call = ["network", "--box=0,0,60,40", "--seed=7", "--distance=0.5", "--out", str(out)]
+    call = ["import", "--box=0,0,60,40", "--seed=7", "--distance=0.5", "--out", str(out)]
     for length, angle in (("power:2.5,4,20", "vonmises:30,20"), ("constant:3", "constant:120")):
         call += ["--density=p21=0.05", f"--length={length}", f"--orientation={angle}"]
     assert main(call) == 0
@@ -173,7 +173,7 @@ def test_two_sets_become_a_scene_that_the_solver_takes(tmp_path: Path) -> None:
 @needs_solver
 def test_a_network_grows_with_cells_by_the_lengths(tmp_path: Path) -> None:
     out = tmp_path / "r.nml"
-    call = ["network", "--box=0,0,60,40", "--seed=7", "--distance=0.5", "--out", str(out)]
+    call = ["import", "--box=0,0,60,40", "--seed=7", "--distance=0.5", "--out", str(out)]
     call += ["--density=p20=0.002", "--length=power:2.5,4,20", "--orientation=uniform"]
     assert main([*call, "--growth"]) == 0
     assert "enabled = .true." in out.read_text()
@@ -209,7 +209,7 @@ def test_numbers_and_names_of_a_call_are_bounded(
     name, _, value = option.partition("=")
     given[name] = value
     with pytest.raises(SystemExit) as ended:
-        main(["network", *(f"{key}={text}" for key, text in given.items())])
+        main(["import", *(f"{key}={text}" for key, text in given.items())])
     assert ended.value.code == 2
     assert reason in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -32,7 +32,7 @@ example:
 # Modules with the names of what is declared in them; each is imported when a command is named.
 _MODULES = {
     "run_commands": ("run", "check", "plot", "analyse", "view", "study"),
-    "scene_commands": ("new", "import", "network"),
+    "scene_commands": ("new", "import"),
     "developer_commands": (
         "verify",
         "reproduce",

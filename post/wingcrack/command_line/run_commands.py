@@ -16,7 +16,7 @@ from wingcrack.command_line.declaring import (
     flag,
 )
 from wingcrack.command_line.values import absolute, each_of, place, positive, whole
-from wingcrack.figures.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS
+from wingcrack.figures.choices import ALL, CLUSTERS, DEFAULT_FORMATS, FORMATS, GROUPS, LAYOUTS
 from wingcrack.figures.durations import parse_times
 from wingcrack.welltest.units import read_columns
 
@@ -160,6 +160,9 @@ _FORMATS = Parameter(
         (),
     ),
     _FORMATS,
+    choice(
+        "--style", LAYOUTS, "for a page, one of its columns, or a slide (default: page)", "page"
+    ),
     flag("--quiet", "print nothing but errors"),
     about="""\
 Without --only, the figures in which something happens are drawn, and those that were drawn before:
@@ -183,6 +186,7 @@ groups of figures (--only), written to DIR/figures:
   view       the deformed body, its displacements drawn larger than they are
   mesh       the mesh of the body, and around the fractures with the windows of the tips
 
+Figures in another style than that of a page are written to DIR/figures_column or DIR/figures_slide.
 A figure whose files are there and would come out the same is not drawn again.
 """,
     example="./wingcrack plot out/wing_crack --times 0.5h,20h,40h --only maps,fractures\n",

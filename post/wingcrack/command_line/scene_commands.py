@@ -1,4 +1,4 @@
-"""Commands that write scenes: new, import and network."""
+"""Commands that write scenes: new and import."""
 
 from __future__ import annotations
 
@@ -20,6 +20,21 @@ ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo",
            ".shp", ".gpkg", ".dxf", ".fgb", ".gml", ".kml")  # fmt: skip
 UNITS = ("m", "km", "ft", "cm", "mm")
 _OVERWRITE = flag("--overwrite", "replace files that are there")
+_RANDOM = (
+    Parameter("--box", "X0,Y0,X1,Y1", "of a random network [m]", values.box),
+    Parameter("--density", "LAW", "how many", values.density, many=True),
+    Parameter("--length", "LAW", "how long [m]", values.lengths, many=True),
+    Parameter("--orientation", "LAW", "how they lie", values.orientations, many=True),
+    Parameter(
+        "--distance",
+        "D",
+        "least distance of two random fractures [m], which then do not cross (default: none kept)",
+        values.length,
+        0.0,
+    ),
+    flag("--crossings", "random fractures may cross, and only ends keep --distance from others"),
+    Parameter("--seed", "N", "of the random numbers (default: 1)", values.whole(0), 1),
+)
 _COMMON = (  # of what makes scenes of fractures
     Parameter("--scene", "BASE.nml", "scene that the fractures are added to", Path),
     Parameter(
@@ -93,7 +108,7 @@ def new(given: SimpleNamespace) -> None:
 @command(
     "import",
     "wingcrack_maps.cli:make_scene",
-    Parameter("map", "MAP", read=Path, required=True),
+    Parameter("map", "[MAP]", read=Path),
     choice("--unit", UNITS, "unit of the map's coordinates"),
     Parameter(
         "--crs",
@@ -109,6 +124,7 @@ def new(given: SimpleNamespace) -> None:
     ),
     choice("--polygons", ("boundary", "region"), "what polygons are that do not say it"),
     Parameter("--region", "REGION:NAME=VALUE", "entry of a region, as marl:young=5e9", many=True),
+    *_RANDOM,
     Parameter("--out", "SCENE.nml", "the scene to write (default: MAP.nml)", Path),
     *_COMMON,
     about="""\
@@ -126,14 +142,34 @@ entry, in SI units; docs/maps.md tells the rest.
 Faults (near ends, duplicates, overlaps, small angles, short segments ...) are always listed. With
 --repair they are repaired, each repair is listed too, and SCENE.repairs.csv and .json hold all.
 The scene is written once `check` accepts it; otherwise nothing is, and the reason is told.
+
+Without a MAP the fractures are random. Centres lie in --box, uniformly; fractures may reach beyond
+it. --density, --length and --orientation may be repeated: the k-th of each makes the k-th set.
+  --density      p20=N (fractures per m2) or p21=L (metres of fracture per m2)
+  --length       constant:L, power:EXPONENT,MIN,MAX (density of lengths ~ l^-EXPONENT),
+                 lognormal:MEDIAN,SIGMA[,MIN,MAX] (SIGMA of ln l) or exponential:MEAN[,MIN,MAX]
+  --orientation  uniform, uniform:FROM,TO, constant:ANGLE or vonmises:MEAN,KAPPA, in degrees from
+                 the x axis counter-clockwise; KAPPA is that of the doubled angle, as usual for axes
+Lengths and angles are drawn once; where a fracture comes nearer to another one than --distance,
+its place is drawn again, so that the laws hold and only the places are no longer independent.
 """,
     example="""\
 ./wingcrack import inputs/examples/outcrop.geojson --unit m --repair 0.1 --out /tmp/outcrop.nml
 ./wingcrack run /tmp/outcrop.nml
+./wingcrack import --box 0,0,100,80 --density p21=0.08 --length power:2.5,5,40 \\
+    --orientation vonmises:30,10 --distance 1 --seed 7 --out /tmp/random.nml
 """,
 )
 def import_map(given: SimpleNamespace) -> None:
-    """Make a scene of a fracture map, or add its fractures to one."""
+    """Make a scene of a fracture map or a random network, or add it to one."""
+    laws = (given.density, given.length, given.orientation)
+    if given.map is None:
+        _judge_random(given, laws)
+        return
+    if given.box is not None or any(laws):
+        raise UsageError(
+            "--box, --density, --length and --orientation are for a network without MAP"
+        )
     if given.map.is_dir():
         raise UsageError(f"{given.map} is a folder, not a map")
     if not given.map.is_file():
@@ -147,46 +183,15 @@ def import_map(given: SimpleNamespace) -> None:
     _judge_scenes(given)
 
 
-@command(
-    "network",
-    "wingcrack_maps.cli:make_scene",
-    Parameter("--box", "X0,Y0,X1,Y1", "[m]", values.box, required=True),
-    Parameter("--density", "LAW", "how many", values.density, many=True, required=True),
-    Parameter("--length", "LAW", "how long [m]", values.lengths, many=True, required=True),
-    Parameter(
-        "--orientation", "LAW", "how they lie", values.orientations, many=True, required=True
-    ),
-    Parameter(
-        "--distance",
-        "D",
-        "least distance of two fractures [m], which then do not cross (default: none kept)",
-        values.length,
-        0.0,
-    ),
-    flag("--crossings", "fractures may cross, and only ends keep --distance from other fractures"),
-    Parameter("--seed", "N", "of the random numbers (default: 1)", values.whole(0), 1),
-    Parameter("--out", "SCENE.nml", "the scene to write", Path, required=True),
-    *_COMMON,
-    about="""\
-Centres lie in the box, uniformly; fractures may reach beyond it, and the body has room around
-them. --density, --length and --orientation may be given several times: the k-th of each makes the
-k-th set.
-  --density      p20=N (fractures per m2) or p21=L (metres of fracture per m2)
-  --length       constant:L, power:EXPONENT,MIN,MAX (density of lengths ~ l^-EXPONENT),
-                 lognormal:MEDIAN,SIGMA[,MIN,MAX] (SIGMA of ln l) or exponential:MEAN[,MIN,MAX]
-  --orientation  uniform, uniform:FROM,TO, constant:ANGLE or vonmises:MEAN,KAPPA, in degrees from
-                 the x axis counter-clockwise; KAPPA is that of the doubled angle, as usual for axes
-Lengths and angles are drawn once; where a fracture comes nearer to another one than --distance,
-its place is drawn again, so that the laws hold and only the places are no longer independent.
-""",
-    example="""\
-./wingcrack network --box 0,0,100,80 --density p21=0.08 --length power:2.5,5,40 \\
-    --orientation vonmises:30,10 --distance 1 --seed 7 --out /tmp/random.nml
-""",
-)
-def network(given: SimpleNamespace) -> None:
-    """Make a scene of a random fracture network, or add one to a scene."""
-    if len({len(given.density), len(given.length), len(given.orientation)}) > 1:
+def _judge_random(given: SimpleNamespace, laws: tuple[list[object], ...]) -> None:
+    if given.box is None or not all(laws) or given.out is None:
+        raise UsageError(
+            "a MAP is missing; or, for a random network, --box, --density, --length, --orientation"
+            " and --out"
+        )
+    if any((given.unit, given.crs, given.layer, given.origin, given.polygons, given.region)):
+        raise UsageError("--unit, --crs, --layer, --origin, --polygons and --region are of a MAP")
+    if len(set(map(len, laws))) > 1:
         raise UsageError("--density, --length and --orientation must be given equally often")
     if given.margin is None and given.scene is None:
         given.margin = 0.5 * max(given.box[2] - given.box[0], given.box[3] - given.box[1])

@@ -32,7 +32,7 @@ _ABOUT = {
     "wells": "Pressure, flow, volume and injectivity of the wells.",
     "seismicity": "Seismic events by magnitude, time and place; numbers of events by magnitude.",
     "probes": "Pressure, displacement and stress at the probe points.",
-    "mesh": "Mesh of the body, and around the fractures with the windows of the tips.",
+    "mesh": "Mesh of the body, with the windows of the tips, and the elements of one if written.",
     "view": "Deformed body, displacements enlarged.",
 }
 _GROUPS = ("material", "fluid", "injection", "fracture")

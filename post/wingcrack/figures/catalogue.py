@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wingcrack.errors import AbsentError, EnvironmentLacksError, RunError
-from wingcrack.figures.choices import ALL, DEFAULT_FORMATS
+from wingcrack.figures.choices import ALL, DEFAULT_FORMATS, LAYOUTS
 from wingcrack.figures.read import Run, read_run
 from wingcrack.figures.slip import has_seismic
 from wingcrack.figures.states import grows, slips_or_opens
@@ -114,8 +114,11 @@ def draw_figures(
     only: Sequence[str] = (),
     formats: Sequence[str] = DEFAULT_FORMATS,
     times_s: Sequence[float] = (),
+    layout: str = LAYOUTS[0],
 ) -> Iterator[Outcome]:
     """Draw the figures of the named groups, or of ``all``, into ``figures`` in the run's folder.
+
+    Those of another layout than that of a page have a folder of their own, as ``figures_column``.
 
     Without names these are the figures in which something happens, and those drawn before. Those
     whose files are there and would come out the same are not drawn again. Yields an outcome per
@@ -124,8 +127,17 @@ def draw_figures(
     # fingerprints come before what they are of is read: what changes in between is drawn again
     tables = tables_of(directory) if directory.is_dir() else ""
     run = read_run(directory)
-    record = Drawn(directory / "figures")
-    way = [program(), tables, str(directory.resolve()), repr(tuple(formats)), repr(tuple(times_s))]
+    is_page = layout == LAYOUTS[0]
+    folder = directory / ("figures" if is_page else f"figures_{layout}")
+    record = Drawn(folder)
+    way = [
+        program(),
+        tables,
+        str(directory.resolve()),
+        repr(tuple(formats)),
+        repr(tuple(times_s)),
+        layout,
+    ]
     fields: str | None = None
     by_name = bool(only) and ALL not in only
     for figures in _FIGURES:
@@ -146,13 +158,16 @@ def draw_figures(
         before = record.forget(figures.name)
         # what needs no fields does not get them, so that it cannot come to depend on them
         given = run if figures.of_fields else replace(run, matrix=(), fracture_fields=())
-        outcome = _drawn(given, figures, directory / "figures", formats, times_s, every=by_name)
+        from wingcrack.figures import style
+
+        with style.layout(layout):
+            outcome = _drawn(given, figures, folder, formats, times_s, every=by_name)
         for file in before.difference(outcome.files):
             file.unlink(missing_ok=True)  # it shows what is no more
         if not outcome.lacking:
             record.note(figures.name, known, outcome.files, outcome.reason)
         yield outcome
-    if not by_name or "summary" in only:
+    if is_page and (not by_name or "summary" in only):
         yield _page(run, record, way)
 
 

@@ -8,5 +8,6 @@ GROUPS = (
 )
 ALL = "all"
 FORMATS = ("png", "pdf")
+LAYOUTS = ("page", "column", "slide")
 DEFAULT_FORMATS = ("png",)
 CLUSTERS = ("none", "local", "slurm", "pbs", "ssh")  # how the runs of a study are spread

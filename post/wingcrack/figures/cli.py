@@ -34,7 +34,7 @@ def _plot(directory: Path, given: SimpleNamespace) -> int:
     drawn = False
     try:
         gc.disable()  # a tenth of the time; `draw_figures` tidies up where there are many
-        for outcome in draw_figures(directory, given.only, given.format, given.times):
+        for outcome in draw_figures(directory, given.only, given.format, given.times, given.style):
             drawn = drawn or bool(outcome.files)
             if outcome.reason:
                 left_out.append(outcome)

@@ -65,7 +65,7 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
 
     `wanted_s`: times [s]; the nearest written ones are drawn. Default: see `select_states`.
     """
-    frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_pressure)
+    frames = read_frames(run, min(DEFAULT_COUNT, 3 * style.across(2)), wanted_s, _check_pressure)
     body = extent([frame.matrix for frame in frames])
     first = frames[0] if wanted_s == () else read_frame(run, 0)
     changes = [changes_since(first, frame, "pressure") for frame in frames]
@@ -82,7 +82,7 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     values = [MEGAPASCAL.of(field) for field in fields]
     norm, colours = _signed_scale(values, label)
     unit = run_length_unit(run)
-    columns = min(PANELS_PER_ROW, len(frames))
+    columns = min(style.across(PANELS_PER_ROW), len(frames))
     bands = -(-len(frames) // columns)
     views = [body] if zoom is None else [body, zoom]
     figure, grid = _panels(columns, bands, views)
@@ -209,11 +209,13 @@ def stress_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     `wanted_s`: moments, in the unit of the tables; the nearest written ones are drawn. Default: see
     `select_states`.
     """
-    frames = read_frames(run, DEFAULT_COUNT, wanted_s, _check_stress, since_growth=True)
+    frames = read_frames(
+        run, min(DEFAULT_COUNT, 3 * style.across(2)), wanted_s, _check_stress, since_growth=True
+    )
     body = extent([frame.matrix for frame in frames])
     view = zoom_window(body, [frame.fractures for frame in frames]) or body
     unit = run_length_unit(run)
-    columns = min(PANELS_PER_ROW, len(frames))
+    columns = min(style.across(PANELS_PER_ROW), len(frames))
     bands = -(-len(frames) // columns)
     width = {1: style.SINGLE_COLUMN + 0.7, 2: 5.6}.get(columns, style.DOUBLE_COLUMN)
     height = min(_HEIGHT, (width - 1.6) / columns * view.ratio)

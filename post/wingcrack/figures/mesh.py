@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from wingcrack.figures import style
-from wingcrack.figures.fields import MatrixField
+from wingcrack.figures.fields import MatrixField, read_matrix
 from wingcrack.figures.frames import (
     Frame,
     Window,
@@ -36,6 +37,8 @@ _TIP = "#D55E00"
 def mesh_figure(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     """Draw the mesh in the last state, and, where windows drive growth, where these are.
 
+    If the run wrote their elements, those of the first tip have a panel.
+
     Raises `AbsentError` if the run wrote no fields.
 
     `wanted_s`: the written state nearest to the first of these moments is drawn instead.
@@ -48,13 +51,14 @@ def mesh_figure(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     body = extent([frame.matrix])
     zoom = zoom_window(body, [frame.fractures])
     views = [body] if zoom is None else [body, zoom]
+    fine = _fine_mesh(run.matrix[place].path)
     unit = run_length_unit(run)
-    width = style.SINGLE_COLUMN * len(views)
-    figure = style.new_figure(width, 3.1 * min(1.6, body.ratio) + 0.5)
-    panels = list(np.atleast_1d(figure.subplots(1, len(views))))
+    count = len(views) + (fine is not None)
+    figure = style.new_figure(style.SINGLE_COLUMN * count, 3.1 * min(1.6, body.ratio) + 0.8)
+    panels = list(np.atleast_1d(figure.subplots(1, count)))
     squares = _windows(run, frame)
-    for axes, view in zip(panels, views, strict=True):
-        _draw(axes, frame, view, unit)
+    for axes, view in zip(panels, views, strict=False):
+        _draw(axes, frame.matrix, frame, view, unit)
         for lower, size in squares:
             x, y = unit.of(lower)
             side = float(unit.of(size))
@@ -66,6 +70,12 @@ def mesh_figure(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     panels[0].set_title(f"{cells} cells, {moment_label(run, frame.moment, frame.row)}")
     if zoom is not None:
         panels[1].set_title("around the fractures")
+    if fine is not None:
+        view = zoom or extent([fine])  # of both meshes
+        _draw(panels[-1], fine, frame, view, unit)
+        set_window(panels[-1], view, unit)
+        style.map_axes(panels[-1], unit)
+        panels[-1].set_title(f"{len(fine.triangles)} elements of the window of a tip")
     style.letter(panels)
     entries = [style.handle(color="black", linewidth=1.6, label="fracture")]
     if squares:
@@ -74,8 +84,19 @@ def mesh_figure(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, frame: Frame, view: Window, unit: Unit) -> None:
-    edges = unit.of(_edges(frame.matrix, view))
+def _fine_mesh(matrix: Path) -> MatrixField | None:
+    """Elements of the window of the first tip in the state of a file; None: not written."""
+    path = matrix.with_name(matrix.name.replace("matrix", "windows"))
+    if not path.is_file():
+        return None
+    windows = read_matrix(path)
+    tips = windows.cell["tip"]
+    used, numbers = np.unique(windows.triangles[tips == tips.min()], return_inverse=True)
+    return MatrixField(windows.points[used], numbers.reshape(-1, 3), {})
+
+
+def _draw(axes: Axes, mesh: MatrixField, frame: Frame, view: Window, unit: Unit) -> None:
+    edges = unit.of(_edges(mesh, view))
     lines = LineCollection(
         list(edges), colors="#777777", linewidths=0.25, rasterized=len(edges) > 5000
     )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import wraps
 from pathlib import Path
 from typing import Any, Literal, ParamSpec, TypeVar
@@ -12,6 +14,7 @@ import matplotlib
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -21,6 +24,10 @@ from wingcrack.figures.units import Unit
 P = ParamSpec("P")
 R = TypeVar("R")
 
+_LAYOUT = ContextVar("layout", default="page")
+_ENLARGED, _LARGER_TEXT = 1.25, 1.6  # of slides, compared with pages
+
+_PAGE, _PAGE_DPI = 9.0, 200.0  # height from which on a figure is a page for the screen [inch]
 SINGLE_COLUMN = 3.5  # [inch], as most journals have it
 DOUBLE_COLUMN = 7.1  # [inch]
 
@@ -76,12 +83,56 @@ RC: dict[Any, Any] = {
 }
 
 
+class _Column(Figure):
+    """A figure of one column: all panels stand below each other."""
+
+    def subplots(self, nrows: int = 1, ncols: int = 1, *, squeeze: bool = True, **more: Any) -> Any:
+        width, height = self.get_size_inches()
+        self.set_size_inches(
+            SINGLE_COLUMN, height * (ncols if ncols > 1 else SINGLE_COLUMN / width)
+        )
+        found = super().subplots(nrows * ncols, 1, squeeze=False, **more).reshape(nrows, ncols)
+        return np.squeeze(found)[()] if squeeze else found
+
+
+@contextmanager
+def layout(name: str) -> Iterator[None]:
+    """Draw for a page, one of its columns, or a slide (`LAYOUTS` of choices)."""
+    token = _LAYOUT.set(name)
+    try:
+        yield
+    finally:
+        _LAYOUT.reset(token)
+
+
+def across(panels: int) -> int:
+    """Panels side by side where a page has so many."""
+    return 1 if _LAYOUT.get() == "column" else panels
+
+
+def _side_by_side(entries: int) -> int:
+    """Entries of a legend in a row where a page has so many."""
+    return {"page": entries, "column": min(entries, 2), "slide": (entries + 1) // 2}[_LAYOUT.get()]
+
+
 def new_figure(width: float, height: float) -> Figure:
-    """Empty figure in the common style; sizes in inches.
+    """Empty figure in the common style; sizes in inches, as a page has them.
 
     No pyplot: a figure belongs to its caller and leaves no state behind.
     """
-    return Figure(figsize=(width, height))
+    if _LAYOUT.get() == "column":
+        return _Column(figsize=(width, height))
+    larger = _ENLARGED if _LAYOUT.get() == "slide" else 1.0
+    return Figure(figsize=(larger * width, larger * height))
+
+
+def _settings() -> dict[Any, Any]:
+    if _LAYOUT.get() != "slide":
+        return RC
+    sizes = ("size", "linewidth", "major.width")
+    return {
+        key: _LARGER_TEXT * value if key.endswith(sizes) else value for key, value in RC.items()
+    }
 
 
 def styled(function: Callable[P, R]) -> Callable[P, R]:
@@ -89,7 +140,7 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def within(*args: P.args, **kwargs: P.kwargs) -> R:
-        with matplotlib.rc_context(RC):
+        with matplotlib.rc_context(_settings()):
             return function(*args, **kwargs)
 
     return within
@@ -163,7 +214,7 @@ def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None
     """Legend below all panels; none without entries."""
     if not handles:
         return
-    figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
+    figure.legend(handles=list(handles), loc="outside lower center", ncols=_side_by_side(columns))
 
 
 @styled
@@ -178,8 +229,13 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     for form in formats:
         aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
         try:
-            more = _PNG if form == "png" else {}
-            figure.savefig(aside, metadata=_METADATA[form], **more)
+            if form == "png":
+                is_page = figure.get_figheight() > _PAGE
+                figure.set_dpi(min(RC["savefig.dpi"], _PAGE_DPI if is_page else np.inf))
+                # savefig draws twice, first for the layout; this draws once
+                FigureCanvasAgg(figure).print_png(aside, metadata=_METADATA["png"], **_PNG)
+            else:
+                figure.savefig(aside, metadata=_METADATA[form])
             written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))
         finally:
             aside.unlink(missing_ok=True)
