@@ -123,6 +123,10 @@ module scene_parameters
                  "the rock around a point. No step straddles the beginning of a stage, or the "// &
                  "time at which a limit is reached or left."), &
       group_t("initial", implied=.true., scenes=in_fluid, meaning="State before the first step."), &
+      group_t("heat", scenes=in_fluid, &
+         meaning="Heat in rock and fractures: conduction, and heat carried by the fluid. Scenes "// &
+                 "without this group have none. Temperatures do not act on stresses, pressures "// &
+                 "or viscosity yet, and fractures must not grow (docs/theory.md)."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
          meaning="Stress in the body before loading, in equilibrium with tractions on its "// &
