@@ -279,7 +279,7 @@ contains
       k = k + size(connections, 2, kind=ik)
       do b = 1, joints%branch_count()
          self%links(k + b) = link_t([self%first_cell - 1 + joints%cell(b), &
-                                     self%first_joint - 1 + joints%joint(b)])
+                                     self%first_joint - 1 + joints%joint(b)], is_limited=.true.)
       end do
    end subroutine link
 

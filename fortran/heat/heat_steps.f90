@@ -186,17 +186,19 @@ contains
       class(heat_model_t), intent(in) :: heat
       type(substep_t), intent(in) :: substep
       real(rk) :: added(heat%n)
-      real(rk) :: into(2, heat%n), passed
+      real(rk) :: ahead, beyond(2, heat%n), into(2, heat%n), passed
       integer(ik) :: k, next, own
 
       added = 0.0_rk
       if (.not. any(heat%links%is_limited)) return
       into = 0.0_rk
+      beyond = 0.0_rk
       do k = 1, size(heat%links, kind=ik)
-         associate (link => heat%links(k))
-            if (minval(link%ends) < heat%first_cell) cycle
+         associate (link => heat%links(k), temperature => substep%temperature)
+            if (.not. link%is_limited) cycle
             call find_direction(link, own, next)
-            into(:, next) = into(:, next) + abs(link%flow)*[1.0_rk, substep%temperature(own)]
+            into(:, next) = into(:, next) + abs(link%flow)*[1.0_rk, temperature(own)]
+            beyond(:, own) = beyond(:, own) + abs(link%flow)*[1.0_rk, temperature(next)]
          end associate
       end do
       do k = 1, size(heat%externals, kind=ik)
@@ -210,10 +212,16 @@ contains
          associate (link => heat%links(k))
             if (.not. link%is_limited) cycle
             call find_direction(link, own, next)
-            if (.not. into(1, own) > 0.0_rk) cycle
-            passed = substep%dt*abs(link%flow)*limited(into(2, own)/into(1, own), &
-                                                       substep%temperature(own), &
-                                                       substep%temperature(next))
+            if (own >= heat%first_joint .or. .not. into(1, own) > 0.0_rk) cycle
+            associate (before => into(2, own)/into(1, own), here => substep%temperature(own))
+               ahead = substep%temperature(next)
+               if (next >= heat%first_joint) then
+                  ! The cells behind the joint; at an outlet the temperature goes on as before.
+                  ahead = 2.0_rk*here - before
+                  if (beyond(1, next) > 0.0_rk) ahead = beyond(2, next)/beyond(1, next)
+               end if
+               passed = substep%dt*abs(link%flow)*limited(before, here, ahead)
+            end associate
             added([own, next]) = added([own, next]) + passed*[-1.0_rk, 1.0_rk]
          end associate
       end do
