@@ -35,6 +35,10 @@ module heat_model
 
    public :: heat_model_t, thermal_rock
 
+   !> Nodes of layers compared with those of the pressure, for temperatures at points and not only
+   !! flows through faces.
+   integer(ik), parameter :: finer = 2
+
    type :: heat_model_t
       integer(ik) :: n = 0  !< unknowns
       type(mesh_t) :: mesh  !< with the layers of heat
@@ -85,7 +89,7 @@ contains
       self%sides%pressure_given = self%sides%temperature_given
       self%sides%temperature = self%sides%temperature - self%heat%temperature
       self%rock = thermal_rock(scene, mesh)
-      call place_layers(self%mesh, self%rock, self%sides, first, self%layers)
+      call place_layers(self%mesh, self%rock, self%sides, first, self%layers, finer)
       call find_regions(self%mesh, self%regions)
       call number_unknowns(self, joints)
       call conduct(self, error)
@@ -186,17 +190,19 @@ contains
       type(local_system_t) :: local
       type(share_t) :: share
       integer(ik), allocatable :: around(:)
+      logical :: is_given(size(self%sides))
+      real(rk) :: given(size(self%sides))  ! [K] or [W/m2]
       integer(ik) :: a, b, info, m, n, r
 
+      is_given = self%sides%temperature_given
+      given = merge(self%sides%temperature, -self%sides%heat_flux, is_given)
       n = sum([(self%regions%scalar_count(r)**2, r=1, self%regions%n_regions)])
       allocate (self%row(n), self%col(n), self%conduction(n))
       allocate (self%known(self%n), source=0.0_rk)
       n = 0
       do r = 1, self%regions%n_regions
-         call set_flux_equations(self%mesh, self%rock%resistivity, self%sides%temperature_given, &
-                                 merge(self%sides%temperature, -self%sides%heat_flux, &
-                                       self%sides%temperature_given), self%regions, r, local, &
-                                 self%layers%relief)
+         call set_flux_equations(self%mesh, self%rock%resistivity, is_given, given, self%regions, &
+                                 r, local, self%layers%relief)
          call eliminate(local, self%regions%flux(r), share, info)
          if (info /= 0) then
             call raise_error(error, "heat_model", "the cells around a vertex are degenerate")
