@@ -29,8 +29,15 @@ EVERY_STATE = "\n&scene name = 'a_run' /\n&output checkpoint_states = 1 /\n"
 FINE = varied(("size_fracture = 0.02", "size_fracture = 0.01"), ("step = 3600.0", "step = 600.0"))
 MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
 MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
+HEAT = (
+    FINE.replace("&material", "&heat temperature = 150.0 /\n&material heat_conductivity = 2.6,")
+    .replace("&fluid", "&fluid heat_capacity = 4.2e6,")
+    .replace("heat_conductivity = 2.6,", "heat_conductivity = 2.6, heat_capacity = 2.2e6,")
+    .replace("&injection", "&injection temperature = 50.0,")
+)
 SCENES = {
     "steps": FINE,
+    "heat": HEAT,
     "growth": GROWING,
     "paris": GROWING_BY_PARIS,
     "mechanics": MECHANICS,
