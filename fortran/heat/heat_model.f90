@@ -1,5 +1,5 @@
-!> Heat in rock and fractures on one mesh: finite volumes whose conduction is that of the multi-point
-!! fluxes of the coarse level (coarse_diffusion), with the layers of that level next to fractures
+!> Heat in rock and fractures on one mesh: finite volumes whose conduction is that of the
+!! multi-point fluxes of the coarse level (coarse_diffusion), with the layers of that level next to fractures
 !! and to sides with a temperature (coarse_layer_places, coarse_chain). The nodes of layers are
 !! unknowns here, since fluid flows through them.
 !!

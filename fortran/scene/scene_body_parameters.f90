@@ -75,8 +75,10 @@ module scene_body_parameters
       parameter_t("side", "inflow", kind_reals, "m/s", absent="no flow", scenes=in_fluid, &
          meaning="Prescribed inflow per time and area; negative: outflow. Not with pressure"), &
       parameter_t("side", "temperature", unit="K", absent="no conduction", scenes=in_fluid, &
-         meaning="Prescribed temperature, also of fluid that enters; only with &heat"), &
+         only_with="heat", &
+         meaning="Prescribed temperature, also of fluid that enters"), &
       parameter_t("side", "heat_flux", unit="W/m2", absent="0", scenes=in_fluid, &
+         only_with="heat", &
          meaning="Heat conducted into the body per time and area. Not with temperature"), &
       parameter_t("side", "time", kind_reals, "s", absent="constant in time", scenes=in_fluid, &
          range=at_least_zero, &

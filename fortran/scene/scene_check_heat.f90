@@ -4,6 +4,7 @@ module scene_check_heat
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_number, only: integer_text
+   use scene_parameter_table, only: parameters
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: injection_t, scene_t
@@ -14,56 +15,38 @@ module scene_check_heat
 
 contains
 
-   !> Names that only heat uses are given with it, and required ones are there.
+   !> Names that need a group of the scene are given with it only; with heat the required ones are
+   !! there, and a side has either a temperature or a flux.
    pure subroutine check_given_heat(sheet, error)
       type(sheet_t), intent(in) :: sheet
       type(error_t), allocatable, intent(out) :: error
-      integer :: i
+      integer :: i, item
 
       do i = 1, sheet%length
-         select case (groups(sheet%records(i)%group)%name)
-         case ("material")
-            call check_name(sheet, i, "heat_capacity", .true., error)
-            if (.not. allocated(error)) call check_name(sheet, i, "heat_conductivity", .true., &
-                                                        error)
-         case ("fluid")
-            call check_name(sheet, i, "heat_capacity", .true., error)
-         case ("region")
-            call check_name(sheet, i, "heat_capacity", .false., error)
-            if (.not. allocated(error)) call check_name(sheet, i, "heat_conductivity", .false., &
-                                                        error)
-         case ("injection")
-            call check_name(sheet, i, "temperature", .false., error)
-         case ("side")
-            call check_name(sheet, i, "temperature", .false., error)
-            if (.not. allocated(error)) call check_name(sheet, i, "heat_flux", .false., error)
-            if (allocated(error)) return
-            if (sheet%records(i)%is_given("temperature") .and. &
-                sheet%records(i)%is_given("heat_flux")) then
+         associate (record => sheet%records(i))
+            do item = lbound(record%values, 1), ubound(record%values, 1)
+               associate (rule => parameters(item))
+                  if (rule%only_with == "") cycle
+                  if (record%values(item)%is_set .eqv. sheet%has(trim(rule%only_with))) cycle
+                  if (record%values(item)%is_set) then
+                     call refuse(error, sheet, i, trim(rule%name), "is given, but the scene "// &
+                                 "has no group &"//trim(rule%only_with))
+                  else if (any(rule%group == ["material    ", "fluid       "])) then
+                     call refuse(error, sheet, i, trim(rule%name), "is missing but must be "// &
+                                 "given with &"//trim(rule%only_with))
+                  end if
+               end associate
+               if (allocated(error)) return
+            end do
+            if (groups(record%group)%name /= "side") cycle
+            if (record%is_given("temperature") .and. record%is_given("heat_flux")) then
                call refuse(error, sheet, i, "heat_flux", "is given with temperature, but only "// &
                            "one of them can be prescribed")
+               return
             end if
-         end select
-         if (allocated(error)) return
+         end associate
       end do
    end subroutine check_given_heat
-
-   !> A name is given with &heat only, or always with it.
-   pure subroutine check_name(sheet, i, name, is_needed, error)
-      type(sheet_t), intent(in) :: sheet
-      integer, intent(in) :: i  !< index of the record
-      character(len=*), intent(in) :: name
-      logical, intent(in) :: is_needed
-      type(error_t), allocatable, intent(out) :: error
-
-      associate (is_set => sheet%records(i)%is_set(name), has_heat => sheet%has("heat"))
-         if (is_set .and. .not. has_heat) then
-            call refuse(error, sheet, i, name, "is given, but the scene has no group &heat")
-         else if (is_needed .and. has_heat .and. .not. is_set) then
-            call refuse(error, sheet, i, name, "is missing but must be given with &heat")
-         end if
-      end associate
-   end subroutine check_name
 
    !> What heat does not cover yet, and temperatures of wells.
    pure subroutine check_heat(sheet, scene, error)

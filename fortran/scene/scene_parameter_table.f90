@@ -50,9 +50,11 @@ module scene_parameter_table
          meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second term times "// &
                  "(1 - alpha)"), &
       parameter_t("material", "heat_capacity", unit="J/m3/K", absent="no &heat", range=positive, &
-         scenes=in_fluid, meaning="Heat capacity per volume, with the pore fluid"), &
+         scenes=in_fluid, only_with="heat", &
+         meaning="Heat capacity per volume, with the pore fluid"), &
       parameter_t("material", "heat_conductivity", unit="W/m/K", absent="no &heat", &
-         range=positive, scenes=in_fluid, meaning="Heat conductivity, with the pore fluid"), &
+         range=positive, scenes=in_fluid, only_with="heat", &
+         meaning="Heat conductivity, with the pore fluid"), &
       parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
          meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
@@ -88,7 +90,7 @@ module scene_parameter_table
          range=positive, of="density_law=table", &
          meaning="Densities at these pressures, not decreasing; only ratios matter"), &
       parameter_t("fluid", "heat_capacity", unit="J/m3/K", absent="no &heat", range=positive, &
-         meaning="Heat capacity per volume at the reference density"), &
+         only_with="heat", meaning="Heat capacity per volume at the reference density"), &
       parameter_t("region", "name", kind_name, need=need_always, &
          meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
@@ -137,9 +139,11 @@ module scene_parameter_table
          absent="that of &material", derived=.true., &
          meaning="Fracture toughness K_IC of tips in the region"), &
       parameter_t("region", "heat_capacity", unit="J/m3/K", absent="that of &material", &
-         derived=.true., range=positive, scenes=in_fluid, meaning="Heat capacity per volume"), &
+         derived=.true., range=positive, scenes=in_fluid, only_with="heat", &
+         meaning="Heat capacity per volume"), &
       parameter_t("region", "heat_conductivity", unit="W/m/K", absent="that of &material", &
-         derived=.true., range=positive, scenes=in_fluid, meaning="Heat conductivity")]
+         derived=.true., range=positive, scenes=in_fluid, only_with="heat", &
+         meaning="Heat conductivity")]
 
    type(parameter_t), parameter :: fracture_parameters(*) = [ &
       parameter_t("fracture", "name", kind_name, need=need_always, &
@@ -238,6 +242,7 @@ module scene_parameter_table
          meaning="Columns of a table with other headers: HEADER=name [unit], "// &
                  "... as q=rate [l/s]; others are ignored, and rows that repeat the one before"), &
       parameter_t("injection", "temperature", kind_reals, "K", absent="no &heat, or extraction", &
+         only_with="heat", &
          meaning="Temperature of the injected fluid. One value, or one per stage"), &
       parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
          meaning="Start time; with stages that of the first"), &

@@ -178,6 +178,9 @@ contains
          if (allocated(self%heat)) then
             call summary%use_feature("heat: conduction, and carried by the fluid")
             call summary%leave_out_feature("thermal stress and viscosity by temperature")
+            if (scene%growth%intensities) then
+               call summary%warn("stress intensity factors are without thermal stress")
+            end if
          end if
          if (scene%discretization%chosen) then
             call summary%use_feature("default sizes: "//sizes_text(scene))

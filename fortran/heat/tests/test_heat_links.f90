@@ -39,7 +39,7 @@ contains
    end subroutine exact_flow
 
    subroutine limits()
-      call checks%is_close(limited(1.0_rk, 2.0_rk, 3.0_rk), 0.5_rk, 1.0e-15_rk, "linear: the middle")
+      call checks%is_close(limited(1.0_rk, 2.0_rk, 3.0_rk), 0.5_rk, 1.0e-15_rk, "the middle")
       call checks%is_close(limited(1.0_rk, 2.0_rk, 1.5_rk), 0.0_rk, 0.0_rk, "upwind at an extreme")
       call checks%is_true(limited(0.0_rk, 2.0_rk, 2.1_rk) <= 0.1_rk, "not beyond the next cell")
       call checks%is_close(limited(3.0_rk, 2.0_rk, 1.0_rk), -0.5_rk, 1.0e-15_rk, "falling")
