@@ -1,7 +1,7 @@
 !> Heat in rock and fractures on one mesh: finite volumes whose conduction is that of the
-!! multi-point fluxes of the coarse level (coarse_diffusion), with the layers of that level next to fractures
-!! and to sides with a temperature (coarse_layer_places, coarse_chain). The nodes of layers are
-!! unknowns here, since fluid flows through them.
+!! multi-point fluxes of the coarse level (coarse_diffusion), with the layers of that level next
+!! to fractures and to sides with a temperature (coarse_layer_places, coarse_chain). The nodes of
+!! layers are unknowns here, since fluid flows through them.
 !!
 !! Unknowns: the temperature of each cell, or with layers of the rest of it; of the nodes of layers,
 !! from the face inwards; of fracture cells, which is also that of their faces; of joints, whose
@@ -248,7 +248,7 @@ contains
 
       allocate (values(size(self%of_scalar)), source=0.0_rk)
       where (self%of_scalar > 0) values = temperature(max(self%of_scalar, 1_ik))
-      if (.not. allocated(self%regions%scalars)) values = values(3::3)
+      if (.not. allocated(self%regions%scalars)) values = values(3 :: 3)
    end function scalars
 
    !> Set up the links, in this order: faces of the mesh; from node to node of layers, the last one

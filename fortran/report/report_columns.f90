@@ -7,8 +7,8 @@ module report_columns
    use report_column, only: always, an_error, at_most_one, chosen, column_t, counted, label, &
                             of_heat, of_step, placed, states, with_entries, with_fluid, &
                             with_fluid_and_growth, with_fractures, with_heat, &
-                            with_heat_and_fractures, with_heat_and_wells, with_one_well, with_several, &
-                            with_wells, with_wells_and_growth, without_fluid
+                            with_heat_and_fractures, with_heat_and_wells, with_one_well, &
+                            with_several, with_wells, with_wells_and_growth, without_fluid
    implicit none(type, external)
    private
 
@@ -142,8 +142,10 @@ module report_columns
          "Unknowns of the body, with a fluid of the coarse level: the sum of dofs in run.json "// &
          "without the windows, for the mesh of the step", counted), &
       column_t("heat_stored_j", "J/m", with_heat, &
-         "Increase of heat in the body so far; heat counts from the temperature of &heat", of_heat), &
-      column_t("heat_by_wells_j", "J/m", with_heat, "Heat that wells have supplied so far", of_heat), &
+         "Increase of heat in the body so far; heat counts from the temperature of &heat", &
+         of_heat), &
+      column_t("heat_by_wells_j", "J/m", with_heat, &
+         "Heat that wells have supplied so far", of_heat), &
       column_t("heat_by_sides_j", "J/m", with_heat, &
          "Heat into the body across its outer boundary so far", of_heat), &
       column_t("heat_error_relative", "-", with_heat, &

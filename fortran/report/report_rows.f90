@@ -13,7 +13,8 @@ module report_rows
    public :: event_replay, event_step_cut, event_unstable, event_well, event_window
    public :: fracture_fields_t
    public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
-   public :: heat_row_t, matrix_fields_t, probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
+   public :: heat_row_t, matrix_fields_t
+   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
    public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.

@@ -21,8 +21,8 @@ module scene_check_regions
    !> Names of which a region must give at least one.
    character(len=17), parameter :: of_rock(10) = [character(len=17) :: &
                                            "young", "poisson", "biot", "porosity", "permeability", &
-                                                 "permeability_xx", "density", "toughness", &
-                                                 "heat_capacity", "heat_conductivity"]
+                                                  "permeability_xx", "density", "toughness", &
+                                                  "heat_capacity", "heat_conductivity"]
    !> Largest ratio of Young's moduli of adjacent rocks, limited by rounding [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
    real(rk), parameter :: most_contrast = 1.0e12_rk  !< largest ratio of permeabilities [-]

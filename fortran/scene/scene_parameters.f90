@@ -125,8 +125,8 @@ module scene_parameters
                  "time at which a limit is reached or left."), &
       group_t("initial", implied=.true., scenes=in_fluid, meaning="State before the first step."), &
       group_t("heat", scenes=in_fluid, &
-         meaning="Heat in rock and fractures: conduction, and heat carried by the fluid; without "// &
-                 "this group there is none. Temperatures do not act on stresses, pressures or "// &
+         meaning="Heat in rock and fractures: conduction, and what the fluid carries; none "// &
+                 "without this group. Temperatures do not act on stresses, pressures or "// &
                  "viscosity yet, and fractures must not grow (docs/theory.md)."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
