@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied
+from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied, with_heat
 
 import wingcrack
 from wingcrack.runner.task import run_task
@@ -29,15 +29,9 @@ EVERY_STATE = "\n&scene name = 'a_run' /\n&output checkpoint_states = 1 /\n"
 FINE = varied(("size_fracture = 0.02", "size_fracture = 0.01"), ("step = 3600.0", "step = 600.0"))
 MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
 MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
-HEAT = (
-    FINE.replace("&material", "&heat temperature = 150.0 /\n&material heat_conductivity = 2.6,")
-    .replace("&fluid", "&fluid heat_capacity = 4.2e6,")
-    .replace("heat_conductivity = 2.6,", "heat_conductivity = 2.6, heat_capacity = 2.2e6,")
-    .replace("&injection", "&injection temperature = 50.0,")
-)
 SCENES = {
     "steps": FINE,
-    "heat": HEAT,
+    "heat": with_heat(FINE),
     "growth": GROWING,
     "paris": GROWING_BY_PARIS,
     "mechanics": MECHANICS,

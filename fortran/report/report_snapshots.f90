@@ -202,7 +202,6 @@ contains
          call grid%add("permeability", permeability_tensor(fields, material, mesh), &
             & tensor_components)
       end if
-      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
       if (allocated(fields%displacement_error)) then
          call grid%add("displacement_error", fields%displacement_error)
       end if
@@ -210,6 +209,7 @@ contains
          call grid%add("pressure_error", fields%pressure_error)
       end if
       if (allocated(fields%stress_error)) call grid%add("stress_error", fields%stress_error)
+      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
@@ -231,8 +231,8 @@ contains
       if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
       if (allocated(fields%flow)) call grid%add("flow", fields%flow)
       if (allocated(fields%state)) call grid%add("state", fields%state)
-      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
       call add_fracture_errors(grid, fields)
+      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
    end subroutine fill_fractures
 
