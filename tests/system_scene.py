@@ -51,6 +51,17 @@ def varied(*changes: tuple[str, str]) -> str:
     return text
 
 
+def with_heat(scene: str) -> str:
+    """Give a scene like SCENE with heat: cold water in hot rock."""
+    for group, words in (
+        ("material", "heat_conductivity = 2.6, heat_capacity = 2.2e6,"),
+        ("fluid", "heat_capacity = 4.2e6,"),
+        ("injection", "temperature = 50.0,"),
+    ):
+        scene = scene.replace(f"&{group}", f"&{group} {words}")
+    return scene + "&heat temperature = 150.0 /\n"
+
+
 GROWING = varied(
     ("intensities = .true.", "enabled = .true., stop_gain = 0.015"),
     ("end = 18000.0", "end = 7200.0"),

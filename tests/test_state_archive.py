@@ -31,7 +31,8 @@ STORED = {
     "slip_catalogue_t": ("report_slip_archive:visit",),
     "live_t": ("report_slip_archive:visit",),
     "shear_t": ("report_slip_archive:visit_shear",),
-    "levels_state_t": ("twolevel_archive:visit_levels",),
+    "levels_state_t": ("twolevel_archive:visit_levels", "twolevel_restart:visit"),
+    "heat_state_t": ("heat_state:visit",),
     "state_t": ("coarse_archive:visit_state",),
     "guess_t": ("coarse_archive:visit_state",),
     "step_report_t": ("coarse_archive:visit_report",),
@@ -102,6 +103,7 @@ STORED = {
 
 _RULE = "follows from the scene, the mesh and what is stored, and is made again"
 _EMPTY = "empty between two steps"
+_HEAT = "these fields are stored without a fluid only, and so without heat"
 _FILES = "of this process: places, clocks, and what is on disk"
 
 
@@ -115,7 +117,11 @@ MADE_AGAIN = {
         "last": "the next step begins with it",
         "kept_problem": _EMPTY,
         "load_pressure": _RULE,
+        "heat": _RULE,
     },
+    "summary_t": {"heat": "that of the state"},
+    "matrix_fields_t": {"temperature": _HEAT},
+    "fracture_fields_t": {"temperature": _HEAT},
     "simulation_t": {
         "scene": "it is read again, and may be changed",
         "chronicle": _EMPTY,

@@ -13,7 +13,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from system_scene import TOP, rows, run, varied
+from system_scene import SCENE, TOP, rows, run, varied, with_heat
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 from wingcrack.names import NAMES, columns
@@ -35,6 +35,7 @@ GROWING = FLUID | {"with a fluid and growth", "with a fluid, wells and growth"}
 SEVERAL = ANY_FLUID | {"with a fluid and several wells"}
 JOINTS = FLUID | {"with a fluid and joints"}
 ENTRIES = JOINTS | {"with a fluid and wells with entries"}
+HEAT = FLUID | {"with &heat", "with &heat and fractures", "with &heat and wells"}
 MECHANICS = {
     "always",
     "with tips and a toughness",
@@ -105,7 +106,7 @@ def test_the_table_of_names_is_that_of_the_solver(program: None) -> None:
     assert done.stdout == NAMES.read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module", params=["fluid", "joints", "wells", "entries", "mechanics"])
+@pytest.fixture(scope="module", params=["fluid", "joints", "wells", "entries", "heat", "mechanics"])
 def out_and_runs(
     program: None, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, set[str]]:
@@ -117,6 +118,7 @@ def out_and_runs(
         "joints": (CROSSING, JOINTS),
         "wells": (SEVERAL_WELLS, SEVERAL),
         "entries": (TWO_ENTRIES, ENTRIES),
+        "heat": (with_heat(SCENE), HEAT),
         "mechanics": (EDGE_CRACK, MECHANICS),
     }[which]
     return run(tmp_path_factory.mktemp(which), scene), words
@@ -146,7 +148,7 @@ def keys(content: object, above: str = "") -> list[str]:
 
 def test_every_run_that_the_table_names_is_tested(described: dict[str, list[Entry]]) -> None:
     assert {entry.runs for entries in described.values() for entry in entries} == (
-        GROWING | ENTRIES | SEVERAL | MECHANICS
+        GROWING | ENTRIES | SEVERAL | HEAT | MECHANICS
     )
 
 

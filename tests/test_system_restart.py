@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied
+from system_scene import GROWING, GROWING_BY_PARIS, SCENE, SOLVER, TOP, varied, with_heat
 
 import wingcrack
 from wingcrack.runner.task import run_task
@@ -31,6 +31,7 @@ MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
 MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
 SCENES = {
     "steps": FINE,
+    "heat": with_heat(FINE),
     "growth": GROWING,
     "paris": GROWING_BY_PARIS,
     "mechanics": MECHANICS,

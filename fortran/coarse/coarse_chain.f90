@@ -73,18 +73,21 @@ contains
    end function node_count
 
    !> A chain on a face.
-   pure function new_chain(thickness, first, length, conductivity, storage) result(chain)
+   pure function new_chain(thickness, first, length, conductivity, storage, times_finer) &
+      & result(chain)
       real(rk), intent(in) :: thickness  !< of the layer [m]
       real(rk), intent(in) :: first  !< thickness of the first volume; the chain may be coarser [m]
       real(rk), intent(in) :: length  !< of the face [m]
       real(rk), intent(in) :: conductivity  !< [m2/(Pa s)]
       real(rk), intent(in) :: storage  !< [1/Pa]
+      integer(ik), intent(in), optional :: times_finer  !< more nodes by this factor
       type(chain_t) :: chain
       real(rk), allocatable :: edge(:)
       real(rk) :: ratio, step
       integer(ik) :: i, n
 
       n = node_count(thickness, first)
+      if (present(times_finer)) n = n*times_finer
       ratio = growth_ratio(thickness/min(first, thickness/n), n)
       allocate (edge(0:n))
       edge(0) = 0.0_rk

@@ -30,12 +30,13 @@ module coarse_layer_places
 contains
 
    !> Choose the faces that get layers, number the layers in the mesh, and set up their chains.
-   subroutine place_layers(mesh, rock, sides, first_step, layers)
+   subroutine place_layers(mesh, rock, sides, first_step, layers, times_finer)
       type(mesh_t), intent(inout) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       real(rk), intent(in) :: first_step  !< [s]
       type(layers_t), intent(out) :: layers
+      integer(ik), intent(in), optional :: times_finer  !< of coarse_chain
       logical :: is_layered(3)
       integer(ik) :: c, f, k, l
       integer(ik), allocatable :: cell(:), face_of_cell(:)
@@ -67,7 +68,7 @@ contains
       end do
       layers%cell = cell
       layers%face_of_cell = face_of_cell
-      call set_up(mesh, rock, first_step, layers)
+      call set_up(mesh, rock, first_step, layers, times_finer)
    end subroutine place_layers
 
    !> K/mu across a face [m2/(Pa s)].
@@ -105,11 +106,12 @@ contains
    end function uniaxial_storage
 
    !> The chains, their places among the unknowns, and the cells they lie in.
-   subroutine set_up(mesh, rock, first_step, layers)
+   subroutine set_up(mesh, rock, first_step, layers, times_finer)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       real(rk), intent(in) :: first_step  !< [s]
       type(layers_t), intent(inout) :: layers
+      integer(ik), intent(in), optional :: times_finer
       real(rk) :: mobility, storage, thickness
       integer(ik) :: f, k, l, n
       integer(ik), allocatable :: place(:)
@@ -152,7 +154,7 @@ contains
                         *2.0_rk/3.0_rk*layers%volume(place(l))/length
             layers%chain(l) = new_chain(thickness, &
                                         first_volume*sqrt(mobility/storage*first_step), length, &
-                                        mobility, storage)
+                                        mobility, storage, times_finer)
             associate (chain => layers%chain(l))
                layers%between(l) = mobility*length/chain%place(chain%n)
                layers%relief(l) = 0.5_rk*length*chain%place(chain%n)/mobility

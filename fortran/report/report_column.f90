@@ -9,7 +9,8 @@ module report_column
    public :: always, with_fluid, with_fractures, without_fluid, with_growth
    public :: with_toughness, with_joints, with_wells, with_entries, with_fluid_and_growth
    public :: with_wells_and_growth, with_one_well, at_most_one, with_several, with_error
-   public :: an_error, chosen, counted, label, measured, of_step, placed, states
+   public :: with_heat, with_heat_and_fractures, with_heat_and_wells
+   public :: an_error, chosen, counted, label, measured, of_heat, of_step, placed, states
 
    ! Runs in which a column, key or field is written.
    character(len=*), parameter :: always = "always"
@@ -27,6 +28,9 @@ module report_column
    character(len=*), parameter :: at_most_one = "with a fluid and at most one well"
    character(len=*), parameter :: with_several = "with a fluid and several wells"
    character(len=*), parameter :: with_error = "with &adaptive"
+   character(len=*), parameter :: with_heat = "with &heat"
+   character(len=*), parameter :: with_heat_and_fractures = "with &heat and fractures"
+   character(len=*), parameter :: with_heat_and_wells = "with &heat and wells"
 
    ! Reasons why no error is stated.
    character(len=*), parameter :: an_error = "none: itself an error"
@@ -36,6 +40,8 @@ module report_column
    character(len=*), parameter :: measured = "none: measured"
    character(len=*), parameter :: of_step = "none: a mean over one time step, whose length decides"
    character(len=*), parameter :: placed = "none: a point of the mesh, exact"
+   character(len=*), parameter :: of_heat = &
+                                  "none: to be seen by smaller cells and tolerance of &heat"
    character(len=*), parameter :: states = &
                                   "none: states of cells; where they change is known to one cell"
 
@@ -77,6 +83,12 @@ contains
          applies = scene%has_fluid() .and. well_count(scene) <= 1
       case (with_several)
          applies = scene%has_fluid() .and. well_count(scene) > 1
+      case (with_heat)
+         applies = allocated(scene%heat)
+      case (with_heat_and_fractures)
+         applies = allocated(scene%heat) .and. scene%has_fractures()
+      case (with_heat_and_wells)
+         applies = allocated(scene%heat) .and. scene%has_wells()
       case (without_fluid)
          applies = .not. scene%has_fluid()
       case default

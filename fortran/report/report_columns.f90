@@ -5,9 +5,10 @@
 !! or the reason why there is none, and one line in report_tables, the source of its value.
 module report_columns
    use report_column, only: always, an_error, at_most_one, chosen, column_t, counted, label, &
-                            of_step, placed, states, with_entries, with_fluid, &
-                            with_fluid_and_growth, with_fractures, with_one_well, with_several, &
-                            with_wells, with_wells_and_growth, without_fluid
+                            of_heat, of_step, placed, states, with_entries, with_fluid, &
+                            with_fluid_and_growth, with_fractures, with_heat, &
+                            with_heat_and_fractures, with_heat_and_wells, with_one_well, &
+                            with_several, with_wells, with_wells_and_growth, without_fluid
    implicit none(type, external)
    private
 
@@ -139,7 +140,16 @@ module report_columns
          "Estimated error of max_slip_rate_m_s", an_error), &
       column_t("unknowns", "-", always, &
          "Unknowns of the body, with a fluid of the coarse level: the sum of dofs in run.json "// &
-         "without the windows, for the mesh of the step", counted)]
+         "without the windows, for the mesh of the step", counted), &
+      column_t("heat_stored_j", "J/m", with_heat, &
+         "Increase of heat in the body so far; heat counts from the temperature of &heat", &
+         of_heat), &
+      column_t("heat_by_wells_j", "J/m", with_heat, &
+         "Heat that wells have supplied so far", of_heat), &
+      column_t("heat_by_sides_j", "J/m", with_heat, &
+         "Heat into the body across its outer boundary so far", of_heat), &
+      column_t("heat_error_relative", "-", with_heat, &
+         "Numerical error of the balance of heat so far, relative to the heat moved", an_error)]
 
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv", chosen), &
@@ -244,7 +254,9 @@ module report_columns
          "Estimated error of traction_t_pa", an_error), &
       column_t("pressure_error_pa", "Pa", with_fluid, &
          "Estimated error of pressure_pa", an_error), &
-      column_t("flow_error_m2_s", "m2/s", with_fluid, "Estimated error of flow_m2_s", an_error)]
+      column_t("flow_error_m2_s", "m2/s", with_fluid, "Estimated error of flow_m2_s", an_error), &
+      column_t("temperature_k", "K", with_heat_and_fractures, &
+         "Temperature of the fluid and of the faces, on the scale of the scene", of_heat)]
 
    !> NAME stands for the name of a probe; all columns except the first two repeat for each probe.
    type(column_t), parameter :: probe_columns(*) = [ &
@@ -310,7 +322,10 @@ module report_columns
       column_t("injected_error_m2", "m2", with_wells, &
          "Estimated error of injected_m2; 0 where the rate is prescribed", an_error), &
       column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_wells, &
-         "Estimated error of injectivity_m2_s_pa", an_error)]
+         "Estimated error of injectivity_m2_s_pa", an_error), &
+      column_t("temperature_k", "K", with_heat_and_wells, &
+         "Temperature of what the well takes out of the body, mean over the step; else of what "// &
+         "it supplies", of_heat)]
 
    type(column_t), parameter :: entry_columns(*) = [ &
       column_t("time_s", "s", with_entries, "Time", chosen), &

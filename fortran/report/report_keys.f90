@@ -2,9 +2,9 @@
 !! compare the files of real runs with it.
 module report_keys
    use report_column, only: always, an_error, chosen, column_t, counted, label, measured, &
-                            placed, states, with_error, with_fluid, with_fluid_and_growth, &
-                            with_fractures, with_growth, with_joints, with_toughness, &
-                            without_fluid
+                            of_heat, placed, states, with_error, with_fluid, &
+                            with_fluid_and_growth, with_fractures, with_growth, with_heat, &
+                            with_joints, with_toughness, without_fluid
    implicit none(type, external)
    private
 
@@ -76,6 +76,11 @@ module report_keys
       column_t("energy_error_relative", "-", with_error, &
          "Estimated error in the energy norm, of the last solution, or with a fluid of the "// &
          "response to the wells", an_error), &
+      column_t("heat_error_relative", "-", with_heat, &
+         "heat_error_relative of the last row of history.csv", an_error), &
+      column_t("heat_beyond_range_k", "K", with_heat, &
+         "Largest excess of a temperature over the range of those before the first step, of "// &
+         "sides and of wells; 0 with a heat_flux", an_error), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem", counted), &
       column_t("newton_iterations.total", "-", always, &
          "All iterations, including cut steps", counted), &
@@ -152,7 +157,8 @@ module report_keys
          "Estimated error of each component of displacement", an_error), &
       column_t("pressure_error", "Pa", with_fluid, "Estimated error of pressure", an_error), &
       column_t("stress_error", "Pa", always, &
-         "Estimated error of each component of stress", an_error)]
+         "Estimated error of each component of stress", an_error), &
+      column_t("temperature", "K", with_heat, "Mean temperature of the cell", of_heat)]
 
    type(column_t), parameter :: fracture_fields(*) = [ &
       column_t("fracture", "-", always, "Number of the fracture, from 1", label), &
@@ -172,7 +178,8 @@ module report_keys
       column_t("traction_error", "Pa", always, &
          "Estimated error of traction: normal, tangential", an_error), &
       column_t("pressure_error", "Pa", with_fluid, "Estimated error of pressure", an_error), &
-      column_t("flow_error", "m2/s", with_fluid, "Estimated error of flow", an_error)]
+      column_t("flow_error", "m2/s", with_fluid, "Estimated error of flow", an_error), &
+      column_t("temperature", "K", with_heat, "Temperature of fluid and faces", of_heat)]
 
    type(column_t), parameter :: intersection_fields(*) = [ &
       column_t("pressure", "Pa", with_fluid, &

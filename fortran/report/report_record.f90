@@ -76,6 +76,10 @@ contains
       if (self%energy_error > 0.0_rk) then
          call json%add("energy_error_relative", self%energy_error)
       end if
+      if (self%heat%error >= 0.0_rk) then
+         call json%add("heat_error_relative", self%heat%error)
+         call json%add("heat_beyond_range_k", self%heat%beyond_range)
+      end if
       call json%begin_object("newton_iterations")
       call json%add("total", self%newton_total)
       call json%add("max", self%newton_max)

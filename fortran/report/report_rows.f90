@@ -13,7 +13,8 @@ module report_rows
    public :: event_replay, event_step_cut, event_unstable, event_well, event_window
    public :: fracture_fields_t
    public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
-   public :: matrix_fields_t, probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
+   public :: heat_row_t, matrix_fields_t
+   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
    public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t, window_fields_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
@@ -54,6 +55,14 @@ module report_rows
       real(rk) :: connected_stimulated = 0.0_rk
    end type history_errors_t
 
+   !> Heat since the start, relative to the temperature of &heat.
+   type :: heat_row_t
+      real(rk) :: stored = 0.0_rk  !< increase in the body [J/m]
+      real(rk) :: by_wells = 0.0_rk, by_sides = 0.0_rk  !< into the body [J/m]
+      real(rk) :: error = -1.0_rk  !< of their balance, relative to the heat moved; -1: no heat [-]
+      real(rk) :: beyond_range = 0.0_rk  !< temperature outside its bounds [K]
+   end type heat_row_t
+
    !> An accepted time step, a row of history.csv.
    type, extends(stimulation_row_t) :: history_row_t
       real(rk) :: time = 0.0_rk  !< [s]; mechanics only: the load factor [-]
@@ -76,6 +85,7 @@ module report_rows
       real(rk) :: well_pressure_error = 0.0_rk  !< estimated error of well_pressure; -1: none [Pa]
       real(rk) :: strain_energy = 0.0_rk  !< without a fluid; per metre of thickness [J/m]
       type(history_errors_t) :: error
+      type(heat_row_t) :: heat
    end type history_row_t
 
    !> Estimated errors of a slip event, in the units of its row.
@@ -128,6 +138,7 @@ module report_rows
       real(rk) :: injectivity = 0.0_rk  !< flow over the pressure rise since the start [m2/s/Pa]
       real(rk) :: asked = 0.0_rk  !< prescribed rate of the stage; 0 without one [m2/s]
       type(well_errors_t) :: error
+      real(rk) :: temperature = 0.0_rk  !< with heat [K]
    end type well_row_t
 
    !> Estimated errors of an entry after a step, in the units of its row.
@@ -191,6 +202,7 @@ module report_rows
       real(rk), allocatable :: displacement(:, :)  !< (2, n_cells) [m]
       real(rk), allocatable :: stress(:, :)  !< (3, n_cells) total: xx, yy, xy [Pa]
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
+      real(rk), allocatable :: temperature(:)  !< (n_cells) mean; with heat [K]
       real(rk), allocatable :: permeability(:, :)  !< (3, n_cells) xx, yy, xy [m2]; or the scene's
       !> (n_cells) Poisson's ratio and Biot's coefficient, or those of the scene [-]
       real(rk), allocatable :: poisson(:), biot(:)
@@ -220,6 +232,7 @@ module report_rows
       real(rk), allocatable :: pressure(:)  !< (n_cells) [Pa]
       real(rk), allocatable :: void(:)  !< (n_cells) part of the aperture that vapour fills [m]
       real(rk), allocatable :: flow(:)  !< (n_cells) of fluid along tau [m2/s]
+      real(rk), allocatable :: temperature(:)  !< (n_cells) with heat [K]
       integer(ik), allocatable :: state(:)  !< (n_cells) of contact_law
       type(fracture_errors_t) :: error
    end type fracture_fields_t
@@ -259,6 +272,7 @@ module report_rows
       !> bound of the relative error of their solutions [-]
       real(rk) :: forward_error_bound = 0.0_rk
       real(rk) :: smallest_angle = 0.0_rk  !< smallest angle of all meshes; 0: omitted [rad]
+      type(heat_row_t) :: heat  !< of the last state
       real(rk) :: energy_error = 0.0_rk  !< relative estimate on the last mesh; 0: omitted [-]
       integer(ik) :: newton_total = 0  !< iterations in all steps
       integer(ik) :: newton_max = 0  !< largest number of iterations in one step

@@ -215,6 +215,7 @@ contains
          call grid%add("pressure_error", fields%pressure_error)
       end if
       if (allocated(fields%stress_error)) call grid%add("stress_error", fields%stress_error)
+      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
@@ -237,6 +238,7 @@ contains
       if (allocated(fields%flow)) call grid%add("flow", fields%flow)
       if (allocated(fields%state)) call grid%add("state", fields%state)
       call add_fracture_errors(grid, fields)
+      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
    end subroutine fill_fractures
 

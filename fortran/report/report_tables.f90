@@ -126,6 +126,10 @@ contains
          call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
          call put_errors(table, row%error)
          call table%put("unknowns", row%n_unknowns)
+         call table%put("heat_stored_j", row%heat%stored)
+         call table%put("heat_by_wells_j", row%heat%by_wells)
+         call table%put("heat_by_sides_j", row%heat%by_sides)
+         call table%put("heat_error_relative", row%heat%error)
          call table%end_row()
       end associate
    end subroutine history_row
@@ -239,6 +243,7 @@ contains
                call put_if_there(table, "traction_t_error_pa", error%traction_t, cell)
                call put_if_there(table, "pressure_error_pa", error%pressure, cell)
                call put_if_there(table, "flow_error_m2_s", error%flow, cell)
+               call put_if_there(table, "temperature_k", fields%temperature, cell)
             end associate
             call table%end_row()
          end do
@@ -369,6 +374,7 @@ contains
          call table%put("head_pressure_error_pa", row%error%head_pressure)
          call table%put("injected_error_m2", row%error%injected)
          call table%put("injectivity_error_m2_s_pa", row%error%injectivity)
+         call table%put("temperature_k", row%temperature)
          call table%end_row()
       end associate
    end subroutine well_row

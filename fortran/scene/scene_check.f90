@@ -7,6 +7,7 @@ module scene_check
    use scene_check_entries, only: check_meetings
    use scene_check_fluid, only: check_fluid, check_given_fluid, check_given_wells, check_wells
    use scene_check_geometry, only: check_domain, check_fractures, check_least_size, check_probes
+   use scene_check_heat, only: check_given_heat, check_heat
    use scene_check_mechanics, only: check_laws, check_load, check_restraints, check_support, &
                                     check_weight
    use scene_check_permeability, only: check_given_permeability, check_tensor
@@ -38,6 +39,7 @@ contains
       if (.not. allocated(error)) call check_table(sheet, error)
       if (.not. allocated(error)) call check_given_wells(sheet, error)
       if (.not. allocated(error)) call check_given_fluid(sheet, error)
+      if (.not. allocated(error)) call check_given_heat(sheet, error)
    end subroutine check_sheet
 
    !> Check the numbers of a scene against each other.
@@ -67,6 +69,7 @@ contains
       if (.not. allocated(error)) call check_faces(sheet, scene, error)
       if (.not. allocated(error)) call check_fractures(sheet, scene, error)
       if (.not. allocated(error)) call check_wells(sheet, scene, error)
+      if (.not. allocated(error)) call check_heat(sheet, scene, error)
       if (.not. allocated(error)) call check_meetings(sheet, scene, error)
       if (.not. allocated(error)) call check_probes(sheet, scene, error)
       if (.not. allocated(error)) call check_levels(sheet, scene, error)

@@ -153,6 +153,8 @@ contains
          n = size(scene%probes)
       case ("fluid")
          n = merge(1, 0, scene%has_fluid())
+      case ("heat")
+         n = merge(1, 0, allocated(scene%heat))
       case default
          n = 1
       end select
@@ -241,6 +243,12 @@ contains
       case ("initial")
          call exchange(record, "fracture_pressure", scene%initial%fracture_pressure)
          call exchange(record, "pressure", scene%initial%pressure)
+      case ("heat")
+         if (record%reading) allocate (scene%heat)
+         call exchange(record, "temperature", scene%heat%temperature)
+         call exchange(record, "temperature_per_y", scene%heat%temperature_per_y)
+         call exchange(record, "y_datum", scene%heat%y_datum)
+         call exchange(record, "tolerance", scene%heat%tolerance)
       case ("time")
          call exchange(record, "end", scene%time%end)
          call exchange(record, "step", scene%time%step, nothing=0.0_rk)
@@ -299,6 +307,7 @@ contains
       call exchange(record, "compressibility", fluid%compressibility)
       call exchange(record, "viscosity", fluid%viscosity)
       call exchange(record, "density", fluid%density, nothing=0.0_rk)
+      call exchange(record, "heat_capacity", fluid%heat_capacity, nothing=0.0_rk)
       call exchange(record, "vapour_pressure", fluid%vapour_pressure, nothing=-unlimited)
       call exchange(record, "viscosity_law", fluid%viscosity_law)
       call exchange(record, "viscosity_exponent", fluid%viscosity_exponent)
@@ -382,6 +391,7 @@ contains
       call exchange(record, "time", injection%time)
       call exchange(record, "rate", injection%rate)
       call exchange(record, "pressure", injection%pressure)
+      call exchange(record, "temperature", injection%temperature)
       if (record%reading .or. .not. allocated(injection%time)) then
          call exchange(record, "start", injection%start)
       end if

@@ -203,6 +203,8 @@ contains
       call exchange(record, "porosity", material%porosity)
       call exchange_permeability(record, material)
       call exchange(record, "density", material%density, nothing=0.0_rk)
+      call exchange(record, "heat_capacity", material%heat_capacity, nothing=0.0_rk)
+      call exchange(record, "heat_conductivity", material%heat_conductivity, nothing=0.0_rk)
       call exchange(record, "toughness", material%toughness, nothing=huge(1.0_rk))
       call exchange(record, "radiation_damping", material%radiation_damping)
       plane = merge("stress", "strain", material%plane_stress)
@@ -234,6 +236,8 @@ contains
             own%porosity = not_given
             own%density = not_given
             own%toughness = not_given
+            own%heat_capacity = not_given
+            own%heat_conductivity = not_given
          end if
          call exchange(record, "young", own%young)
          call exchange(record, "poisson", own%poisson)
@@ -242,6 +246,8 @@ contains
          call exchange_permeability(record, own)
          call exchange(record, "density", own%density, nothing=0.0_rk)
          call exchange(record, "toughness", own%toughness, nothing=huge(1.0_rk))
+         call exchange(record, "heat_capacity", own%heat_capacity, nothing=0.0_rk)
+         call exchange(record, "heat_conductivity", own%heat_conductivity, nothing=0.0_rk)
       end associate
    end subroutine exchange_region
 
@@ -298,6 +304,9 @@ contains
                           nothing=0.0_rk)
       call exchange_value(record, of_shear_traction, side%shear_traction, side%course, &
                           nothing=0.0_rk)
+      if (record%reading) side%temperature_given = record%is_set("temperature")
+      if (side%temperature_given) call exchange(record, "temperature", side%temperature)
+      call exchange(record, "heat_flux", side%heat_flux, nothing=0.0_rk)
       call exchange(record, "x_spring", side%spring(1), nothing=0.0_rk)
       call exchange(record, "y_spring", side%spring(2), nothing=0.0_rk)
       if (record%is_set("normal_traction") .or. record%is_set("shear_traction")) return

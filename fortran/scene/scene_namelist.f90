@@ -277,6 +277,7 @@ contains
          wells(i)%start = wells(i)%time(1)
          call repeat_value(wells(i)%rate, size(wells(i)%time))
          call repeat_value(wells(i)%pressure, size(wells(i)%time))
+         call repeat_value(wells(i)%temperature, size(wells(i)%time))
       end do
    end subroutine name_wells
 
@@ -306,6 +307,8 @@ contains
             call take(own%porosity, all%porosity)
             call take(own%density, all%density)
             call take(own%toughness, all%toughness)
+            call take(own%heat_capacity, all%heat_capacity)
+            call take(own%heat_conductivity, all%heat_conductivity)
             if (.not. own%permeability_xx > 0.0_rk) cycle
             all%permeability_xx = own%permeability_xx
             all%permeability_yy = own%permeability_yy

@@ -1,6 +1,7 @@
 !> The names of a scene file, each with its group, kind, unit, default, range and meaning. A new
 !! name is one entry here and one line in scene_exchange.
 module scene_parameter_table
+   use scene_body_parameters, only: body_parameters
    use scene_parameters, only: in_fluid, in_mechanics, kind_choice, kind_integer, kind_logical, &
                                kind_name, kind_names, kind_reals, kind_text, kind_wholes, &
                                need_always, need_choice, need_fluid, need_growth, parameter_t
@@ -15,89 +16,6 @@ module scene_parameter_table
 
    ! The parts of the table, which keep their own layout; one statement cannot be longer.
    !&<
-   type(parameter_t), parameter :: body_parameters(*) = [ &
-      parameter_t("scene", "name", kind_name, absent="the file's name without .nml", &
-         derived=.true., meaning="Short name; results are in `out/<name>` unless --out is used"), &
-      parameter_t("scene", "title", kind_text, default="''", meaning="One-line description"), &
-      parameter_t("scene", "thickness", unit="m", default="1.0", range=positive, &
-         meaning="Of the body, out of the plane: by it rates in volumes per time, as rate_l_s, "// &
-                 "become rates per metre of thickness"), &
-      parameter_t("domain", "shape", kind_choice, default="'rectangle'", &
-         choices="rectangle|disc|polygon", meaning="Shape of the body"), &
-      parameter_t("domain", "x_min", unit="m", need=need_choice, absent="no rectangle", &
-         of="shape=rectangle", meaning="Left side"), &
-      parameter_t("domain", "x_max", unit="m", need=need_choice, absent="no rectangle", &
-         of="shape=rectangle", meaning="Right side, above x_min"), &
-      parameter_t("domain", "y_min", unit="m", need=need_choice, absent="no rectangle", &
-         of="shape=rectangle", meaning="Bottom side"), &
-      parameter_t("domain", "y_max", unit="m", need=need_choice, absent="no rectangle", &
-         of="shape=rectangle", meaning="Top side, above y_min"), &
-      parameter_t("domain", "x_centre", unit="m", need=need_choice, absent="no disc", &
-         of="shape=disc", meaning="x of the disc's centre"), &
-      parameter_t("domain", "y_centre", unit="m", need=need_choice, absent="no disc", &
-         of="shape=disc", meaning="y of the disc's centre"), &
-      parameter_t("domain", "radius", unit="m", need=need_choice, range=positive, of="shape=disc", &
-         absent="no disc", meaning="Radius of the disc"), &
-      parameter_t("domain", "x", kind_reals, "m", need_choice, absent="no polygon", &
-         of="shape=polygon", &
-         meaning="x of the corners of a polygon, in either orientation; edge k connects corner "// &
-                 "k and the next one, the last edge ends at corner 1"), &
-      parameter_t("domain", "y", kind_reals, "m", need_choice, absent="no polygon", &
-         of="shape=polygon", meaning="y of the corners"), &
-      parameter_t("side", "name", kind_name, need=need_always, &
-         meaning="`left`, `right`, `bottom` or `top` of a rectangle; otherwise any, different "// &
-                 "from that of every other side"), &
-      parameter_t("side", "edges", kind_wholes, absent="no polygon", range=at_least_one, &
-         meaning="Numbers of a polygon's edges, required there"), &
-      parameter_t("side", "arc_from_deg", unit="degree", absent="the whole rim", &
-         with="arc_to_deg", &
-         meaning="Start of an arc of a disc's rim, counter-clockwise from the x axis"), &
-      parameter_t("side", "arc_to_deg", unit="degree", absent="the whole rim", &
-         with="arc_from_deg", meaning="End of the arc, above arc_from_deg by at most 360"), &
-      parameter_t("side", "x_displacement", kind_reals, "m", absent="traction is prescribed", &
-         meaning="Prescribed displacement in x"), &
-      parameter_t("side", "y_displacement", kind_reals, "m", absent="traction is prescribed", &
-         meaning="Prescribed displacement in y"), &
-      parameter_t("side", "x_traction", kind_reals, "Pa", &
-         absent="0, or displacement is prescribed", &
-         meaning="Total traction in x: on the right side, compression is negative"), &
-      parameter_t("side", "y_traction", kind_reals, "Pa", &
-         absent="0, or displacement is prescribed", &
-         meaning="Total traction in y: on the top side, compression is negative"), &
-      parameter_t("side", "normal_traction", kind_reals, "Pa", absent="0", &
-         meaning="Traction along the outward normal, compression is negative; not with "// &
-                 "displacements or tractions in x and y"), &
-      parameter_t("side", "shear_traction", kind_reals, "Pa", absent="0", &
-         meaning="Tangential traction, positive with the body on the left; conditions as for "// &
-                 "normal_traction"), &
-      parameter_t("side", "x_spring", unit="Pa/m", absent="no spring", range=positive, &
-         meaning="Stiffness of springs on the side in x: traction opposite to the displacement "// &
-                 "and proportional to it, in addition to prescribed tractions"), &
-      parameter_t("side", "y_spring", unit="Pa/m", absent="no spring", range=positive, &
-         meaning="The same in y"), &
-      parameter_t("side", "pressure", kind_reals, "Pa", absent="no flow", scenes=in_fluid, &
-         meaning="Prescribed pore pressure; with a fluid density that at y_datum of &in_situ"), &
-      parameter_t("side", "inflow", kind_reals, "m/s", absent="no flow", scenes=in_fluid, &
-         meaning="Prescribed inflow per time and area; negative: outflow. Not with pressure"), &
-      parameter_t("side", "time", kind_reals, "s", absent="constant in time", scenes=in_fluid, &
-         range=at_least_zero, &
-         meaning="Times of the values of the side, each of which has one value or one per "// &
-                 "time; linear between times, with a jump at two equal times. No step "// &
-                 "straddles them"), &
-      parameter_t("side", "schedule", kind_text, absent="no table", scenes=in_fluid, &
-         meaning="CSV file in the folder of the scene with a row per time, instead of time and "// &
-                 "values: columns time_s, x_traction_pa, pressure_pa, inflow_m_s and so on"), &
-      parameter_t("restraint", "x", unit="m", need=need_always, meaning="x of the point"), &
-      parameter_t("restraint", "y", unit="m", need=need_always, meaning="y of the point"), &
-      parameter_t("restraint", "x_displacement", unit="m", absent="free in x", &
-         meaning="Prescribed displacement in x, times the load factor"), &
-      parameter_t("restraint", "y_displacement", unit="m", absent="free in y", &
-         meaning="Prescribed displacement in y, times the load factor"), &
-      parameter_t("point_load", "x", unit="m", need=need_always, meaning="x of the point"), &
-      parameter_t("point_load", "y", unit="m", need=need_always, meaning="y of the point"), &
-      parameter_t("point_load", "x_force", unit="N/m", default="0.0", meaning="Force in x"), &
-      parameter_t("point_load", "y_force", unit="N/m", default="0.0", meaning="Force in y")]
-
    type(parameter_t), parameter :: rock_parameters(*) = [ &
       parameter_t("material", "young", unit="Pa", need=need_always, range=positive, &
          meaning="Young's modulus E"), &
@@ -131,6 +49,12 @@ module scene_parameter_table
          choices="thesis|textbook", &
          meaning="Storage S: phi c_p + (alpha - phi)/K_dr, or textbook: the second term times "// &
                  "(1 - alpha)"), &
+      parameter_t("material", "heat_capacity", unit="J/m3/K", absent="no &heat", range=positive, &
+         scenes=in_fluid, only_with="heat", &
+         meaning="Heat capacity per volume, with the pore fluid"), &
+      parameter_t("material", "heat_conductivity", unit="W/m/K", absent="no &heat", &
+         range=positive, scenes=in_fluid, only_with="heat", &
+         meaning="Heat conductivity, with the pore fluid"), &
       parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
          meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
@@ -165,6 +89,8 @@ module scene_parameter_table
       parameter_t("fluid", "table_density", kind_reals, "kg/m3", need_choice, absent="no table", &
          range=positive, of="density_law=table", &
          meaning="Densities at these pressures, not decreasing; only ratios matter"), &
+      parameter_t("fluid", "heat_capacity", unit="J/m3/K", absent="no &heat", range=positive, &
+         only_with="heat", meaning="Heat capacity per volume at the reference density"), &
       parameter_t("region", "name", kind_name, need=need_always, &
          meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
@@ -211,7 +137,13 @@ module scene_parameter_table
                  "with a stress in situ that varies with y, nor with windows"), &
       parameter_t("region", "toughness", unit="Pa m^1/2", range=at_least_zero, &
          absent="that of &material", derived=.true., &
-         meaning="Fracture toughness K_IC of tips in the region")]
+         meaning="Fracture toughness K_IC of tips in the region"), &
+      parameter_t("region", "heat_capacity", unit="J/m3/K", absent="that of &material", &
+         derived=.true., range=positive, scenes=in_fluid, only_with="heat", &
+         meaning="Heat capacity per volume"), &
+      parameter_t("region", "heat_conductivity", unit="W/m/K", absent="that of &material", &
+         derived=.true., range=positive, scenes=in_fluid, only_with="heat", &
+         meaning="Heat conductivity")]
 
    type(parameter_t), parameter :: fracture_parameters(*) = [ &
       parameter_t("fracture", "name", kind_name, need=need_always, &
@@ -309,6 +241,9 @@ module scene_parameter_table
       parameter_t("injection", "columns", kind_text, absent="names of the columns", &
          meaning="Columns of a table with other headers: HEADER=name [unit], "// &
                  "... as q=rate [l/s]; others are ignored, and rows that repeat the one before"), &
+      parameter_t("injection", "temperature", kind_reals, "K", absent="no &heat, or extraction", &
+         only_with="heat", &
+         meaning="Temperature of the injected fluid. One value, or one per stage"), &
       parameter_t("injection", "start", unit="s", default="0.0", range=at_least_zero, &
          meaning="Start time; with stages that of the first"), &
       parameter_t("injection", "end", unit="s", range=positive, absent="end of the run", &
@@ -337,6 +272,13 @@ module scene_parameter_table
       parameter_t("initial", "pressure", unit="Pa", default="0.0", &
          meaning="Pore pressure before loading; with a fluid density that at y_datum of "// &
                  "&in_situ"), &
+      parameter_t("heat", "temperature", unit="K", need=need_always, &
+         meaning="Temperature before the first step, at y_datum. Any scale with steps of 1 K"), &
+      parameter_t("heat", "temperature_per_y", unit="K/m", default="0.0", &
+         meaning="Its change per metre upwards"), &
+      parameter_t("heat", "y_datum", unit="m", default="0.0", meaning="Level of temperature"), &
+      parameter_t("heat", "tolerance", default="1.0e-3", range=share, &
+         meaning="Error in time of a substep of the heat, relative to the heat moved so far"), &
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
          meaning="End of the run"), &
       parameter_t("time", "step", unit="s", range=positive, at_most="end", &

@@ -62,6 +62,7 @@ module scene_parameters
       character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
       logical :: per_entry = .false.  !< a list by entries of a well, and so not by its stages
+      character(len=12) :: only_with = ""  !< group that a scene with this name must have
       ! Relations to other names of its group:
       character(len=28) :: of = ""  !< choice of the name, as `law=slip`; empty: every choice
       character(len=20) :: with = ""  !< name that must be given with this one
@@ -123,6 +124,10 @@ module scene_parameters
                  "the rock around a point. No step straddles the beginning of a stage, or the "// &
                  "time at which a limit is reached or left."), &
       group_t("initial", implied=.true., scenes=in_fluid, meaning="State before the first step."), &
+      group_t("heat", scenes=in_fluid, &
+         meaning="Heat in rock and fractures: conduction, and what the fluid carries; none "// &
+                 "without this group. Temperatures do not act on stresses, pressures or "// &
+                 "viscosity yet, and fractures must not grow (docs/theory.md)."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
          meaning="Stress in the body before loading, in equilibrium with tractions on its "// &

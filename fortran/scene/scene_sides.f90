@@ -44,6 +44,9 @@ module scene_sides
       real(rk) :: pressure = 0.0_rk  !< [Pa]
       logical :: inflow_given = .false.  !< .false., without a pressure: 0 is the default
       real(rk) :: inflow = 0.0_rk  !< volume per time and area into the body [m/s]
+      logical :: temperature_given = .false.  !< .false.: the heat flux is prescribed
+      real(rk) :: temperature = 0.0_rk  !< [K]
+      real(rk) :: heat_flux = 0.0_rk  !< conducted into the body [W/m2]
       type(side_course_t) :: course
    contains
       procedure :: changes

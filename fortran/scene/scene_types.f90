@@ -2,6 +2,7 @@
 module scene_types
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
+   use scene_heat, only: heat_t
    use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
@@ -36,6 +37,8 @@ module scene_types
       real(rk) :: permeability_yy = 0.0_rk  !< [m2]
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
       real(rk) :: density = 0.0_rk  !< density with the pore fluid [kg/m3]
+      real(rk) :: heat_capacity = 0.0_rk  !< with the pore fluid [J/(m3 K)]
+      real(rk) :: heat_conductivity = 0.0_rk  !< [W/(m K)]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
       real(rk) :: radiation_damping = 0.0_rk  !< eta = G/(2 c_s) [Pa s/m]
       logical :: plane_stress = .false.
@@ -62,6 +65,7 @@ module scene_types
       real(rk) :: compressibility = 0.0_rk  !< c_p [1/Pa]
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
       real(rk) :: density = 0.0_rk  !< density; 0: no weight [kg/m3]
+      real(rk) :: heat_capacity = 0.0_rk  !< at the reference density [J/(m3 K)]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< lowest pressure in fractures [Pa]
       ! In fractures, as functions of pressure (scene_fluid_law):
       character(len=name_length) :: viscosity_law = "constant"  !< or "exponential", "table"
@@ -178,6 +182,7 @@ module scene_types
       real(rk), allocatable :: rate(:)
       !> (stages) pressure at the well head, with a rate its limit; unallocated: no limit [Pa]
       real(rk), allocatable :: pressure(:)
+      real(rk), allocatable :: temperature(:)  !< (stages, or 1) of what it injects [K]
       real(rk) :: storage = 0.0_rk  !< wellbore storage: stored volume per pressure [m2/Pa]
       real(rk) :: friction = 0.0_rk  !< pressure loss to the fracture per flow [Pa s/m2]
       real(rk) :: turbulence = 0.0_rk  !< pressure loss per flow squared [Pa s2/m4]
@@ -292,6 +297,7 @@ module scene_types
       real(rk) :: gravity(2) = 0.0_rk  !< acceleration [m/s2]
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial
+      type(heat_t), allocatable :: heat  !< unallocated: none
       type(time_t) :: time
       type(discretization_t) :: discretization
       type(growth_t) :: growth

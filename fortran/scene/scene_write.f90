@@ -43,6 +43,9 @@ contains
          do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
             associate (parameter => parameters(item), value => sheet%records(i)%values(item))
                if (.not. applies(parameter%scenes, scene%has_fluid())) cycle
+               if (parameter%only_with /= "") then
+                  if (.not. sheet%has(trim(parameter%only_with))) cycle
+               end if
                if (value%is_set) then
                   call put_value(lines, parameter, value)
                else if (parameter%absent == "") then  ! a default that this group does not take

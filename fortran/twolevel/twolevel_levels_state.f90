@@ -8,6 +8,7 @@ module twolevel_levels_state
    use growth_front, only: front_state_t
    use growth_segment, only: segment_t
    use growth_tip, only: tip_t
+   use heat_state, only: heat_state_t
    use mesh_types, only: network_t
    use twolevel_errors, only: stated_errors_t
    use twolevel_trend, only: trend_t
@@ -45,6 +46,7 @@ module twolevel_levels_state
       type(trend_t) :: trend  !< rates of the last accepted step
       type(stated_errors_t) :: stated_errors  !< estimated errors of lengths and pressures
       type(fluid_totals_t) :: fluid
+      type(heat_state_t) :: heat
       !> (controlled wells, then their entries) volumes since the last switch [m2]
       real(rk), allocatable :: given(:)
       !> (controlled wells) wells whose rate is reduced by a limit
@@ -116,7 +118,12 @@ contains
                  trend_part(now%trend), certainty_part(now%stated_errors), &
                  part_t("fluid", [now%fluid%injected, now%fluid%produced, now%fluid%leaked, &
                                   now%fluid%outflow, now%fluid%prefilled, now%fluid%mass_error]), &
-                 part_t("wells", [numbers(now%given), some_truths(now%at_limit)])]
+                 part_t("wells", [numbers(now%given), some_truths(now%at_limit)]), &
+                 part_t("heat", [numbers(now%heat%temperature), numbers(now%heat%capacity), &
+                                 numbers(now%heat%rate), numbers(now%heat%well_temperature), &
+                                 now%heat%last, now%heat%next, now%heat%stored, &
+                                 now%heat%by_wells, now%heat%by_sides, now%heat%moved, &
+                                 now%heat%beyond_range, now%heat%range])]
       end associate
    end function parts
 

@@ -12,6 +12,7 @@ submodule(twolevel_state) twolevel_restart
    use mesh_archive, only: visit_mesher_and_mesh
    use report_restart, only: visit_simulation
    use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
+   use twolevel_heat, only: heat_row, set_heat
    use twolevel_schedule, only: next_switch
    use twolevel_setup, only: keep_above_zero, rules_of_scene
    implicit none(type, external)
@@ -60,6 +61,7 @@ contains
       end associate
       call visit_levels(archive, "now", self%now)
       call visit_state(archive, "before", self%before)
+      if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
          call follow_sides(self%scene, self%now%coarse%time, self%before%time)
       end if
@@ -70,6 +72,7 @@ contains
       call visit_windows(archive, "reference", self%reference, self%now%reference%tip, self, error)
       if (allocated(error) .or. allocated(archive%fault)) return
       call visit_control(archive, self)
+      if (allocated(self%heat)) self%summary%heat = heat_row(self%now%heat)
       if (archive%is_loading) call go_beyond_end(self)
    end subroutine visit
 
@@ -105,6 +108,7 @@ contains
             call model%set_mesh(problem%mesh, self%scene, timers, error)
             if (allocated(error)) return
             call problem%feed_wells(self%scene, error)
+            if (.not. allocated(error)) call set_heat(self%scene, problem, self%heat, error)
             if (allocated(error)) return
             call archive%compare_extent("blocks", model%regions%n_blocks)
             call archive%compare_extent("corners", model%regions%traction_count())

@@ -11,6 +11,7 @@ submodule(twolevel_state) twolevel_simulation
    use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_field_errors, only: load_errors
+   use twolevel_heat, only: set_heat
    use twolevel_limits, only: watch_mesh, watch_windows
    use twolevel_notes, only: note_excess
    use twolevel_stepping, only: refinement_t
@@ -74,6 +75,7 @@ contains
       allocate (self%now%grown(0), self%now%segment(size(self%tip)))
       call self%now%interaction%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
+      call set_heat(self%scene, self%problem, self%heat, error)
    end subroutine mesh_levels
 
    !> Mesh the coarse level, with &adaptive again until the estimated error is small enough.
@@ -173,6 +175,13 @@ contains
             call summary%use_feature("stress in situ, hydrostatic")
          end if
          if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
+         if (allocated(self%heat)) then
+            call summary%use_feature("heat: conduction, and carried by the fluid")
+            call summary%leave_out_feature("thermal stress and viscosity by temperature")
+            if (scene%growth%intensities) then
+               call summary%warn("stress intensity factors are without thermal stress")
+            end if
+         end if
          if (scene%discretization%chosen) then
             call summary%use_feature("default sizes: "//sizes_text(scene))
          end if

@@ -15,6 +15,7 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
+   use twolevel_heat, only: add_well_temperatures, follow_heat
    use twolevel_limits, only: watch_levels
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
@@ -93,6 +94,9 @@ contains
       real(rk), allocatable :: pressure(:)
 
       call book_change(self)
+      call follow_heat(self%scene, self%problem, self%before, self%now%coarse, self%heat, &
+                       self%now%heat, error)
+      if (allocated(error)) return
       self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
       row = self%history()
       call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
@@ -118,6 +122,7 @@ contains
                                         self%now%stated_errors, facts_of(self))
       call note_well_rows(self)
       call watch_errors(self)
+      self%summary%heat = row%heat
       call note_state(self, row%mass_error_relative)
    end subroutine commit_step
 
@@ -460,6 +465,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
       call self%value_errors%note_wells(self%scene, self%problem, rows, self%now%stated_errors, &
                                         facts_of(self))
+      call add_well_temperatures(self%heat, self%now%heat, rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
       if (.not. self%scene%has_entries()) return
       entries = entry_rows(self%problem, self%now%coarse)

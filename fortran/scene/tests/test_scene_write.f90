@@ -224,7 +224,8 @@ contains
       character(len=16) :: group
 
       call read_scene(source_path("inputs/paper_d/permeability_case1.nml"), scene, error)
-      call checks%no_error(error, "a scene with every group but those of points")
+      call checks%no_error(error, "a scene with every group but those of points and heat")
+      allocate (scene%heat)
       scene%restraints = [restraint_t(1.0_rk, 1.0_rk, [.true., .true.])]
       scene%point_loads = [point_load_t(0.5_rk, 0.5_rk)]
       call put_bytes(path, scene_text(scene))

@@ -1,0 +1,179 @@
+!> Heat in a simulation: the flows and temperatures of its wells, a step, and what is reported.
+module twolevel_heat
+   use base_errors, only: error_t
+   use base_kinds, only: ik, rk
+   use base_tolerances, only: same_time
+   use coarse_state, only: state_t
+   use heat_flows, only: set_flows
+   use heat_links, only: external_t
+   use heat_model, only: heat_model_t
+   use heat_state, only: heat_state_t
+   use heat_steps, only: advance_heat
+   use report_rows, only: heat_row_t, well_row_t
+   use report_simulation, only: snapshot_t
+   use scene_types, only: injection_t, scene_t
+   use twolevel_problem, only: coarse_problem_t
+   use twolevel_wells, only: rate
+   implicit none(type, external)
+   private
+
+   public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, set_heat
+
+   !> First substep, at most: what layers resolve [s], and over the duration of the run [-].
+   real(rk), parameter :: first_step = 1.0_rk, first_share = 1.0e-6_rk
+
+contains
+
+   !> Discretize heat on the mesh of a problem.
+   subroutine set_heat(scene, problem, heat, error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(heat_model_t), allocatable, intent(inout) :: heat
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. allocated(scene%heat)) return
+      allocate (heat)
+      call heat%set_mesh(problem%mesh, scene, problem%model%connections, problem%model%joints, &
+                         min(first_step, first_share*scene%time%end), error)
+   end subroutine set_heat
+
+   !> Advance heat by an accepted step of the coarse level; before the first one, begin.
+   subroutine follow_heat(scene, problem, before, after, heat, state, error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: before, after
+      type(heat_model_t), allocatable, intent(inout) :: heat
+      type(heat_state_t), intent(inout) :: state
+      type(error_t), allocatable, intent(out) :: error
+      type(state_t) :: first
+
+      if (.not. allocated(heat)) return
+      associate (cell_s => problem%mesh%fracture%cell_s, dt => after%time - before%time)
+         if (.not. allocated(state%temperature)) then
+            first = before
+            if (.not. dt > 0.0_rk) first = after
+            call heat%begin(first%aperture - first%void, cell_s(2, :) - cell_s(1, :), &
+                            min(first_step, first_share*scene%time%end), size(scene%injections), &
+                            state)
+         end if
+         if (.not. dt > same_time*after%time) return
+         call set_flows(heat, problem%mesh, problem%model, after, &
+                        well_flows(scene, problem, heat, before%time, after))
+         call advance_heat(heat, dt, state, error)
+      end associate
+   end subroutine follow_heat
+
+   !> What wells supply to fracture cells, joints and rock in a step.
+   function well_flows(scene, problem, heat, since, state) result(externals)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(heat_model_t), intent(in) :: heat
+      real(rk), intent(in) :: since  !< start of the step [s]
+      type(state_t), intent(in) :: state  !< after it
+      type(external_t), allocatable :: externals(:)
+      type(external_t) :: external
+      integer(ik) :: e, i, j
+
+      allocate (externals(0))
+      do e = 1, size(problem%entries, kind=ik)
+         external%well = problem%well_of(e)
+         associate (well => scene%injections(external%well), &
+                    flow => heat%fluid_capacity*entry_flow(problem, e, since, state))
+            external%temperature = temperature_of(well, 0.5_rk*(since + state%time)) &
+                                   - heat%heat%temperature
+            if (well%fracture == 0) then
+               call add(problem%rock_cell(external%well), flow)
+               cycle
+            end if
+            do i = 1, size(problem%share, 1, kind=ik)
+               call add(heat%first_cell - 1 + i, flow*problem%share(i, e))
+            end do
+            do j = 1, size(problem%joint_share, 1, kind=ik)
+               call add(heat%first_joint - 1 + j, flow*problem%joint_share(j, e))
+            end do
+         end associate
+      end do
+
+   contains
+
+      subroutine add(unknown, flow)
+         integer(ik), intent(in) :: unknown
+         real(rk), intent(in) :: flow  !< [W/(m K)]
+
+         if (.not. abs(flow) > 0.0_rk) return
+         external%unknown = unknown
+         external%flow = flow
+         externals = [externals, external]
+      end subroutine add
+
+   end function well_flows
+
+   !> Flow of an entry into fracture or rock in a step [m2/s].
+   pure real(rk) function entry_flow(problem, entry, since, state) result(flow)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: entry  !< among those of all wells
+      real(rk), intent(in) :: since  !< start of the step [s]
+      type(state_t), intent(in) :: state  !< after it
+      integer(ik) :: k
+
+      associate (wells => problem%model%wells, w => problem%well_of(entry))
+         flow = rate(problem%entries(entry), since, state%time - since)
+         if (wells%n_all == 0) return
+         k = findloc(wells%number, w, dim=1, kind=ik)
+         if (k == 0) return
+         flow = state%well_flow(k)
+         if (k > wells%n) return
+         if (wells%first_entry(k) == k) return
+         k = wells%first_entry(k) - wells%n + entry - findloc(problem%well_of, w, dim=1, kind=ik)
+         flow = state%well_flow(wells%n_all + k)
+      end associate
+   end function entry_flow
+
+   !> Temperature of what a well supplies at a time; 0 for one that only extracts [K].
+   pure real(rk) function temperature_of(well, time) result(temperature)
+      type(injection_t), intent(in) :: well
+      real(rk), intent(in) :: time  !< [s]
+      integer(ik) :: stage
+
+      temperature = 0.0_rk
+      if (.not. allocated(well%temperature)) return
+      do stage = well%stage_count(), 2, -1
+         if (well%stage_start(stage) <= time) exit
+      end do
+      temperature = well%temperature(max(stage, 1_ik))
+   end function temperature_of
+
+   !> The columns of heat of history.csv.
+   pure type(heat_row_t) function heat_row(state) result(row)
+      type(heat_state_t), intent(in) :: state
+
+      row = heat_row_t(state%stored, state%by_wells, state%by_sides, state%balance_error(), &
+                       state%beyond_range)
+   end function heat_row
+
+   !> Add the temperatures of the wells to their rows.
+   pure subroutine add_well_temperatures(heat, state, rows)
+      type(heat_model_t), allocatable, intent(in) :: heat
+      type(heat_state_t), intent(in) :: state
+      type(well_row_t), intent(inout) :: rows(:)
+
+      if (.not. allocated(heat)) return
+      rows%temperature = heat%heat%temperature + state%well_temperature
+   end subroutine add_well_temperatures
+
+   !> Add the temperatures to the fields of a state.
+   pure subroutine add_heat_fields(heat, state, fields)
+      type(heat_model_t), allocatable, intent(in) :: heat
+      type(heat_state_t), intent(in) :: state
+      type(snapshot_t), intent(inout) :: fields
+
+      if (.not. (allocated(heat) .and. allocated(state%temperature))) return
+      associate (datum => heat%heat%temperature)
+         fields%fracture%temperature = datum + state%temperature(heat%first_cell: &
+                                                                 heat%first_joint - 1)
+         if (.not. allocated(fields%matrix%pressure)) return
+         fields%matrix%temperature = datum + heat%cell_means(state)
+      end associate
+   end subroutine add_heat_fields
+
+end module twolevel_heat
