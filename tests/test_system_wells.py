@@ -301,3 +301,31 @@ def test_the_pressure_of_a_well_in_the_rock(tmp_path: Path) -> None:
     assert numbers(out / "history.csv", "well_pressure_pa") == pytest.approx(expected)
     assert expected[-1] > 1e5
     assert numbers(out / "history.csv", "injection_rate_m2_s")[-1] == pytest.approx(1e-9)
+
+
+def test_a_limited_well_with_storage_far_below_its_limit_takes_few_iterations(
+    tmp_path: Path,
+) -> None:
+    """3 in a step; 66 when the rate was given up below the limit (random scene 9)."""
+    out = run(
+        tmp_path,
+        """\
+&domain x_min = -200, x_max = 200, y_min = -200, y_max = 200 /
+&material young = 6.01e9, poisson = 0.27, biot = 0.4, porosity = 0.0105, permeability = 4e-20 /
+&fluid compressibility = 4.02e-10, viscosity = 4.66e-4 /
+&in_situ sxx = -56.8e6, syy = -45e6 /
+&initial pressure = 6.83e6 /
+&side name = 'left', x_displacement = 0 /
+&side name = 'bottom', y_displacement = 0 /
+&fracture name = 'f', x = 23, 79, y = 0, 1.5, friction = 0.74, aperture = 3.11e-4 /
+&injection name = 'a', fracture = 'f', rate = 9.64e-8, pressure = 30e6, storage = 5e-11,
+  turbulence = 9.6e14, end = 0.9 /
+&injection name = 'b', fracture = 'f', rate = -3.2e-9, pressure = 5e6, storage = 1.1e-9,
+  start = 0.5 /
+&injection name = 'c', fracture = 'f', x = 76, y = 1.4, pressure = 12.6e6, friction = 2.9e9 /
+&time end = 1 /
+&coarse size_boundary = 40 /
+&output vtu = .false. /
+""",
+    )
+    assert max(int(row["newton_iterations"]) for row in rows(out / "history.csv")) <= 8

@@ -136,8 +136,10 @@ contains
                                                          .and. .not. self%storage(w) > 0.0_rk)
          associate (of_entries => flow(self%first_entry(w):self%last_entry(w)))
             if (any(abs(of_entries) > 0.0_rk) .and. .not. follows) cycle
-            if (loss > 0.0_rk) of_entries = of_entries + (rate - flow(w)) &
-                                         *sqrt(loss/pack(self%entry_loss, self%of_entry == w))
+            if (loss > 0.0_rk) then
+               of_entries = of_entries + (rate - flow(w)) &
+                            *sqrt(loss/pack(self%entry_loss, self%of_entry == w))
+            end if
             flow(w) = rate
          end associate
       end do

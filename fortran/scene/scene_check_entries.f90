@@ -40,7 +40,7 @@ contains
       do pass = 1, 2
          do w = 1, size(scene%injections)
             associate (well => scene%injections(w))
-               if (well%fracture == 0 .or. allocated(well%entries) .neqv. pass == 2) cycle
+               if (well%fracture == 0 .or. (allocated(well%entries) .neqv. pass == 2)) cycle
                if (pass == 1 .and. .not. allocated(well%pressure)) cycle
                entries = [entry_t(well%fracture, well%x, well%y)]
                if (pass == 2) entries = well%entries

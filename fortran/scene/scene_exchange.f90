@@ -97,8 +97,8 @@ contains
       well%y = place(2, f)
       well%moved = distance(f)
       do k = 1, size(fractures)
-         if (norm2(place(:, k) - place(:, f)) > round_off*distance(f)) &
-            well%next_distance = min(well%next_distance, distance(k))
+         if (.not. norm2(place(:, k) - place(:, f)) > round_off*distance(f)) cycle
+         well%next_distance = min(well%next_distance, distance(k))
       end do
       if (allocated(well%entries)) then
          well%entries%fracture = well%fracture

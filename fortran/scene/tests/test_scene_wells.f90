@@ -110,6 +110,9 @@ contains
                               "the points")
       end associate
       call expect_same()
+      call read_with("&injection fracture='f1','f2' rate=1e-7 /&injection x=0.2 y=0.2 "// &
+                     "radius=1e-4 rate=1e-9 /"//second)
+      call checks%no_error(error, "and a well in the rock")
       call read_with("&injection fracture='f2','f1' rate=1e-7 /"//second)
       call checks%no_error(error, "entries along fractures")
       call expect_same()
