@@ -91,9 +91,8 @@ SizeField planned_sizes(const Specification& specification, const Graph& graph,
         size.add(corner_disc(place, specification.refined_size));
     // Cells between fractures that meet, or almost do, must not be much longer than what is left
     // for them.
-    if (size.is_scale_free() ||
-        (!specification.is_window &&
-         (!joints_of(graph).empty() || has_near_ends(graph, domain, size))))
+    if (size.is_scale_free() || (!specification.is_window &&
+                                 (!joints_of(graph).empty() || has_near_ends(graph, domain, size))))
         limit_sizes_in_narrow_places(graph, domain, size);
     size.arrange();
     return size;
@@ -103,11 +102,11 @@ ExpectedCells expected_cells(const Specification& specification, const Graph& gr
                              const std::vector<RosettePlan>& plans) {
     // Equilateral triangles, 4/sqrt(3), times what gmsh made of such integrals in 13 networks
     constexpr double per_square = 1.04 * 2.309401076758503;
-    constexpr double finest = 1.0, coarsest = 64.0;  // squares over cells
-    constexpr int most = 200000;                     // evaluations of the sizes
+    constexpr int coarsest = 64; // squares over cells, at first
+    constexpr int most = 200000; // evaluations of the sizes
     const SizeField size = planned_sizes(specification, graph, plans, nullptr);
     ExpectedCells expected;
-    for (double squares = coarsest; squares >= finest; squares *= 0.5) {
+    for (int squares = coarsest; squares >= 1; squares /= 2) {
         const AreaIntegral integral(specification.domain, size, squares, most);
         if (!integral.is_complete() && expected.cells > 0.0)
             break;

@@ -18,7 +18,8 @@ void refuse(Checks& checks, const cm_spec& spec, const std::vector<Polyline>& fr
     const cm_network view = network.view();
     int32_t n_joints = 0;
     cm_fault fault;
-    checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints, nullptr) != 0, reason + ": refused");
+    checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints, nullptr) != 0,
+                   reason + ": refused");
     const std::string message = cm_last_error();
     cm_last_fault(&fault);
     checks.is_equal(fault.kind, kind, reason + ": kind");
@@ -170,8 +171,7 @@ void expected_cells(Checks& checks) {
         ApiMesh mesh;
         checks.is_true(mesh.create(spec, network), cm_last_error());
         const double cells = mesh.counts.n_cells, fracture_cells = mesh.counts.n_fracture_cells;
-        checks.is_close(n_cells[0], cells, 0.15 * cells,
-                        "expected cells, " + std::to_string(size));
+        checks.is_close(n_cells[0], cells, 0.15 * cells, "expected cells, " + std::to_string(size));
         checks.is_close(n_cells[1], fracture_cells, 2.0, "expected fracture cells");
     }
 }
@@ -221,6 +221,7 @@ int main() {
     expected_cells(checks);
     joints(checks);
     cm_last_fault(nullptr);
-    checks.is_true(cm_check(nullptr, nullptr, 0, nullptr, nullptr, nullptr) != 0, "nothing to check");
+    checks.is_true(cm_check(nullptr, nullptr, 0, nullptr, nullptr, nullptr) != 0,
+                   "nothing to check");
     return checks.finish();
 }

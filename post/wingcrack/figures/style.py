@@ -243,7 +243,8 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
                 is_page = figure.get_figheight() > _PAGE
                 figure.set_dpi(min(RC["savefig.dpi"], _PAGE_DPI if is_page else np.inf))
                 # savefig draws twice, first for the layout; this draws once
-                FigureCanvasAgg(figure).print_png(aside, metadata=_METADATA["png"], **_PNG)
+                canvas: Any = FigureCanvasAgg(figure)
+                canvas.print_png(aside, metadata=_METADATA["png"], **_PNG)
             else:
                 figure.savefig(aside, metadata=_METADATA[form])
             written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))
