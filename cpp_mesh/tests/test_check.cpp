@@ -18,7 +18,8 @@ void refuse(Checks& checks, const cm_spec& spec, const std::vector<Polyline>& fr
     const cm_network view = network.view();
     int32_t n_joints = 0;
     cm_fault fault;
-    checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints, nullptr) != 0, reason + ": refused");
+    checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints, nullptr) != 0,
+                   reason + ": refused");
     const std::string message = cm_last_error();
     cm_last_fault(&fault);
     checks.is_equal(fault.kind, kind, reason + ": kind");
@@ -152,6 +153,29 @@ void joints(Checks& checks) {
                    "more joints than there is room for");
 }
 
+// Fractures of very different lengths that meet, almost meet and end near the side: fracture cells
+// within two of those of the mesh, cells within 15 %.
+void expected_cells(Checks& checks) {
+    TestNetwork network({{{0.1, 0.5}, {0.5, 0.5}, {0.9, 0.6}},
+                         {{0.2, 0.3}, {0.2, 0.7}},
+                         {{0.205, 0.31}, {0.205, 0.49}},
+                         {{0.4, 0.505}, {0.4, 0.9}},
+                         {{0.6, 0.2}, {0.99, 0.2}}});
+    for (const double size : {0.05, 0.02, 0.005}) {
+        const cm_spec spec = rectangle_spec(1.0, 1.0, size, 0.1);
+        const cm_network view = network.view();
+        int32_t n_joints = 0;
+        double n_cells[2];
+        checks.is_true(cm_check(&spec, &view, 0, nullptr, &n_joints, n_cells) == 0,
+                       cm_last_error());
+        ApiMesh mesh;
+        checks.is_true(mesh.create(spec, network), cm_last_error());
+        const double cells = mesh.counts.n_cells, fracture_cells = mesh.counts.n_fracture_cells;
+        checks.is_close(n_cells[0], cells, 0.15 * cells, "expected cells, " + std::to_string(size));
+        checks.is_close(n_cells[1], fracture_cells, 2.0, "expected fracture cells");
+    }
+}
+
 // 5,000 crosses on a lattice, and a line along each side of it that ends near to none.
 void many_segments(Checks& checks) {
     constexpr int columns = 100, rows = 50;
@@ -194,8 +218,10 @@ int main() {
     many_segments(checks);
     bodies(checks);
     fixed_points(checks);
+    expected_cells(checks);
     joints(checks);
     cm_last_fault(nullptr);
-    checks.is_true(cm_check(nullptr, nullptr, 0, nullptr, nullptr, nullptr) != 0, "nothing to check");
+    checks.is_true(cm_check(nullptr, nullptr, 0, nullptr, nullptr, nullptr) != 0,
+                   "nothing to check");
     return checks.finish();
 }

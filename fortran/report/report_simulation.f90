@@ -16,8 +16,8 @@ module report_simulation
    use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    use report_rows, only: chronicle_t, event_arrest, event_growth, event_joint, event_opening, &
                           event_remesh, event_slip_onset, fracture_fields_t, history_row_t, &
-                          intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, tip_row_t, &
-                          window_fields_t
+                          intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, &
+                          tip_row_t, window_fields_t
    use report_slip, only: slip_catalogue_t, slip_step_t
    use report_watch, only: watch_t
    use scene_plausible, only: doubts_of_scene

@@ -52,14 +52,15 @@ contains
       character(len=*), intent(in) :: when  !< "3600 s", "load factor 0.5"
       real(rk), intent(in), optional :: xy(2)  !< position [m]
       character(len=:), allocatable :: at
-      integer :: verdict
+      integer :: n, verdict
       logical :: is_worst
 
       verdict = judge(limit, value)
       if (verdict == verdict_fine) return
       at = "at "//when
       if (present(xy)) then
-         at = at//", ("//brief_text(xy(1), digits)//", "//brief_text(xy(2), digits)//") m"
+         n = digits + max(0, int(log10(maxval(abs(xy)) + 1.0_rk)) - 2)  ! far from the origin
+         at = at//", ("//brief_text(xy(1), n)//", "//brief_text(xy(2), n)//") m"
       end if
       associate (record => self%records(limit))
          record%states = record%states + 1

@@ -1,6 +1,6 @@
 """Maps from gmsh's meshes: MSH 2 and 4.1, as text or binary, by the format's definition.
 
-gmsh itself is not used: it also executes a file `MESH.msh.opt` next to a mesh.
+gmsh itself is not used: it executes a file `MESH.msh.opt` next to a mesh, and scripts within one.
 """
 
 from __future__ import annotations

@@ -94,6 +94,7 @@ contains
       call read_scene(path, scene, error, sheet)  ! as `check` does
       if (.not. allocated(error)) call check_size(sheet, scene, memory, error)
       if (.not. allocated(error)) call check_geometry(sheet, scene, n_cells, error)
+      if (.not. allocated(error)) call check_size(sheet, scene, memory, error, n_cells)
       is_refused = allocated(error)
       if (is_refused) then
          call judge_message(error%message, fault)
@@ -107,7 +108,7 @@ contains
       end if
       if (.not. same_scene(scene, scene_again)) fault = "scene.nml is another scene"
       if (scene_text(scene_again) /= scene_text(scene)) fault = "scene.nml is another text"
-      call judge_page(scene, fault)
+      call judge_page(scene, n_cells, fault)
    end subroutine judge
 
    !> A refusal is one line that begins with the file.
@@ -125,14 +126,15 @@ contains
    end subroutine judge_message
 
    !> What `check` prints has no counts below 0 and nothing but numbers for numbers.
-   subroutine judge_page(scene, fault)
+   subroutine judge_page(scene, n_cells, fault)
       type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: n_cells(2)  !< as expected
       character(len=:), allocatable, intent(inout) :: fault
       character(len=1024) :: line
       integer :: status
 
       rewind (page)
-      call describe_scene(scene, page)
+      call describe_scene(scene, n_cells, page)
       endfile (page)
       rewind (page)
       do

@@ -146,6 +146,17 @@ def test_mechanics_only_names_what_it_leaves_out(
     assert "development.png\n" in out
 
 
+@pytest.mark.parametrize("style", ["column", "slide"])
+def test_styles_have_folders_of_their_own(own_run: Path, style: str) -> None:
+    assert main(["plot", str(own_run), "--style", style, "--only", "tips,maps"]) == 0
+    assert not (own_run / "figures").exists()
+    pictures = list((own_run / f"figures_{style}").glob("*.png"))
+    assert pictures
+    widths = {imread(picture).shape[1] for picture in pictures}
+    # 3.5 inches, or a quarter more than 7.1, at 80 dots per inch
+    assert widths == {280} if style == "column" else max(widths) == 710
+
+
 def test_running_run_draws_what_is_there(own_run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("run.json", "network.json", "matrix.pvd", "tips.csv", "probes.csv"):
         (own_run / name).unlink()

@@ -250,6 +250,7 @@ def set_window(axes: Axes, view: Window, unit: Unit) -> None:
     """Show this part of the body."""
     axes.set_xlim(*unit.of([view.x_min, view.x_max]))
     axes.set_ylim(*unit.of([view.y_min, view.y_max]))
+    style.place_ticks(axes)
 
 
 def draw_fractures_by(

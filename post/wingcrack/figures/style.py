@@ -18,6 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from wingcrack.figures.units import Unit
 
@@ -39,6 +40,7 @@ LINE_STYLES: tuple[Literal["-", "--", "-.", ":"], ...] = ("-", "--", "-.", ":")
 STATES = ("stick", "slip", "open")  # in the order of their numbers in the VTU files
 STATE_COLOURS = {"stick": "#000000", "slip": "#D55E00", "open": "#56B4E9"}
 
+_LONG = 1.0e5  # coordinates with so many digits that their labels are long
 STEADY = 1.0e-6  # share of the values below which their differences say nothing
 
 FIELD_COLOURS = "cividis"
@@ -208,6 +210,14 @@ def map_axes(axes: Axes, unit: Unit) -> None:
     """Axes of a map: both of one scale, in this unit, without a grid."""
     axes.set(aspect="equal", xlabel=f"$x$ [{unit.name}]", ylabel=f"$y$ [{unit.name}]")
     axes.grid(visible=False)
+    place_ticks(axes)
+
+
+def place_ticks(axes: Axes) -> None:
+    """Coordinates far from the origin in all digits, so few of them side by side."""
+    axes.ticklabel_format(style="plain")
+    if max(map(abs, axes.get_xlim())) >= _LONG:
+        axes.xaxis.set_major_locator(MaxNLocator(2))
 
 
 def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
@@ -233,7 +243,8 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
                 is_page = figure.get_figheight() > _PAGE
                 figure.set_dpi(min(RC["savefig.dpi"], _PAGE_DPI if is_page else np.inf))
                 # savefig draws twice, first for the layout; this draws once
-                FigureCanvasAgg(figure).print_png(aside, metadata=_METADATA["png"], **_PNG)
+                canvas: Any = FigureCanvasAgg(figure)
+                canvas.print_png(aside, metadata=_METADATA["png"], **_PNG)
             else:
                 figure.savefig(aside, metadata=_METADATA[form])
             written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))

@@ -26,6 +26,7 @@ from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.selection import Values
 
 _WIDTH, _HEIGHT = 0.7 * style.DOUBLE_COLUMN, 3.0  # [inch]
+_ROWS, _ROW = 2, 0.16  # rows of the legend for which that height has room, and the height of one
 _MOST_IN_LEGEND = 12
 _BAND_POINTS = 201
 
@@ -287,6 +288,8 @@ def _legend(figure: Figure, axes: Axes, count: int) -> None:
     handles, labels = axes.get_legend_handles_labels()
     longest = max(map(len, labels), default=0)
     columns = max(1, min(count, 80 // (longest + 8)))
+    more = -(-len(labels) // columns) - _ROWS
+    figure.set_figheight(_HEIGHT + _ROW * max(more, 0))
     figure.legend(handles, labels, loc="outside lower center", ncols=columns)
 
 
