@@ -61,7 +61,6 @@ module heat_model
       type(link_t), allocatable :: links(:)  !< faces, nodes of layers, fracture cells, branches
       type(mumps_t) :: matrix
       type(external_t), allocatable :: externals(:)  !< of the present step
-      real(rk), allocatable :: outside(:)  !< (joints) temperature of fluid that enters there [K]
    contains
       procedure :: set_mesh
       procedure :: begin

@@ -22,7 +22,8 @@ module heat_state
       real(rk) :: stored = 0.0_rk  !< increase in the body
       real(rk) :: by_wells = 0.0_rk  !< into the body
       real(rk) :: by_sides = 0.0_rk  !< into the body, by conduction and with fluid
-      real(rk) :: moved = 0.0_rk  !< sum of the amounts of both in all substeps
+      !> Sum of the amounts of both in all substeps, or if more what has moved within the body
+      real(rk) :: moved = 0.0_rk
       !> Temperature outside the range of the initial ones and those of sides and wells [K]
       real(rk) :: beyond_range = 0.0_rk
       real(rk) :: range(2) = 0.0_rk  !< that range [K]

@@ -282,6 +282,8 @@ contains
             end if
          end associate
       end do
+      state%moved = max(state%moved, &
+                        sum(substep%capacity*abs(substep%temperature - heat%initial)))
       state%by_wells = state%by_wells + by_wells
       state%by_sides = state%by_sides + by_sides
       state%stored = state%stored &

@@ -237,7 +237,7 @@ module scene_parameter_table
          absent="one stage, from start", meaning="Start of each stage, in increasing order"), &
       parameter_t("injection", "schedule", kind_text, absent="no table", &
          meaning="CSV file with a row per stage instead of time, rate and pressure: columns "// &
-                 "time_s, rate_m2_s, pressure_pa; in the folder of the scene"), &
+                 "time_s, rate_m2_s, pressure_pa, temperature_k; in the folder of the scene"), &
       parameter_t("injection", "columns", kind_text, absent="names of the columns", &
          meaning="Columns of a table with other headers: HEADER=name [unit], "// &
                  "... as q=rate [l/s]; others are ignored, and rows that repeat the one before"), &

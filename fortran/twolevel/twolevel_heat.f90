@@ -9,7 +9,7 @@ module twolevel_heat
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    use heat_steps, only: advance_heat
-   use report_rows, only: heat_row_t, well_row_t
+   use report_rows, only: heat_row_t, summary_t, well_row_t
    use report_simulation, only: snapshot_t
    use scene_types, only: injection_t, scene_t
    use twolevel_problem, only: coarse_problem_t
@@ -17,7 +17,7 @@ module twolevel_heat
    implicit none(type, external)
    private
 
-   public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, set_heat
+   public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, set_heat, warn_of_heat
 
    !> First substep, at most: what layers resolve [s], and over the duration of the run [-].
    real(rk), parameter :: first_step = 1.0_rk, first_share = 1.0e-6_rk
@@ -142,6 +142,17 @@ contains
       end do
       temperature = well%temperature(max(stage, 1_ik))
    end function temperature_of
+
+   !> Warn where temperatures leave their range, as with multi-point fluxes on obtuse cells.
+   subroutine warn_of_heat(state, summary)
+      type(heat_state_t), intent(in) :: state
+      type(summary_t), intent(inout) :: summary
+      real(rk), parameter :: share = 0.01_rk  ! of the range
+
+      if (.not. state%beyond_range > share*(state%range(2) - state%range(1))) return
+      call summary%warn("temperatures leave the range of those given by more than a hundredth "// &
+                        "of it (heat_beyond_range_k): smaller cells make this less")
+   end subroutine warn_of_heat
 
    !> The columns of heat of history.csv.
    pure type(heat_row_t) function heat_row(state) result(row)

@@ -15,7 +15,7 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
-   use twolevel_heat, only: add_well_temperatures, follow_heat
+   use twolevel_heat, only: add_well_temperatures, follow_heat, warn_of_heat
    use twolevel_limits, only: watch_levels
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
@@ -123,6 +123,7 @@ contains
       call note_well_rows(self)
       call watch_errors(self)
       self%summary%heat = row%heat
+      if (allocated(self%heat)) call warn_of_heat(self%now%heat, self%summary)
       call note_state(self, row%mass_error_relative)
    end subroutine commit_step
 

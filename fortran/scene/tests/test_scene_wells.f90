@@ -247,9 +247,9 @@ contains
 
    subroutine check_table_faults()
       call refuse_table("time_s,rate_gal", "0,1", ":1: the column 'rate_gal' must be one of "// &
-                        "rate_m2_s, pressure_pa, time_s; or in place of _s _min, _h or _d, "// &
-                        "of _pa _kpa, _mpa, _bar or _psi, of _m2_s _m3_s, _l_s, _l_min, _m3_h "// &
-                        "or _bbl_min; `columns` takes other headers"//doc)
+                        "rate_m2_s, pressure_pa, time_s, temperature_k; or in place of _s "// &
+                        "_min, _h or _d, of _pa _kpa, _mpa, _bar or _psi, of _m2_s _m3_s, "// &
+                        "_l_s, _l_min, _m3_h or _bbl_min; `columns` takes other headers"//doc)
       call refuse_table("rate_m2_s,pressure_pa", "0,1", ":1: the column time_s is missing"//doc)
       call refuse_table("time_s,time_s", "0,1", ":1: the column 'time_s' is given twice"//doc)
       call refuse_table("time_s,rate_m2_s", "0", ":2: the row has 1 values but must have 2, "// &
