@@ -41,6 +41,7 @@ module base_stream
       procedure :: set_extent
       procedure :: compare_extent
       procedure :: compare_range
+      procedure :: agree
       procedure :: plain
       procedure :: append
       procedure :: head
@@ -182,6 +183,15 @@ contains
          end if
       end do
    end subroutine compare_extents
+
+   !> Arrays of which all or none are allocated.
+   subroutine agree(self, name, are_allocated)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, intent(in) :: are_allocated(:)
+
+      if (any(are_allocated) .and. .not. all(are_allocated)) call self%set_fault(name)
+   end subroutine agree
 
    !> Compare numbers of elements with the range at the end of the names of the extents.
    subroutine compare_range(self, name, values, expected)

@@ -160,6 +160,8 @@ contains
             if (.not. (is_sound(mesh, mesh%fracture) .and. has_indices(mesh))) then
                call archive%set_fault(name)
             end if
+         else if (mesh%fracture%n_points > 0) then
+            call archive%set_fault(name)
          end if
       end if
       call archive%leave()

@@ -71,8 +71,8 @@ contains
       call archive%item("owes_state", simulation%owes_state)
       call archive%item("shows_growth", simulation%shows_growth)
       call archive%item("start_time", simulation%start_time)
-      call archive%list("has_slipped", simulation%has_slipped, "fractures ?")
-      call archive%list("has_opened", simulation%has_opened, "fractures ?")
+      call archive%list("has_slipped", simulation%has_slipped, "fractures")
+      call archive%list("has_opened", simulation%has_opened, "fractures")
       call archive%list("position_error", simulation%position_error, "tips ?")
       call archive%leave()
    end subroutine visit_simulation
