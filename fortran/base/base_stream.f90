@@ -1,9 +1,9 @@
 !> Stream of bytes with named entries, for base_archive, which defines them.
 !!
-!! Extents of arrays are named in a text such as "2, cells": a number, or a name whose extent is known
-!! (`set_extent`, not negative) or becomes known with the first array that has it. An array with other extents is a
-!! fault. "?" after it: the array may be not allocated; "; 1:cells" or "; 0:cells" at the end: its values
-!! are numbers of these elements, and 0 for none.
+!! Extents of arrays are named in a text such as "2, cells": a number, or a name whose extent is
+!! known (`set_extent`, not negative) or becomes known with the first array that has it. An array
+!! with other extents is a fault. "?" after it: the array may be not allocated; "; 1:cells" or
+!! "; 0:cells" at the end: its values are numbers of these elements, and 0 for none.
 module base_stream
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int64_t, c_loc, c_ptr, c_signed_char, &
                                                                              c_size_t

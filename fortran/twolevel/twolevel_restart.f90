@@ -140,8 +140,10 @@ contains
       call archive%enter(name)
       call archive%extent("slot", windows%slot, n, "history_"//name//" ?")
       if (archive%is_loading .and. n >= 0_lk) allocate (windows%slot(n))
-      call archive%list("window_of", windows%window_of, "tips")
-      call archive%list("resistance", windows%resistance, "tips")
+      call archive%list("window_of", windows%window_of, "tips ?")
+      call archive%list("resistance", windows%resistance, "tips ?")
+      call archive%agree(name, [allocated(windows%slot), allocated(windows%window_of), &
+                                allocated(windows%resistance)])
       call archive%item("is_beside_body", windows%is_beside_body)
       if (archive%is_loading .and. allocated(windows%window_of)) then
          if (any(windows%window_of < 1 .or. windows%window_of > n)) call archive%set_fault(name)
