@@ -90,6 +90,8 @@ contains
       end if
       call set_fine_extents(archive, self%model%mesh)
       call archive%list("at", self%at, "served; 0:own_tips")
+      if (allocated(archive%fault)) return
+      if (all(size(self%serves) /= [0, size(self%at)])) call archive%set_fault("serves")
       call visit_loads(archive, "loads", self%loads)
       call archive%list("displacement", self%displacement, "2, fine_nodes")
       call visit_conditions(archive, "conditions", self%model%conditions)
