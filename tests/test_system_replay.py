@@ -46,14 +46,15 @@ def test_a_run_replayed_by_itself_is_equal_bit_for_bit(base: Path, tmp_path: Pat
 
 
 def test_differences_over_the_change_are_gradients(base: Path, tmp_path: Path) -> None:
-    """Times of states with 1e-6 and 1e-4 more toughness.
+    """Times of all states with 1e-6 and 3e-6 more toughness.
 
-    A cell that opens or sticks between the two makes a kink in some of them.
+    After a jump of 11 mm a step of 0.6 s becomes shorter by a tenth of itself at 1e-4, so that the
+    second derivative counts: there the gradients differ by 0.2 % at 3e-6, 0.9 % at 1e-5, 12 % at 1e-4.
     """
     history = wingcrack.open(base).history
     toughness = wingcrack.open(base).scene["material.toughness"]
     gradients = []
-    for change in (1e-6, 1e-4):
+    for change in (1e-6, 3e-6):
         text = replaying(base).replace(
             "toughness = 0.3e6", f"toughness = {toughness * (1.0 + change)!r}"
         )
@@ -65,7 +66,7 @@ def test_differences_over_the_change_are_gradients(base: Path, tmp_path: Path) -
     grown = np.abs(gradients[0]) > 1e-3 * np.abs(gradients[0]).max()
     assert grown.any()
     relative = np.abs(gradients[1][grown] / gradients[0][grown] - 1.0)
-    assert np.quantile(relative, 0.9) < 0.01
+    assert relative.max() < 0.01
 
 
 def test_a_run_that_leaves_the_record_says_so_and_goes_on(base: Path, tmp_path: Path) -> None:

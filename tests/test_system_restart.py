@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import resource
 import shutil
 import signal
 import struct
@@ -238,6 +239,29 @@ def test_runs_without_checkpoints_have_nothing_to_go_on_from(tmp_path: Path) -> 
     done = solver("run", "--restart", tmp_path / "out")
     assert done.returncode == 2
     assert "has no checkpoint" in done.stderr
+
+
+def test_without_space_for_checkpoints_a_run_goes_on(
+    unbroken: Callable[[str], Path], tmp_path: Path
+) -> None:
+    whole = unbroken("steps")
+    most = (whole / "checkpoint.bin").stat().st_size - 1
+    (tmp_path / "scene.nml").write_text(SCENES["steps"] + EVERY_STATE)
+    done = subprocess.run(
+        [SOLVER, "run", "scene.nml", "--out", "out", "--quiet"],
+        cwd=tmp_path,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (most, most)),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (
+        "no checkpoint: cannot write out/checkpoint_new.bin"
+        in (tmp_path / "out" / "run.log").read_text()
+    )
+    assert_same(tmp_path / "out", whole)
+    assert not list((tmp_path / "out").glob("*.part"))
 
 
 def test_a_checkpoint_is_read_in_python(ended: Path) -> None:

@@ -12,7 +12,7 @@
 !!   n8     number of the elements that follow, each as entries; -1: not allocated
 !!   g0     begin of a group of entries with this name; an empty name ends the group
 !!
-!! The extents of an array that is loaded are compared with those that its entry names (base_stream).
+!! Extents of an array that is loaded are compared with those that its entry names (base_stream).
 module base_archive
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_loc
    use, intrinsic :: iso_fortran_env, only: int8

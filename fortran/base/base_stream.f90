@@ -1,9 +1,9 @@
 !> Stream of bytes with named entries, for base_archive, which defines them.
 !!
-!! Extents of arrays are named in a text such as "2, cells": a number, or a name whose extent is known
-!! (`set_extent`, not negative) or becomes known with the first array that has it. An array with other extents is a
-!! fault. "?" after it: the array may be not allocated; "; 1:cells" or "; 0:cells" at the end: its values
-!! are numbers of these elements, and 0 for none.
+!! Extents of arrays are named in a text such as "2, cells": a number, or a name whose extent is
+!! known (`set_extent`, not negative) or becomes known with the first array that has it. An array
+!! with other extents is a fault. "?" after it: the array may be not allocated; "; 1:cells" or
+!! "; 0:cells" at the end: its values are numbers of these elements, and 0 for none.
 module base_stream
    use, intrinsic :: iso_c_binding, only: c_f_pointer, c_int64_t, c_loc, c_ptr, c_signed_char, &
                                                                              c_size_t
@@ -41,6 +41,7 @@ module base_stream
       procedure :: set_extent
       procedure :: compare_extent
       procedure :: compare_range
+      procedure :: agree
       procedure :: plain
       procedure :: append
       procedure :: head
@@ -182,6 +183,15 @@ contains
          end if
       end do
    end subroutine compare_extents
+
+   !> Arrays of which all or none are allocated.
+   subroutine agree(self, name, are_allocated)
+      class(stream_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      logical, intent(in) :: are_allocated(:)
+
+      if (any(are_allocated) .and. .not. all(are_allocated)) call self%set_fault(name)
+   end subroutine agree
 
    !> Compare numbers of elements with the range at the end of the names of the extents.
    subroutine compare_range(self, name, values, expected)

@@ -61,13 +61,17 @@ contains
       type(contact_t), intent(inout) :: contact
 
       call archive%enter(name)
-      call archive%list("jump", contact%jump, "2, 3, fine_faces")
-      call archive%list("slip_before", contact%slip_before, "3, fine_faces")
-      call archive%list("slip_path", contact%slip_path, "3, fine_faces")
-      call archive%list("opened", contact%opened, "3, fine_faces")
-      call archive%list("apart", contact%apart, "3, fine_faces")
-      call archive%list("traction", contact%traction, "2, 3, fine_faces")
-      call archive%list("state", contact%state, "3, fine_faces")
+      call archive%list("jump", contact%jump, "2, 3, fine_faces ?")
+      call archive%list("slip_before", contact%slip_before, "3, fine_faces ?")
+      call archive%list("slip_path", contact%slip_path, "3, fine_faces ?")
+      call archive%list("opened", contact%opened, "3, fine_faces ?")
+      call archive%list("apart", contact%apart, "3, fine_faces ?")
+      call archive%list("traction", contact%traction, "2, 3, fine_faces ?")
+      call archive%list("state", contact%state, "3, fine_faces ?")
+      call archive%agree(name, [allocated(contact%jump), allocated(contact%slip_before), &
+                                allocated(contact%slip_path), allocated(contact%opened), &
+                                allocated(contact%apart), allocated(contact%traction), &
+                                allocated(contact%state)])
       call archive%item("iterations", contact%iterations)
       call archive%item("was_restarted", contact%was_restarted)
       call archive%item("residual", contact%residual)
@@ -80,13 +84,13 @@ contains
       type(fine_loads_t), intent(inout) :: loads
 
       call archive%enter(name)
-      call archive%list("boundary_displacement", loads%boundary_displacement, "2, fine_nodes ?")
-      call archive%list("force", loads%force, "2, fine_nodes ?")
+      call archive%list("boundary_displacement", loads%boundary_displacement, "2, fine_nodes")
+      call archive%list("force", loads%force, "2, fine_nodes")
       call archive%item("body_force", loads%body_force)
-      call archive%list("initial_stress", loads%initial_stress, "3, fine_vertices ?")
-      call archive%list("pore_pressure", loads%pore_pressure, "fine_vertices ?")
-      call archive%list("traction", loads%traction, "2, fine_faces ?")
-      call archive%list("fluid_pressure", loads%fluid_pressure, "fine_faces ?")
+      call archive%list("initial_stress", loads%initial_stress, "3, fine_vertices")
+      call archive%list("pore_pressure", loads%pore_pressure, "fine_vertices")
+      call archive%list("traction", loads%traction, "2, fine_faces")
+      call archive%list("fluid_pressure", loads%fluid_pressure, "fine_faces")
       call archive%list("jump", loads%jump, "2, 3, fine_faces ?")
       call archive%leave()
    end subroutine visit_loads

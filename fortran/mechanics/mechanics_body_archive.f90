@@ -21,7 +21,11 @@ contains
       call archive%enter("body")
       call visit_mesher_and_mesh(archive, "mesh", self%mesher, self%mesh)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
-         call archive%compare_range("mesh", self%mesh%face_side, "; 0:sides")
+         if (self%mesh%n_cells == 0) then
+            call archive%set_fault("mesh")
+         else
+            call archive%compare_range("mesh", self%mesh%face_side, "; 0:sides")
+         end if
          if (allocated(archive%fault)) return
          call self%set_up(scene, start, network, timers, error)
          if (allocated(error)) return

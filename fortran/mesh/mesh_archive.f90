@@ -160,6 +160,8 @@ contains
             if (.not. (is_sound(mesh, mesh%fracture) .and. has_indices(mesh))) then
                call archive%set_fault(name)
             end if
+         else if (mesh%fracture%n_points > 0) then
+            call archive%set_fault(name)
          end if
       end if
       call archive%leave()
@@ -169,10 +171,15 @@ contains
    pure logical function is_sound(mesh, f)
       type(mesh_t), intent(in) :: mesh
       type(fracture_mesh_t), intent(in) :: f
+      integer(ik) :: i, k
 
       is_sound = is_complete(f)
       if (is_sound) is_sound = within([f%cell_faces], mesh%n_faces) .and. &
                                within(f%tip_node, mesh%n_nodes)
+      do k = 1, 2
+         if (is_sound) is_sound = all(mesh%face_fracture_cell(f%cell_faces(k, :)) &
+                                      == [(i, i=1, f%n_cells)])
+      end do
    end function is_sound
 
    !> Whether there are all arrays, and lists of cells at points that fit them.

@@ -228,7 +228,7 @@ contains
 
       call visit_network(archive, "network", self%network)
       call visit_fracture_mesh(archive, "mesh", self%mesh)
-      call archive%list("tip_ends", self%tip_ends)
+      call archive%list("tip_ends", self%tip_ends, "2, tip_ends")
       n = size(self%joints, kind=lk)
       call archive%count("joints", n)
       if (archive%is_loading) then

@@ -57,12 +57,12 @@ contains
       call archive%enter("simulation")
       call visit_network(archive, "start", simulation%start)
       if (allocated(simulation%start%first)) call archive%set_extent("fractures", &
-                                                     size(simulation%start%first, kind=ik) - 1)
+                                                          size(simulation%start%first, kind=ik) - 1)
       call visit_network(archive, "network_before", simulation%network_before)
       call archive%set_extent("sides", size(sides_of_scene(simulation%scene), kind=ik))
       call visit_front(archive, "front", simulation%front_state_t)
       if (allocated(simulation%network%xy)) call archive%set_extent("vertices", &
-                                                        size(simulation%network%xy, 2, kind=ik))
+                                                            size(simulation%network%xy, 2, kind=ik))
       call visit_summary(archive, simulation%summary)
       call simulation%watch%visit(archive)
       call simulation%catalogue%visit(archive)
@@ -71,8 +71,8 @@ contains
       call archive%item("owes_state", simulation%owes_state)
       call archive%item("shows_growth", simulation%shows_growth)
       call archive%item("start_time", simulation%start_time)
-      call archive%list("has_slipped", simulation%has_slipped, "fractures ?")
-      call archive%list("has_opened", simulation%has_opened, "fractures ?")
+      call archive%list("has_slipped", simulation%has_slipped, "fractures")
+      call archive%list("has_opened", simulation%has_opened, "fractures")
       call archive%list("position_error", simulation%position_error, "tips ?")
       call archive%leave()
    end subroutine visit_simulation

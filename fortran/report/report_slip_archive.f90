@@ -53,8 +53,8 @@ contains
       call archive%list("fracture", shear%fracture, "shear ?; 1:fractures")
       call archive%list("s", shear%s, "2, shear ?")
       call archive%list("traction", shear%traction, "shear ?")
-      if (allocated(shear%fracture) .neqv. (allocated(shear%s) .and. allocated(shear%traction))) &
-         & call archive%set_fault("shear")
+      call archive%agree("shear", [allocated(shear%fracture), allocated(shear%s), &
+                                   allocated(shear%traction)])
    end subroutine visit_shear
 
 end submodule report_slip_archive

@@ -30,7 +30,7 @@ contains
       call archive%enter(name)
       call visit_state(archive, "coarse", now%coarse)
       call visit_network(archive, "coarse_network", now%coarse_network)
-      call archive%list("grown", now%grown, "grown ?; 1:fcells")
+      call archive%list("grown", now%grown, "grown; 1:fcells")
       call archive%item("has_new_mesh", now%has_new_mesh)
       call archive%item("undrained", now%undrained)
       call visit_segments(archive, "segment", now%segment)
@@ -88,11 +88,11 @@ contains
 
       call archive%enter(name)
       call archive%item("dt", trend%dt)
-      call archive%list("rock", trend%rock, "cells ?")
-      call archive%list("fracture", trend%fracture, "fcells ?")
-      call archive%list("jump", trend%jump, "2, fcells ?")
-      call archive%list("knows_rock", trend%knows_rock, "cells ?")
-      call archive%list("knows_fracture", trend%knows_fracture, "fcells ?")
+      call archive%list("rock", trend%rock, "cells")
+      call archive%list("fracture", trend%fracture, "fcells")
+      call archive%list("jump", trend%jump, "2, fcells")
+      call archive%list("knows_rock", trend%knows_rock, "cells")
+      call archive%list("knows_fracture", trend%knows_fracture, "fcells")
       call archive%item("pressure", trend%pressure)
       call archive%item("jumps", trend%jumps)
       call archive%item("least_pressure", trend%least_pressure)
@@ -142,9 +142,9 @@ contains
       call archive%item("of_length", errors%of_length)
       call archive%item("of_slip", errors%of_slip)
       call archive%item("of_opening", errors%of_opening)
-      call archive%list("of_wells", errors%of_wells, "all_wells ?")
-      call archive%list("flows", errors%flows, "all_wells ?")
-      call archive%list("risen", errors%risen, "all_wells ?")
+      call archive%list("of_wells", errors%of_wells, "all_wells")
+      call archive%list("flows", errors%flows, "all_wells")
+      call archive%list("risen", errors%risen, "all_wells")
       call archive%item("of_rock", errors%of_rock)
       call archive%plain("step", c_loc(errors%step), storage_size(errors%step)/8_lk)
       call visit_followed(archive, "quantities", errors%quantities)
@@ -177,6 +177,11 @@ contains
       call archive%list("sum", followed%sum, of)
       call archive%list("linear", followed%linear, of)
       call archive%list("error", followed%error, of)
+      associate (f => followed)
+         call archive%agree(name, [allocated(f%first), allocated(f%value), allocated(f%rate), &
+                                   allocated(f%largest), allocated(f%of_step), allocated(f%sum), &
+                                   allocated(f%linear), allocated(f%error)])
+      end associate
       call archive%leave()
    end subroutine visit_followed
 
@@ -194,6 +199,10 @@ contains
       call archive%list("is_grown", values%is_grown, "fcells ?")
       call archive%list("viscous", values%viscous, "fcells ?")
       call archive%item("undrained", values%undrained)
+      call archive%agree(name, [allocated(values%of), allocated(values%nodal), &
+                                allocated(values%displacement), allocated(values%gradient), &
+                                allocated(values%law), allocated(values%is_grown), &
+                                allocated(values%viscous)])
       call archive%leave()
    end subroutine visit_values
 

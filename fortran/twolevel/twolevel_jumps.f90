@@ -142,20 +142,20 @@ contains
       type(archive_t), intent(inout) :: archive
       integer(lk) :: n
 
-      call archive%list("length", self%length, "tips ?")
-      call archive%list("remaining", self%remaining, "tips ?")
+      call archive%list("length", self%length, "tips")
+      call archive%list("remaining", self%remaining, "tips")
       call archive%extent("rest", self%rest, n, "tips ?")
       if (archive%is_loading) then
          if (allocated(self%rest)) deallocate (self%rest)
          if (n >= 0_lk) allocate (self%rest(n))
       end if
       if (n > 0_lk) call archive%plain("rest", c_loc(self%rest), n*storage_size(self%rest)/8_lk)
-      call archive%list("speed", self%speed, "tips ?")
-      call archive%list("late", self%late, "tips ?")
-      call archive%list("jumps", self%jumps, "tips ?")
-      call archive%list("rate", self%rate, "tips ?")
+      call archive%list("speed", self%speed, "tips")
+      call archive%list("late", self%late, "tips")
+      call archive%list("jumps", self%jumps, "tips")
+      call archive%list("rate", self%rate, "tips")
       call archive%plain("times", c_loc(self%times), memory*storage_size(self%times)/8_lk)
-      call archive%list("grown", self%grown, "tips, states ?")
+      call archive%list("grown", self%grown, "tips, states")
    end subroutine visit
 
    !> Growth of each tip until its time, as far as it is remembered [m].

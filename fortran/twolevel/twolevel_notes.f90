@@ -289,10 +289,10 @@ contains
       end if
       if (n > 0_lk) call archive%plain("approach", c_loc(self%approach), &
          & n*storage_size(self%approach)/8_lk)
-      call archive%list("is_uncertain", self%is_uncertain, "tips ?")
+      call archive%list("is_uncertain", self%is_uncertain, "tips")
       call archive%item("was_bifurcation", self%was_bifurcation)
-      call archive%list("relation", self%relation, "tips, tips ?")
-      call archive%list("has_separated", self%has_separated, "tips ?")
+      call archive%list("relation", self%relation, "tips, tips")
+      call archive%list("has_separated", self%has_separated, "tips")
       call self%jumps%visit(archive)
    end subroutine visit
 

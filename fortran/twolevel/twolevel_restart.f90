@@ -52,7 +52,11 @@ contains
       call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
       associate (mesh => self%problem%mesh)
          if (archive%is_loading .and. .not. allocated(archive%fault)) then
-            call archive%compare_range("mesh", mesh%face_side, "; 0:sides")
+            if (mesh%n_cells == 0) then
+               call archive%set_fault("mesh")
+            else
+               call archive%compare_range("mesh", mesh%face_side, "; 0:sides")
+            end if
          end if
          call archive%set_extent("cells", mesh%n_cells)
          call archive%set_extent("nodes", mesh%n_nodes)
@@ -142,6 +146,8 @@ contains
       if (archive%is_loading .and. n >= 0_lk) allocate (windows%slot(n))
       call archive%list("window_of", windows%window_of, "tips ?")
       call archive%list("resistance", windows%resistance, "tips ?")
+      call archive%agree(name, [allocated(windows%slot), allocated(windows%window_of), &
+                                allocated(windows%resistance)])
       call archive%item("is_beside_body", windows%is_beside_body)
       if (archive%is_loading .and. allocated(windows%window_of)) then
          if (any(windows%window_of < 1 .or. windows%window_of > n)) call archive%set_fault(name)

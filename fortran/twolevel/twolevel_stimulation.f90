@@ -223,7 +223,7 @@ contains
       call archive%list("faces_fracture", self%faces%fracture)
       call archive%list("faces_s", self%faces%s)
       call visit_fracture_mesh(archive, "fracture", self%fracture)
-      call archive%list("jump", self%jump)
+      call archive%list("jump", self%jump, "2, own_cells")
       call archive%item("rock_pressure", self%rock_pressure)
       call archive%item("fracture_volume", self%fracture_volume)
       call archive%item("content", self%content)

@@ -217,8 +217,8 @@ contains
       class(well_results_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
 
-      call archive%list("injected", self%injected, "all_wells ?")
-      call archive%list("first_pressure", self%first_pressure, "all_wells ?")
+      call archive%list("injected", self%injected, "all_wells")
+      call archive%list("first_pressure", self%first_pressure, "all_wells")
    end subroutine visit
 
 end module twolevel_well_rows

@@ -20,7 +20,7 @@ contains
       call archive%enter("window")
       call archive%set_extent("serves", -1_ik)
       call archive%set_extent("served", -1_ik)
-      call archive%list("serves", self%serves, "serves ?")
+      call archive%list("serves", self%serves, "serves")
       if (archive%is_loading .and. allocated(self%serves)) then
          if (any(self%serves < 1 .or. self%serves > size(tips))) call archive%set_fault("serves")
       end if
@@ -89,9 +89,11 @@ contains
          if (allocated(error)) return
       end if
       call set_fine_extents(archive, self%model%mesh)
-      call archive%list("at", self%at, "served ?; 0:own_tips")
+      call archive%list("at", self%at, "served; 0:own_tips")
+      if (allocated(archive%fault)) return
+      if (all(size(self%serves) /= [0, size(self%at)])) call archive%set_fault("serves")
       call visit_loads(archive, "loads", self%loads)
-      call archive%list("displacement", self%displacement, "2, fine_nodes ?")
+      call archive%list("displacement", self%displacement, "2, fine_nodes")
       call visit_conditions(archive, "conditions", self%model%conditions)
       if (allocated(archive%fault)) return
       if (archive%is_loading .and. is_ready) then
