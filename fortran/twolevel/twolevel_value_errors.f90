@@ -132,7 +132,7 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       type(jumps_in_space_t) :: jumps
-      real(rk) :: fluid, layers, values(n_followed)
+      real(rk) :: fluid, layers, opened, values(n_followed)
 
       values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
                 row%rock_fluid, row%rock_outflow, row%fracture_volume, row%max_slip, &
@@ -149,8 +149,9 @@ contains
       call self%quantities%follow(self%step, values)
       self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
       if (all(scene%injections%has_given_flow() .and. scene%injections%fracture > 0)) then
-         self%step%left = of_steps(problem)*leaking_share(self%quantities%rate([leakoff, &
-                                                                fracture_fluid]), self%diffusing)
+         associate (rates => self%quantities%rate([leakoff, fracture_fluid]))
+            self%step%left = of_steps(problem)*leaking_share(rates, self%diffusing)
+         end associate
          self%step%diffusing = 1.0_rk
       end if
       call self%fractures%follow(self%step, fracture_means(scene, problem, &
@@ -169,12 +170,12 @@ contains
             self%held = abs(row%fracture_fluid)/max(changes(pressure)*sum(s(2, :) - s(1, :)), &
                                                     tiny(1.0_rk))
             call self%jumps_of(scene, problem, state, jumps)
-            self%of_flow = self%diffusing*layers + of_compliance &
-                           *jumps%mean_share(s(2, :) - s(1, :))*min(1.0_rk, &
-                            abs(row%fracture_volume - self%quantities%first(volume))/fluid)
+            opened = abs(row%fracture_volume - self%quantities%first(volume))
+            self%of_flow = self%diffusing*layers + of_compliance*min(1.0_rk, opened/fluid) &
+                           *jumps%mean_share(s(2, :) - s(1, :))
          end associate
          self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
-                                            /max(self%fractures%changes(), tiny(1.0_rk))), &
+                                                /max(self%fractures%changes(), tiny(1.0_rk))), &
                                             mask=have_given_pressure(scene)))
          self%of_pressure = 0.0_rk
          if (facts%has_given_rates) self%of_pressure = self%of_flow
@@ -249,8 +250,8 @@ contains
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
-            error%injected = time(injected) + max((self%of_flow + self%of_drive) &
-                                                        *abs(row%injected), self%of_held) + lost
+            error%injected = time(injected) + lost + max(self%of_held, &
+                                         & (self%of_flow + self%of_drive)*abs(row%injected))
             error%produced = time(produced) + (self%of_flow + self%of_drive)*abs(row%produced) &
                              + min(row%produced, error%injected) + lost
          else
