@@ -34,7 +34,7 @@ module twolevel_pressure_errors
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
    real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
-   real(rk), parameter :: least_flow = 5.0e-4_rk  !< of the flow round tips and along fractures [-]
+   real(rk), parameter :: least_flow = 4.0e-3_rk  !< of the flow round tips and along fractures [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
    !> relative errors of a well in the rock: of the cell's radius; of the pressure by the rings [-]
    real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
