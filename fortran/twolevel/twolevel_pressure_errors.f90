@@ -7,7 +7,8 @@
 !!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
 !! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
 !!   latter from place to place, and a cell has its mean. Error: 1.8 times the mean difference of
-!!   the fracture's cells from their mean. It falls as the rock drains, 1/(1 + 16 c t/h**2).
+!!   the fracture's cells from their mean. It falls as the rock drains, 1/(1 +
+!!   16 c t/h**2), as far as the rock takes up what the fractures hold.
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -33,7 +34,7 @@ module twolevel_pressure_errors
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
    real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
-   real(rk), parameter :: least_flow = 5.0e-4_rk  !< of the flow round tips and along fractures [-]
+   real(rk), parameter :: least_flow = 4.0e-3_rk  !< of the flow round tips and along fractures [-]
    real(rk), parameter :: of_plain = 0.15_rk  !< times (cell/depth)**2, without layers [-]
    !> relative errors of a well in the rock: of the cell's radius; of the pressure by the rings [-]
    real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
@@ -225,23 +226,29 @@ contains
       end associate
    end function of_first_pressure
 
-   !> Share of these errors that is left after a time [-].
-   function undrained_share(scene, problem, time) result(share)
+   !> Share of these errors that is left after a time: that of the rock, as far as the rock takes up
+   !! what the fractures hold [-].
+   function undrained_share(scene, problem, time, held) result(share)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: held  !< in fractures, per change of pressure and length [m/Pa]
       real(rk) :: share(size(scene%fractures))
-      real(rk) :: drained(problem%mesh%fracture%n_cells)
-      integer(ik) :: i
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: left, uptake
+      real(rk) :: c
+      integer(ik) :: cell, i
 
       associate (fracture => problem%mesh%fracture)
          do i = 1, fracture%n_cells
-            drained(i) = diffusivity(problem, problem%mesh%face_cells(1, fracture%cell_faces(1, i)))
+            cell = problem%mesh%face_cells(1, fracture%cell_faces(1, i))
+            c = diffusivity(problem, cell)
+            left(i) = (fracture%cell_s(2, i) - fracture%cell_s(1, i))**2
+            left(i) = left(i)/max(left(i) + 16.0_rk*c*time, tiny(1.0_rk))
+            uptake(i) = 4.0_rk*problem%model%rock%mobility_at(cell)*sqrt(time/(pi*c))
          end do
-         drained = 16.0_rk*time*drained/max((fracture%cell_s(2, :) - fracture%cell_s(1, :))**2, &
-                                           tiny(1.0_rk))
       end associate
-      share = fracture_means(scene, problem, 1.0_rk/(1.0_rk + drained))
+      left = 1.0_rk - (1.0_rk - left)*uptake/max(uptake + held, tiny(1.0_rk))
+      share = fracture_means(scene, problem, left)
    end function undrained_share
 
    !> Whether a well keeps a pressure in each fracture.

@@ -72,6 +72,7 @@ module twolevel_value_errors
       type(followed_step_t) :: step  !< last step
       real(rk) :: start = 0.0_rk  !< time of the first state [s]
       real(rk), allocatable :: of_first(:)  !< of the fractures' first pressures [Pa]
+      real(rk) :: held = 0.0_rk  !< fluid in fractures per change of pressure and length [m/Pa]
       real(rk) :: of_start = 0.0_rk  !< of the fractures' volume before the first step [m2]
       type(followed_t) :: quantities
       type(followed_t) :: fractures  !< mean pressure of each
@@ -131,7 +132,7 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       type(jumps_in_space_t) :: jumps
-      real(rk) :: fluid, layers, values(n_followed)
+      real(rk) :: fluid, layers, opened, values(n_followed)
 
       values = [row%injected, row%produced, row%leakoff, row%outflow, row%fracture_fluid, &
                 row%rock_fluid, row%rock_outflow, row%fracture_volume, row%max_slip, &
@@ -148,8 +149,9 @@ contains
       call self%quantities%follow(self%step, values)
       self%step%left = 1.0_rk - self%diffusing*(1.0_rk - of_steps(problem))
       if (all(scene%injections%has_given_flow() .and. scene%injections%fracture > 0)) then
-         self%step%left = of_steps(problem)*leaking_share(self%quantities%rate([leakoff, &
-                                                                fracture_fluid]), self%diffusing)
+         associate (rates => self%quantities%rate([leakoff, fracture_fluid]))
+            self%step%left = of_steps(problem)*leaking_share(rates, self%diffusing)
+         end associate
          self%step%diffusing = 1.0_rk
       end if
       call self%fractures%follow(self%step, fracture_means(scene, problem, &
@@ -164,14 +166,16 @@ contains
       layers = max(of_layers(problem, facts%since_switch, scene%growth%enabled), &
                    of_layers(problem, row%time - self%start, scene%growth%enabled))
       if (problem%mesh%fracture%n_cells > 0) then
-         call self%jumps_of(scene, problem, state, jumps)
-         associate (s => problem%mesh%fracture%cell_s)
-            self%of_flow = self%diffusing*layers + of_compliance &
-                           *jumps%mean_share(s(2, :) - s(1, :))*min(1.0_rk, &
-                            abs(row%fracture_volume - self%quantities%first(volume))/fluid)
+         associate (s => problem%mesh%fracture%cell_s, changes => self%quantities%changes())
+            self%held = abs(row%fracture_fluid)/max(changes(pressure)*sum(s(2, :) - s(1, :)), &
+                                                    tiny(1.0_rk))
+            call self%jumps_of(scene, problem, state, jumps)
+            opened = abs(row%fracture_volume - self%quantities%first(volume))
+            self%of_flow = self%diffusing*layers + of_compliance*min(1.0_rk, opened/fluid) &
+                           *jumps%mean_share(s(2, :) - s(1, :))
          end associate
          self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
-                                            /max(self%fractures%changes(), tiny(1.0_rk))), &
+                                                /max(self%fractures%changes(), tiny(1.0_rk))), &
                                             mask=have_given_pressure(scene)))
          self%of_pressure = 0.0_rk
          if (facts%has_given_rates) self%of_pressure = self%of_flow
@@ -246,8 +250,8 @@ contains
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
-            error%injected = time(injected) + max((self%of_flow + self%of_drive) &
-                                                        *abs(row%injected), self%of_held) + lost
+            error%injected = time(injected) + lost + max(self%of_held, &
+                                         & (self%of_flow + self%of_drive)*abs(row%injected))
             error%produced = time(produced) + (self%of_flow + self%of_drive)*abs(row%produced) &
                              + min(row%produced, error%injected) + lost
          else
@@ -306,7 +310,8 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       real(rk) :: error(size(scene%fractures))
 
-      error = self%of_first*undrained_share(scene, problem, self%quantities%time - self%start)
+      error = self%of_first*undrained_share(scene, problem, self%quantities%time - self%start, &
+                                            self%held)
    end function undrained
 
    !> Error in space of the pressure of each fracture cell by flow, and of the first pressure [Pa].
@@ -394,7 +399,7 @@ contains
 
       if (size(rows) == 0) return
       call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
-      by_length = effect_of_length(stated, facts)
+      by_length = merge(abs(stated%slope)*max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       changes = self%wells%changes()
       first = self%undrained(scene, problem)
       do w = 1, size(rows)
@@ -437,28 +442,21 @@ contains
       if (size(rows) == 1) self%row%injectivity = rows(1)%error%injectivity
    end subroutine note_wells
 
-   !> Error of pressures by that of the length of growing fractures [Pa].
-   pure real(rk) function effect_of_length(stated, facts) result(error)
-      type(stated_errors_t), intent(in) :: stated
-      type(step_facts_t), intent(in) :: facts
-
-      error = 0.0_rk
-      if (facts%has_estimate) error = abs(stated%slope)*max(0.0_rk, stated%length)
-   end function effect_of_length
-
    !> Errors of the entries of wells after a step.
    subroutine note_entries(self, rows, stated, facts)
       class(value_errors_t), intent(inout) :: self
       type(entry_row_t), intent(inout) :: rows(:)
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
+      real(rk) :: by_length
       integer :: e
 
+      by_length = merge(abs(stated%slope)*max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       call self%entries%follow(self%step, [rows%pressure, rows%flow])
       do e = 1, size(rows)
          associate (row => rows(e), error => rows(e)%error, time => self%entries%error)
             error%pressure = time(e) + self%of_pressure*abs(row%pressure - self%entries%first(e)) &
-                             + effect_of_length(stated, facts) + of_solution*abs(row%pressure)
+                             + by_length + of_solution*abs(row%pressure)
             error%flow = time(size(rows) + e) + max(self%of_pressure, self%of_flow)*abs(row%flow)
             if (abs(row%share) > 0.0_rk) error%share = error%flow*abs(row%share/row%flow)
          end associate

@@ -65,7 +65,7 @@ contains
       end associate
    end subroutine test_sums
 
-   !> The error of what is taken up, against that of constant scalars at a face: 11 % once a layer is
+   !> The error of what is taken up: 11 % of it once a layer is
    !! as thick as the first volume, .5 % from three times that on (budget: the error of nodes at
    !! geometric means). The rest of the rock counts by exp(-2 l/sqrt(c t)) where layers are thin,
    !! and in full, as far as cells do not resolve them, where they are thick (budget: 3 %, the
