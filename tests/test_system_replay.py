@@ -49,7 +49,7 @@ def test_differences_over_the_change_are_gradients(base: Path, tmp_path: Path) -
     """Times of all states with 1e-6 and 3e-6 more toughness.
 
     After a jump of 11 mm a step of 0.6 s becomes shorter by a tenth of itself at 1e-4, so that the
-    second derivative counts: there the gradients differ by 0.2 % at 3e-6, 0.9 % at 1e-5, 12 % at 1e-4.
+    second derivative counts: gradients differ there by 0.2 % at 3e-6, 0.9 % at 1e-5, 12 % at 1e-4.
     """
     history = wingcrack.open(base).history
     toughness = wingcrack.open(base).scene["material.toughness"]
