@@ -82,10 +82,13 @@ contains
       call visit_laws(archive, "law", cells%law)
       call archive%list("residual_aperture", cells%residual_aperture, "fcells")
       call archive%list("roughness", cells%roughness, "fcells")
-      call archive%list("share", cells%share, "fcells")
-      call archive%list("has_tip", cells%has_tip, "fcells")
-      call archive%list("viscous", cells%viscous, "fcells")
-      call archive%list("leak_resistance", cells%leak_resistance, "fcells")
+      call archive%list("share", cells%share, "fcells ?")
+      call archive%list("has_tip", cells%has_tip, "fcells ?")
+      call archive%list("viscous", cells%viscous, "fcells ?")
+      call archive%list("leak_resistance", cells%leak_resistance, "fcells ?")
+      ! Set in the first step on a mesh.
+      call archive%agree(name, [allocated(cells%share), allocated(cells%has_tip), &
+                                allocated(cells%viscous), allocated(cells%leak_resistance)])
       call archive%list("has_layer", cells%has_layer, "2, fcells ?")
       call archive%list("skin", cells%skin, "fcells ?")
       call archive%list("injection", cells%injection, "fcells")

@@ -7,7 +7,7 @@
 submodule(twolevel_state) twolevel_restart
    use base_kinds, only: lk
    use base_tolerances, only: same_time
-   use coarse_archive, only: visit_cells, visit_factors, visit_report, visit_state, &
+   use coarse_archive, only: visit_cells, visit_factors, visit_report, &
                              visit_step_values
    use mesh_archive, only: visit_mesher_and_mesh
    use report_restart, only: visit_simulation
@@ -64,7 +64,8 @@ contains
          call archive%set_extent("mesh_tips", mesh%fracture%n_tips)
       end associate
       call visit_levels(archive, "now", self%now)
-      call visit_state(archive, "before", self%before)
+      ! The next step begins with the present state: of the one before only its time is needed.
+      call archive%item("before_time", self%before%time)
       if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
          call follow_sides(self%scene, self%now%coarse%time, self%before%time)

@@ -22,6 +22,7 @@ _ENDS = (
     ("_j", "J/m"),
     ("_m", "m"),
     ("_s", "s"),
+    ("_k", "K"),
 )
 # those that their name alone does not tell: per metre of thickness
 _OF_COLUMNS = {"seismic_moment_nm": "N m/m", "seismic_moment_error_nm": "N m/m"}
