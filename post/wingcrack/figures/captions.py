@@ -32,6 +32,8 @@ _ABOUT = {
     "wells": "Pressure, flow, volume and injectivity of the wells.",
     "seismicity": "Seismic events by magnitude, time and place; numbers of events by magnitude.",
     "probes": "Pressure, displacement and stress at the probe points.",
+    "temperature": "Temperature along the fracture in which it differs most, by time at its ends "
+    "and in the wells.",
     "mesh": "Mesh of the body, with the windows of the tips, and the elements of one if written.",
     "view": "Deformed body, displacements enlarged.",
 }

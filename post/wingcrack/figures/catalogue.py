@@ -82,6 +82,10 @@ def _untold(run: Run) -> bool:
     return slips_or_opens(run) and (run.wells is None or run.network is None)
 
 
+def _has_heat(run: Run) -> bool:
+    return run.fractures is not None and run.fractures.has("temperature_k")
+
+
 def _on_request(_run: Run) -> bool:
     return False
 
@@ -104,6 +108,7 @@ _FIGURES = (
     _Figures("wells", "wells", "wells:well_histories", shown=_changing_wells),
     _Figures("seismicity", "seismicity", "seismicity:seismicity", shown=has_seismic),
     _Figures("probes", "probes", "probes:probe_histories"),
+    _Figures("temperature", "temperature", "temperature:temperature", shown=_has_heat),
     _Figures("view", "view", "view:view", of_fields=True, shown=_on_request),
     _Figures("mesh", "mesh", "mesh:mesh_figure", of_fields=True, shown=_on_request),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 GROUPS = (
     *("summary", "story", "network", "maps", "fractures", "tips", "wells", "seismicity", "probes"),
-    *("view", "mesh"),
+    *("temperature", "view", "mesh"),
 )
 ALL = "all"
 FORMATS = ("png", "pdf")

@@ -34,11 +34,12 @@ _RATES = (
     Unit("m²/s", 1.0),
     *(Unit(rf"$10^{{-{power}}}$ m²/s", 10.0**-power) for power in (3, 6, 9, 12)),
 )
-_TIMES = tuple(Unit(name, SECONDS[name]) for name in ("h", "min", "s"))
+_YEAR = Unit("years", 365.25 * SECONDS["d"])
+_TIMES = (_YEAR, *(Unit(name, SECONDS[name]) for name in ("h", "min", "s")))
 
 
 def time_unit(end_s: float) -> Unit:
-    """Hours, unless the run is shorter than two of them; then minutes, then seconds."""
+    """Years, hours, minutes or seconds: the largest unit of which the run has two."""
     return next((unit for unit in _TIMES if end_s >= 2.0 * unit.size), _TIMES[-1])
 
 
