@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from wingcrack.errors import AbsentError
@@ -30,13 +31,13 @@ def cooled(own_run: Path) -> Path:
 def test_profiles_and_ends_of_the_fracture_that_cools(cooled: Path) -> None:
     along, by_time = temperature(read_run(cooled)).axes
     first, *_, last = along.get_lines()
-    assert list(first.get_ydata()) == [300.0, 300.0, 300.0]
-    assert list(last.get_xdata()) == [5.0, 15.0, 25.0]
-    assert list(last.get_ydata()) == [200.0, 240.0, 280.0]
+    assert np.asarray(first.get_ydata()).tolist() == [300.0, 300.0, 300.0]
+    assert np.asarray(last.get_xdata()).tolist() == [5.0, 15.0, 25.0]
+    assert np.asarray(last.get_ydata()).tolist() == [200.0, 240.0, 280.0]
     assert last.get_label() == "12 years"
     start, end = by_time.get_lines()[:2]
-    assert list(start.get_ydata()) == [300.0, 275.0, 250.0, 225.0, 200.0]
-    assert list(end.get_ydata()) == [300.0, 295.0, 290.0, 285.0, 280.0]
+    assert np.asarray(start.get_ydata()).tolist() == [300.0, 275.0, 250.0, 225.0, 200.0]
+    assert np.asarray(end.get_ydata()).tolist() == [300.0, 295.0, 290.0, 285.0, 280.0]
 
 
 def test_without_heat_there_is_none(wet_run: Path) -> None:
