@@ -99,7 +99,7 @@ def _results(run: Run) -> list[str]:
         if produced > 0.0:
             line += f", produced: {float(size.of(produced)):.3g} {size.name}"
         elif injected > 0.0 and history.has("leakoff_m2"):
-            line += f", leaked off {100.0 * history.number('leakoff_m2')[-1] / injected:.0f} %"
+            line += f", leaked off {100.0 * history.number('leakoff_m2')[-1] / injected:z.0f} %"
         lines.append(line)
     return [*lines, *_of_fractures(run), *slip_words(run)]
 

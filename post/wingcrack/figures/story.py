@@ -379,7 +379,7 @@ def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
         lines.append(f"produced {float(size.of(produced)):.3g} {size.name}")
     elif injected > 0.0:
         share = table.number("leakoff_m2")[-1] / injected
-        lines.append(f"leaked off {100.0 * share:.0f} %")
+        lines.append(f"leaked off {100.0 * share:z.0f} %")
     for name, row, highest in highest_pressures(table)[:_MOST_PEAKS]:
         when = at(float(table.moments()[row]))
         of_well = f"{name}: " if name else ""
