@@ -126,8 +126,8 @@ def test_check_tells_what_is_doubted(tmp_path: Path) -> None:
     (tmp_path / "scene.nml").write_text(text)
     done = call(tmp_path, "check", "scene.nml")
     assert done.returncode == 0
-    told = done.stdout.split("5 warnings:\n")[1].splitlines()
-    assert told == [
+    listed = done.stdout.split("5 warnings:\n")[1].splitlines()
+    assert listed == [
         "  &material: young is 40.0 Pa: rock has 1e9 to 1e11 Pa",
         "  &material: permeability is 0.05 m2: rock has 1e-22 to 1e-11 m2, "
         "and a millidarcy is 1e-15 m2",

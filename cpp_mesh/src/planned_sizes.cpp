@@ -89,8 +89,8 @@ SizeField planned_sizes(const Specification& specification, const Graph& graph,
             size.add(corner_disc(joint.xy, specification.joint_size));
     for (const Vec2& place : specification.refined)
         size.add(corner_disc(place, specification.refined_size));
-    // Cells between fractures that meet, or almost do, must not be much longer than what is left
-    // for them.
+    // Cells between fractures that meet, or almost do, must not be much longer than the gap
+    // between the fractures.
     if (size.is_scale_free() || (!specification.is_window &&
                                  (!joints_of(graph).empty() || has_near_ends(graph, domain, size))))
         limit_sizes_in_narrow_places(graph, domain, size);

@@ -162,7 +162,7 @@ contains
          self%of_length = max(0.0_rk, stated%length)/row%fracture_length
       end if
       self%of_rock = of_well_in_rock(scene, problem, facts%since_switch)
-      ! Each stage has the age of its own layers.
+      ! Layers are as old as their stage.
       layers = max(of_layers(problem, facts%since_switch, scene%growth%enabled), &
                    of_layers(problem, row%time - self%start, scene%growth%enabled))
       if (problem%mesh%fracture%n_cells > 0) then

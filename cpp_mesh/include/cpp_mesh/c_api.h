@@ -142,7 +142,7 @@ typedef struct {
 
 /* Judge what cm_create would mesh, by the same code, but mesh nothing; fails where the body or the
    network is at fault, and where a fixed point would have a node on each face of a fracture. Up to
-   `capacity` joints are told of all that there are. Expected numbers of cells and of fracture cells
+   `capacity` joints are listed, of all there are. Expected numbers of cells and of fracture cells
    by the sizes that the mesh would get, unless `n_cells` is NULL. */
 int cm_check(const cm_spec* spec, const cm_network* network, int32_t capacity,
              cm_joint* joints /* [capacity] */, int32_t* n_joints, double* n_cells /* [2] */);

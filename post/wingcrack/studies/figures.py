@@ -26,7 +26,7 @@ from wingcrack.sweeps.expressions import Array
 from wingcrack.sweeps.selection import Values
 
 _WIDTH, _HEIGHT = 0.7 * style.DOUBLE_COLUMN, 3.0  # [inch]
-_ROWS, _ROW = 2, 0.16  # rows of the legend for which that height has room, and the height of one
+_ROWS, _ROW = 2, 0.16  # rows of the legend within that height, and the height of one
 _MOST_IN_LEGEND = 12
 _BAND_POINTS = 201
 
