@@ -27,6 +27,9 @@ module growth_front
       real(rk) :: toughness = 0.0_rk  !< K_IC [Pa m^1/2]
       real(rk) :: increment = 0.0_rk  !< l_max, the smallest of all fractures [m]
       real(rk), allocatable :: own_increment(:)  !< (fractures) [m]; unallocated: all the same
+      !> Shortest new segment of a path, over the increment, and its length: longer ones are halved
+      !! where they are too long for their direction [-], [m]
+      real(rk) :: shortest = 1.0_rk, shortest_length = 0.0_rk
       real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which nothing goes on [m]
       real(rk) :: exponent = 0.0_rk  !< of the energy release rate in the law of advances [-]
       !> share of the toughness that a tip may lack to grow along with one at its onset [-]
@@ -65,6 +68,7 @@ module growth_front
       procedure :: grow_by
       procedure :: has_gained
       procedure :: increments
+      procedure :: strides
    end type front_t
 
    !> Distance to which targets ahead of a tip are found, in increments: the last path segment is up
@@ -133,6 +137,15 @@ contains
       increments = self%rules%increment_of(self%tip%fracture)
    end function increments
 
+   !> Length of the next segment of each tip where no target lies ahead [m].
+   pure function strides(self)
+      class(front_t), intent(in) :: self
+      real(rk) :: strides(size(self%tip))
+      real(rk), parameter :: longer = 2.0_rk  ! than the last one [-]
+
+      strides = min(self%increments(), longer*min(self%tip%stride, self%increments()))
+   end function strides
+
    !> One increment of the evaluated tips at their onset, by the law of advances.
    subroutine grow_tips(self, any_grew, timers, error)
       class(front_t), intent(inout) :: self
@@ -155,7 +168,7 @@ contains
       logical, intent(out) :: any_grew
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      integer, parameter :: corrections = 8
+      integer, parameter :: corrections = 12
       logical :: any_joined, any_turned
       real(rk) :: advance(size(wanted))
       integer(ik) :: i, k
@@ -177,7 +190,7 @@ contains
       end do
       if (allocated(error)) return
       do i = 1, size(self%tip, kind=ik)
-         call self%tip(i)%commit(-self%tip(i)%intensity%k2)
+         call self%tip(i)%commit(-self%tip(i)%intensity%k2, advance(i))
       end do
       call join_tips(self, advance, any_joined)
       if (any_joined) call self%evaluate(timers, error)
@@ -274,10 +287,11 @@ contains
       end do
    end subroutine advance_tips
 
-   !> Rotate the last segment of each tip whose direction does not yet satisfy the criterion.
+   !> Rotate the last segment of each tip whose direction does not yet satisfy the criterion; halve
+   !! it where it is too long.
    subroutine turn_tips(self, advance, any_turned)
       class(front_t), intent(inout) :: self
-      real(rk), intent(in) :: advance(:)  !< (tips) advances where no target lies ahead [m]
+      real(rk), intent(inout) :: advance(:)  !< (tips) advances where no target lies ahead [m]
       logical, intent(out) :: any_turned
       logical :: has_turned
       real(rk) :: to(2)
@@ -287,6 +301,13 @@ contains
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i))
             if (tip%arrested) cycle
+            if (is_too_long(tip, self%rules)) then
+               call tip%shorten()
+               advance(i) = tip%advance
+               call move_end(self%network, tip%fracture, tip%end, tip%xy)
+               any_turned = .true.
+               cycle
+            end if
             call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
             if (.not. has_turned) cycle
             to = tip%xy
@@ -303,8 +324,24 @@ contains
       end do
    end subroutine turn_tips
 
+   !> Whether K_eq at the end of a new segment is far below the toughness: the tip will reach this
+   !! end under other loads, for which the direction found now is not right. So is the first segment
+   !! of a fracture's end, whose direction is not corrected, where the path turns away from it.
+   pure logical function is_too_long(tip, rules)
+      type(tip_t), intent(in) :: tip
+      type(growth_rules_t), intent(in) :: rules
+      real(rk), parameter :: far = -0.5_rk  ! excess at the end [-]
+      real(rk), parameter :: turning = 0.8_rk  ! kink angle at the end [rad]
+
+      is_too_long = tip%advance > 0.0_rk .and. &
+                    (tip%excess(rules%toughness) < far .or. &
+                     (abs(tip%drive%angle) > turning .and. .not. tip%has_wing)) .and. &
+                    0.5_rk*tip%advance > (1.0_rk - same_value) &
+                    *max(rules%shortest_length, rules%shortest*rules%increment_of(tip%fracture))
+   end function is_too_long
+
    !> Target straight ahead of a tip.
-   pure subroutine look_ahead(self, network, fracture, from, direction, target, at)
+   pure subroutine look_ahead(self, network, fracture, from, direction, target, at, stride)
       class(growth_rules_t), intent(in) :: self
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: fracture  !< number of the growing fracture
@@ -312,10 +349,14 @@ contains
       real(rk), intent(in) :: direction(2)  !< unit vector
       integer(ik), intent(out) :: target  !< fracture, or target_boundary or target_none
       real(rk), intent(out) :: at(2)  !< [m]
+      !> length of the segment where no target lies ahead; default: the increment [m]
+      real(rk), intent(in), optional :: stride
+      real(rk) :: length
 
-      call find_ahead(network, self%outline, fracture, from, &
-                      foresight*self%increment_of(fracture)*direction, self%near_of(fracture), &
-                      target, at)
+      length = self%increment_of(fracture)
+      if (present(stride)) length = min(length, stride)
+      call find_ahead(network, self%outline, fracture, from, foresight*length*direction, &
+                      self%near_of(fracture), target, at)
    end subroutine look_ahead
 
    !> Shorten the advance of a tip with a target ahead to half the distance to the target. Where
@@ -336,7 +377,8 @@ contains
          if (self%rules%joins) then
             call self%rules%look_ahead(self%network_before, fracture, from, direction, target, at)
          else
-            call self%rules%look_ahead(self%network, fracture, from, direction, target, at)
+            call self%rules%look_ahead(self%network, fracture, from, direction, target, at, &
+                                       advance)
          end if
       end associate
       room = advance

@@ -31,6 +31,8 @@ module growth_tip
       !> position [m] and unit vector before the last increment
       real(rk) :: origin(2) = 0.0_rk, heading(2) = 0.0_rk
       logical :: has_wing = .false.  !< the fracture end has grown before
+      !> length of the last segment where no target lay ahead; huge: there is none [m]
+      real(rk) :: stride = huge(1.0_rk)
       ! Last two iterates of `correct` [rad], [Pa sqrt(m)].
       real(rk), private :: tried_kink(2) = 0.0_rk, tried_drive(2) = 0.0_rk
       integer, private :: tries = 0
@@ -43,6 +45,7 @@ module growth_tip
    contains
       procedure :: predict
       procedure :: move
+      procedure :: shorten
       procedure :: correct
       procedure :: commit
    end type path_t
@@ -241,6 +244,16 @@ contains
       self%is_bracketed = .false.
    end subroutine move
 
+   !> Take back half of the last advance, in the same direction.
+   pure subroutine shorten(self)
+      class(path_t), intent(inout) :: self
+
+      self%advance = 0.5_rk*self%advance
+      self%xy = self%origin + self%advance*self%direction
+      self%tries = 0
+      self%is_bracketed = .false.
+   end subroutine shorten
+
    !> Rotate the last advance so that the drive at its new end vanishes: one step of the Illinois
    !! method, which keeps a bracket of the root. The direction is accepted where the kink angle of
    !! the criterion is small, or where the slope of the drive shows that the error of the kink is
@@ -308,11 +321,13 @@ contains
    end subroutine update_slope
 
    !> Commit the last increment, and update the curvature.
-   pure subroutine commit(self, drive)
+   pure subroutine commit(self, drive, stride)
       class(path_t), intent(inout) :: self
       real(rk), intent(in) :: drive  !< -K_II at the new end [Pa sqrt(m)]
+      real(rk), intent(in) :: stride  !< advance where no target lies ahead [m]
 
       if (.not. self%advance > 0.0_rk) return
+      self%stride = stride
       if (self%has_wing) then
          call update_slope(self, drive)
          self%curvature = self%kink/self%advance

@@ -203,7 +203,7 @@ contains
             .not. (self%now%segment%is_open .or. self%now%segment%stays() .or. &
                    self%tip%arrested .or. self%has_gained() .or. is_viscous(self%tip)) .and. &
             search%unmoved > by_far .and. &
-            overshoots(self%tip, self%now%segment, self%rules%toughness, self%increments())
+            overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
       search%is_over = any(far)
       if (search%is_over) call reject_overshoot(self, search, far, trial)
    end subroutine see_overshoot
@@ -372,7 +372,7 @@ contains
       beyond = self%now%segment%beyond_end(search%dt)
       associate (toughness => self%rules%toughness, &
                  far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
-                                   self%increments()))
+                                   self%strides()))
          if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
                                            toughness, self%load_pressure), i=1, size(wants))])) then
             call find_refinements(self, self%before%time, trial%refinements)
@@ -429,8 +429,11 @@ contains
       call evaluate_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
-      trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
-                                               self%increments())/self%increments()])
+      associate (segment => self%now%segment, increment => self%increments())
+         trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, segment, increment) &
+                                 /merge(min(segment%length, increment), increment, &
+                                        segment%length > 0.0_rk)])
+      end associate
       call self%pace%see_end(self%tape, self%tip%excess(self%rules%toughness), &
                              self%last%front%tip%excess(self%rules%toughness), &
                              self%tip%drive%angle, &

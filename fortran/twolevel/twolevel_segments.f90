@@ -66,7 +66,7 @@ contains
       ! Only the directions of these tips are to be found.
       if (allocated(self%now%active)) active = self%now%active
       self%now%active = is_new
-      call self%grow_by(merge(self%increments(), 0.0_rk, is_new .and. .not. is_near), any_grew, &
+      call self%grow_by(merge(self%strides(), 0.0_rk, is_new .and. .not. is_near), any_grew, &
                         timers, error)
       if (allocated(error)) return
       deallocate (self%now%active)
@@ -229,7 +229,8 @@ contains
       integer(ik), intent(out) :: target
       real(rk), intent(out) :: to(2)  !< [m]
 
-      call rules%look_ahead(network, tip%fracture, tip%origin, direction, target, to)
+      call rules%look_ahead(network, tip%fracture, tip%origin, direction, target, to, &
+                            tip%stride)
       if (target /= target_none) return
       call find_beside(network, rules%outline, tip%fracture, tip%origin, tip%xy, &
                        rules%near_of(tip%fracture), target, to)

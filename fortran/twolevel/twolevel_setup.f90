@@ -22,6 +22,10 @@ module twolevel_setup
    !! intensities differ by about as much [-].
    real(rk), parameter :: together = 0.01_rk
 
+   !> Shortest path segment, over the increment and over a coarse cell: the mesh library does not
+   !! resolve a tip at its beginning otherwise [-].
+   real(rk), parameter :: shortest_segment = 1.0_rk/16.0_rk, shortest_in_mesh = 0.025_rk
+
    !> Distance from the path within which ends and kinks of fractures lie on the path, in increments
    !! and in cells: no mesh of good quality fits between [-].
    real(rk), parameter :: near_way = 0.02_rk, near_in_mesh = 5.0e-3_rk
@@ -120,6 +124,9 @@ contains
                              stop_gain=scene%growth%stop_gain, exponent=scene%growth%exponent, &
                              together=together, &
                              joins=scene%growth%law /= "equilibrium", heads=.true., &
+                             shortest=merge(shortest_segment, 1.0_rk, &
+                                            scene%growth%in_equilibrium()), &
+                             shortest_length=shortest_in_mesh*scene%discretization%size_fracture, &
                              near=max(near_way*scene%growth%increment, &
                                       near_in_mesh*scene%discretization%size_fracture), &
                              outline=outline%corners)
