@@ -11,6 +11,7 @@ program test_growth_path
 
    call moves()
    call keeps_the_first_kink()
+   call is_shortened()
    call finds_direction(-5.0_rk, "steep")
    call finds_direction(-1.0_rk, "as the criterion foretells")
    call finds_direction(-0.3_rk, "mild")
@@ -68,6 +69,19 @@ contains
       call checks%is_true(.not. has_turned, "the first kink is the criterion's")
    end subroutine keeps_the_first_kink
 
+   !> Half of an advance is taken back in its direction; the kink stays.
+   subroutine is_shortened()
+      type(path_t) :: path
+
+      call start(path, 30.0_rk*degree, .true.)
+      call path%shorten()
+      call checks%is_close(path%advance, 0.05_rk, 1.0e-15_rk, "half of the advance")
+      call checks%is_close(path%xy(2) - path%origin(2), 0.05_rk*cos(30.0_rk*degree), 1.0e-14_rk, &
+                           "in the same direction")
+      call path%commit(0.0_rk, 0.05_rk)
+      call checks%is_close(path%stride, 0.05_rk, 0.0_rk, "length of the segment")
+   end subroutine is_shortened
+
    !> -K_II at the new end is slope*(kink - right) for a K_I of 1, so the criterion's angle
    !! saturates at pure sliding: the search must end within two degrees of that angle or half a
    !! degree of the right kink.
@@ -119,7 +133,7 @@ contains
             corrections = corrections + 1
          end do
          left = left + turn - path%kink
-         call path%commit(slope*left)
+         call path%commit(slope*left, 0.1_rk)
          if (increment == 1) call checks%is_true(corrections > 0, "the first has to be corrected")
          if (increment < 3) cycle
          call checks%is_true(corrections == 0, "later ones are foreseen")
