@@ -231,6 +231,24 @@ def test_another_stage_and_end_are_as_if_they_had_been_there_from_the_start(
     assert_same(tmp_path / "fork_2", tmp_path / "whole")
 
 
+def test_another_end_is_as_if_it_had_been_there_from_the_start(tmp_path: Path) -> None:
+    """With a tolerance and growth: the continued run keeps the first step of its start."""
+    scene = GROWING.replace("end = 7200.0, step = 3600.0", "end = 7200.0") + EVERY_STATE
+    (tmp_path / "base.nml").write_text(scene)
+    base, longer = tmp_path / "base", tmp_path / "longer"
+    assert solver("run", tmp_path / "base.nml", "--out", base, "--quiet").returncode == 0
+    # The last step was shortened to reach the end.
+    (base / "checkpoint_old.bin").rename(base / "checkpoint.bin")
+    for words in (
+        ("--restart", base, "--end", "8000.0", "--out", longer),
+        (longer / "scene.nml", "--out", tmp_path / "whole"),
+    ):
+        done = solver("run", *words, "--quiet")
+        assert done.returncode == 0, done.stderr
+    assert wingcrack.open(longer).scene["time.first"] == pytest.approx(7200.0e-7)
+    assert_same(longer, tmp_path / "whole")
+
+
 def test_runs_without_checkpoints_have_nothing_to_go_on_from(tmp_path: Path) -> None:
     (tmp_path / "scene.nml").write_text(SCENE + "\n&output checkpoint = 0.0 /\n")
     done = solver("run", tmp_path / "scene.nml", "--out", tmp_path / "out", "--quiet")

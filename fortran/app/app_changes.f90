@@ -30,20 +30,24 @@ module app_changes
 
 contains
 
-   !> An error that names the first difference that is not allowed.
+   !> An error that names the first difference that is not allowed. The scene takes over the first
+   !! step of the checkpoint: by default it is a share of the end, which may differ.
    subroutine check_changes(before, scene, time, error)
       character(len=*), intent(in) :: before  !< text of the scene of the checkpoint
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: time  !< of the checkpoint [s]
       type(error_t), allocatable, intent(out) :: error
       type(names_t) :: new, old
-      integer :: i
+      integer :: i, status
 
       old = names_in(before)
       new = names_in(scene_text(scene))
       do i = 1, min(size(old%name), size(new%name))
          associate (group => old%group(i)%text, name => old%name(i)%text)
             if (new%group(i)%text /= group .or. new%name(i)%text /= name) exit
+            if (group//" "//name == "time first") then
+               read (old%value(i)%text, *, iostat=status) scene%time%first
+            end if
             if (may_change(group//" "//name, old%value(i)%text, new%value(i)%text)) cycle
             call refuse(name//" of &"//group//" from "//old%value(i)%text//" to "// &
                         new%value(i)%text, error)

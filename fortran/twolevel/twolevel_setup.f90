@@ -11,7 +11,6 @@ module twolevel_setup
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
    use twolevel_schedule, only: shortest_stage
-   use twolevel_stepping, only: first_step
    implicit none(type, external)
    private
 
@@ -36,8 +35,9 @@ contains
       real(rk), parameter :: share = 1.0e-4_rk  ! first step of a stage, over its length [-]
 
       if (scene%discretization%layers /= "auto") return
-      first = first_step(scene%time)
-      if (scene%time%tolerance > 0.0_rk) first = min(first, share*shortest_stage(scene))
+      first = scene%time%step_scale()
+      if (scene%time%tolerance > 0.0_rk) first = min(scene%time%first_step(), &
+                                                     share*shortest_stage(scene))
    end subroutine choose_first_step
 
    !> Replace a toughness of 0, or next to it, by one that changes nothing that a run resolves: K_eq

@@ -281,7 +281,7 @@ contains
 
       self%now%undrained = .true.
       call self%problem%model%equilibrate(self%problem%mesh, &
-                                          undrained_share*self%scene%time%longest(), &
+                                          undrained_share*self%scene%time%step_scale(), &
                                           self%now%coarse, timers, report, error)
       if (.not. allocated(error)) call explain(self, 0.0_rk, report)
       call self%rest_wells()

@@ -36,14 +36,11 @@ module twolevel_stepping
    implicit none(type, external)
    private
 
-   public :: first_step, improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t
+   public :: improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t
    public :: trial_t, withdraw_edge, withdraw_elements
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
-
-   !> First step with a tolerance, over the time of the scene: so short that little happens [-].
-   real(rk), parameter :: first_share = 1.0e-7_rk
 
    !> Largest advance of a tip in a step, over the length of its segment [-].
    real(rk), parameter :: most = 0.75_rk
@@ -138,27 +135,16 @@ module twolevel_stepping
 
 contains
 
-   !> The first step of a run, and the shortest of those without growth, limits of wells and errors
-   !! that cut it [s].
-   real(rk) function first_step(time)
-      type(time_t), intent(in) :: time
-      type(stepper_t) :: stepper
-
-      call stepper%begin(time)
-      first_step = stepper%next
-   end function first_step
-
    !> Set the control from the time settings of the scene.
    subroutine begin(self, time)
       class(stepper_t), intent(out) :: self
       type(time_t), intent(in) :: time
 
       self%tolerance = time%tolerance
-      self%shortest = time%smallest_factor*time%longest()
-      self%longest = time%longest()
-      self%after_growth = time%share_after_growth*time%longest()
-      self%next = self%longest
-      if (self%tolerance > 0.0_rk) self%next = min(self%longest, first_share*time%end)
+      self%shortest = time%smallest_factor*time%step_scale()
+      if (time%step > 0.0_rk) self%longest = time%step
+      self%after_growth = time%share_after_growth*time%step_scale()
+      self%next = merge(time%first_step(), self%longest, self%tolerance > 0.0_rk)
    end subroutine begin
 
    !> Length of the step to try; no step straddles a switch of the wells.
