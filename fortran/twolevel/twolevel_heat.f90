@@ -21,7 +21,7 @@ module twolevel_heat
 
 contains
 
-   !> First substep, which layers resolve: ten first steps of the flow, or a share of equal ones [s].
+   !> First substep, which layers resolve: ten first steps, or a share of equal ones [s].
    pure real(rk) function first_substep(scene)
       type(scene_t), intent(in) :: scene
       real(rk), parameter :: longest = 1.0_rk, steps = 10.0_rk, share = 1.0e-4_rk

@@ -3,7 +3,7 @@
 !!    mutated_checkpoints FIRST LAST STEPS FOLDER ...
 !!
 !! Each number from FIRST to LAST stands for one mutated state of the run in one of the folders,
-!! which have scene.nml and checkpoint.bin. Every STEPS-th one that can be loaded goes on by a state.
+!! which have scene.nml and checkpoint.bin. Every STEPS-th that can be loaded goes on by a state.
 !! Each is loaded by a process of its own: one that a signal or the run time ends is told with its
 !! number, and with what was changed.
 program mutated_checkpoints
@@ -242,9 +242,10 @@ contains
       integer(int8), intent(inout) :: values(:)
       integer(ik), parameter :: wrong(7) = [0_ik, -1_ik, 1_ik, 2_ik, 1000_ik, huge(1_ik), &
                                             -huge(1_ik)]
-      integer(lk), parameter :: wrong_reals(6) = [0_lk, int(z"BFF0000000000000", lk), &
-         int(z"7E37E43C8800759C", lk), int(z"7FF8000000000000", lk), &
-         int(z"7FF0000000000000", lk), int(z"0000000000000001", lk)]  ! 0, -1, 1e300, nan, inf, tiny
+      ! 0, -1, 1e300, nan, inf and the smallest one
+      integer(lk), parameter :: wrong_reals(6) = &
+         [0_lk, int(z"BFF0000000000000", lk), int(z"7E37E43C8800759C", lk), &
+          int(z"7FF8000000000000", lk), int(z"7FF0000000000000", lk), 1_lk]
       integer :: at, n
 
       n = int(bytes_of(entry%kind))
