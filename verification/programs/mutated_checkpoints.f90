@@ -244,8 +244,8 @@ contains
                                             -huge(1_ik)]
       ! 0, -1, 1e300, nan, inf and the smallest one
       integer(lk), parameter :: wrong_reals(6) = &
-         [0_lk, int(z"BFF0000000000000", lk), int(z"7E37E43C8800759C", lk), &
-          int(z"7FF8000000000000", lk), int(z"7FF0000000000000", lk), 1_lk]
+                                [0_lk, int(z"BFF0000000000000", lk), int(z"7E37E43C8800759C", lk), &
+                                 int(z"7FF8000000000000", lk), int(z"7FF0000000000000", lk), 1_lk]
       integer :: at, n
 
       n = int(bytes_of(entry%kind))
