@@ -212,9 +212,6 @@ module scene_types
       !> smallest step over the longest, at which a run ends [-]
       real(rk) :: smallest_factor = 0.0_rk
       character(len=256) :: replay = ""  !< folder of the run whose decisions are taken; empty: none
-   contains
-      procedure :: first_step
-      procedure :: step_scale
    end type time_t
 
    !> Default of the first step, over the time of the scene: so short that little happens [-].
@@ -330,22 +327,6 @@ contains
 
       in_equilibrium = self%enabled .and. self%law == "equilibrium"
    end function in_equilibrium
-
-   !> First step with a tolerance [s].
-   pure real(rk) function first_step(self)
-      class(time_t), intent(in) :: self
-
-      first_step = merge(self%first, first_share*self%end, self%first > 0.0_rk)
-      if (self%step > 0.0_rk) first_step = min(first_step, self%step)
-   end function first_step
-
-   !> The regular or longest step; without it the duration of which the first step is that share. It
-   !! does not follow from the end where the first step is given, as in a run that is continued [s].
-   pure real(rk) function step_scale(self)
-      class(time_t), intent(in) :: self
-
-      step_scale = merge(self%step, self%first_step()/first_share, self%step > 0.0_rk)
-   end function step_scale
 
    !> The scene has a fluid; otherwise it is mechanics only.
    pure logical function has_fluid(self)

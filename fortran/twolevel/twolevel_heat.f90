@@ -13,6 +13,7 @@ module twolevel_heat
    use report_simulation, only: snapshot_t
    use scene_types, only: injection_t, scene_t
    use twolevel_problem, only: coarse_problem_t
+   use twolevel_stepping, only: first_step
    use twolevel_wells, only: rate
    implicit none(type, external)
    private
@@ -27,7 +28,7 @@ contains
       real(rk), parameter :: longest = 1.0_rk, steps = 10.0_rk, share = 1.0e-4_rk
 
       associate (time => scene%time)
-         first_substep = min(longest, merge(steps*time%first_step(), share*time%step, &
+         first_substep = min(longest, merge(steps*first_step(time), share*time%step, &
                                             time%tolerance > 0.0_rk))
       end associate
    end function first_substep

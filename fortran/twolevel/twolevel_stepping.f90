@@ -32,12 +32,12 @@
 module twolevel_stepping
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
-   use scene_types, only: time_t
+   use scene_types, only: first_share, time_t
    implicit none(type, external)
    private
 
-   public :: improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t
-   public :: trial_t, withdraw_edge, withdraw_elements
+   public :: first_step, improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t
+   public :: step_scale, trial_t, withdraw_edge, withdraw_elements
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
@@ -135,16 +135,32 @@ module twolevel_stepping
 
 contains
 
+   !> First step with a tolerance [s].
+   pure real(rk) function first_step(time)
+      type(time_t), intent(in) :: time
+
+      first_step = merge(time%first, first_share*time%end, time%first > 0.0_rk)
+      if (time%step > 0.0_rk) first_step = min(first_step, time%step)
+   end function first_step
+
+   !> The regular or longest step; without it the duration of which the first step is that share. It
+   !! does not follow from the end where the first step is given, as in a run that is continued [s].
+   pure real(rk) function step_scale(time)
+      type(time_t), intent(in) :: time
+
+      step_scale = merge(time%step, first_step(time)/first_share, time%step > 0.0_rk)
+   end function step_scale
+
    !> Set the control from the time settings of the scene.
    subroutine begin(self, time)
       class(stepper_t), intent(out) :: self
       type(time_t), intent(in) :: time
 
       self%tolerance = time%tolerance
-      self%shortest = time%smallest_factor*time%step_scale()
+      self%shortest = time%smallest_factor*step_scale(time)
       if (time%step > 0.0_rk) self%longest = time%step
-      self%after_growth = time%share_after_growth*time%step_scale()
-      self%next = merge(time%first_step(), self%longest, self%tolerance > 0.0_rk)
+      self%after_growth = time%share_after_growth*step_scale(time)
+      self%next = merge(first_step(time), self%longest, self%tolerance > 0.0_rk)
    end subroutine begin
 
    !> Length of the step to try; no step straddles a switch of the wells.
