@@ -69,6 +69,15 @@ function(component_modules name folder)
   target_include_directories(${name} PUBLIC ${mod_dir})
 endfunction()
 
+# The debug build checks C and C++ as -fcheck=all does Fortran.
+check_linker_flag(CXX -fsanitize=undefined WINGCRACK_HAS_SANITIZER)
+if(WINGCRACK_HAS_SANITIZER)
+  add_compile_options(
+    "$<$<AND:$<CONFIG:Debug>,$<COMPILE_LANGUAGE:C,CXX>>:-fsanitize=undefined;-fno-sanitize-recover=all;-D_GLIBCXX_ASSERTIONS>"
+  )
+  add_link_options($<$<CONFIG:Debug>:-fsanitize=undefined>)
+endif()
+
 # -frecursive: procedures may run on several threads at once, so that no local array is static,
 # whatever its size. The check of recursion that -fcheck=all contains would take two threads in one
 # procedure for a recursion; -frecursive switches it off.

@@ -25,7 +25,7 @@ STORED = {
     "simulation_t": ("report_restart:visit_simulation",),
     "front_state_t": ("growth_archive:visit_front",),
     "front_t": ("report_restart:visit_simulation",),
-    "summary_t": ("report_restart:visit_summary",),
+    "summary_t": ("report_restart:visit_summary", "report_restart:visit_warnings"),
     "dof_block_t": ("report_restart:visit_summary",),
     "watch_t": ("report_watch:visit",),
     "slip_catalogue_t": ("report_slip_archive:visit",),

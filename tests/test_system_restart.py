@@ -179,6 +179,8 @@ def test_a_checkpoint_of_another_version_is_refused(ended: Path) -> None:
         ("permeability = 5.0e-20", "permeability = 6.0e-20", "permeability_xx of &material"),
         ("size_boundary = 0.25", "size_boundary = 0.26", "size_boundary of &coarse"),
         ("&probe name = 'corner', x = 2.0, y = 2.0 /", "", "number of groups"),
+        ("&probe", "&injection fracture = 'f1', rate = 1.0e-9 /\n&probe", "number of wells"),
+        ("intensities = .true.", "enabled = .true.", "cannot switch growth on or off"),
         ("end = 18000.0", "end = 3000.0", "after the end at 3000 s"),
     ],
 )
@@ -229,6 +231,43 @@ def test_another_stage_and_end_are_as_if_they_had_been_there_from_the_start(
         assert done.returncode == 0, done.stderr
     assert_same(tmp_path / "fork_1", tmp_path / "whole")
     assert_same(tmp_path / "fork_2", tmp_path / "whole")
+
+
+def test_another_end_is_as_if_it_had_been_there_from_the_start(tmp_path: Path) -> None:
+    """With a tolerance and growth: the continued run keeps the first step of its start."""
+    scene = GROWING.replace("end = 7200.0, step = 3600.0", "end = 7200.0") + EVERY_STATE
+    (tmp_path / "base.nml").write_text(scene)
+    base, longer = tmp_path / "base", tmp_path / "longer"
+    assert solver("run", tmp_path / "base.nml", "--out", base, "--quiet").returncode == 0
+    # The last step was shortened to reach the end.
+    (base / "checkpoint_old.bin").rename(base / "checkpoint.bin")
+    for words in (
+        ("--restart", base, "--end", "8000.0", "--out", longer),
+        (longer / "scene.nml", "--out", tmp_path / "whole"),
+    ):
+        done = solver("run", *words, "--quiet")
+        assert done.returncode == 0, done.stderr
+    assert wingcrack.open(longer).scene["time.first"] == pytest.approx(7200.0e-7)
+    assert_same(longer, tmp_path / "whole")
+
+
+def test_a_well_that_comes_later_is_as_if_it_had_been_there_from_the_start(tmp_path: Path) -> None:
+    well = "&injection name = 'second', x = 0.7, y = 0.7, rate = 4.0e-9, start = {} /\n"
+    whole = FINE + well.format("9000.0, end = 12000.0") + EVERY_STATE
+    (tmp_path / "whole.nml").write_text(whole)
+    base = FINE.replace("end = 18000.0", "end = 7200.0") + well.format("1.0e9") + EVERY_STATE
+    (tmp_path / "base.nml").write_text(base)
+    for words in (
+        ("run", tmp_path / "whole.nml", "--out", tmp_path / "whole"),
+        ("run", tmp_path / "base.nml", "--out", tmp_path / "base"),
+        (
+            *("run", tmp_path / "whole.nml", "--restart", tmp_path / "base"),
+            *("--out", tmp_path / "later"),
+        ),
+    ):
+        done = solver(*words, "--quiet")
+        assert done.returncode == 0, done.stderr
+    assert_same(tmp_path / "later", tmp_path / "whole")
 
 
 def test_runs_without_checkpoints_have_nothing_to_go_on_from(tmp_path: Path) -> None:

@@ -25,9 +25,10 @@ STICKS_AND_SLIPS = 29
 
 @pytest.fixture(scope="module")
 def mutations(program: None) -> None:
-    """The program that mutates scene files is built."""
+    """The programs that mutate scene files and checkpoints are built."""
+    programs = ["mutated_scenes", "mutated_checkpoints"]
     subprocess.run(
-        ["cmake", "--build", "--preset", "release", "--target", "mutated_scenes"],
+        ["cmake", "--build", "--preset", "release", "--target", *programs],
         cwd=TOP,
         check=True,
         capture_output=True,
@@ -48,6 +49,16 @@ def test_runs_of_mutated_files_end_as_they_must() -> None:
     assert tally.faults == []
     assert tally.counts["status 0"] > 5
     assert tally.counts["status 2"] > 10
+
+
+@pytest.mark.usefixtures("mutations")
+def test_no_mutated_checkpoint_ends_the_program() -> None:
+    names = ("onset", "crossing", "lauwerier", "load_cycle", "stress_case2")
+    scenes = [path for path in mutated_scenes.SCENES if path.stem in names]
+    tally = mutated_scenes.load_checkpoints(1, 200, scenes)
+    assert tally.faults == []
+    assert tally.counts["refused"] > 30
+    assert tally.counts["go on"] > 5
 
 
 @pytest.mark.parametrize(

@@ -30,32 +30,54 @@ module app_changes
 
 contains
 
-   !> An error that names the first difference that is not allowed.
+   !> An error that names the first difference that is not allowed. The scene takes over the first
+   !! step of the checkpoint: by default it is a share of the end, which may differ.
    subroutine check_changes(before, scene, time, error)
       character(len=*), intent(in) :: before  !< text of the scene of the checkpoint
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: time  !< of the checkpoint [s]
       type(error_t), allocatable, intent(out) :: error
       type(names_t) :: new, old
-      integer :: i
+      real(rk) :: first
+      integer :: i, status
 
       old = names_in(before)
       new = names_in(scene_text(scene))
       do i = 1, min(size(old%name), size(new%name))
          associate (group => old%group(i)%text, name => old%name(i)%text)
             if (new%group(i)%text /= group .or. new%name(i)%text /= name) exit
+            if (group//" "//name == "time first") then
+               read (old%value(i)%text, *, iostat=status) first
+               if (status == 0) scene%time%first = first
+            end if
             if (may_change(group//" "//name, old%value(i)%text, new%value(i)%text)) cycle
             call refuse(name//" of &"//group//" from "//old%value(i)%text//" to "// &
                         new%value(i)%text, error)
+            if (group//" "//name == "growth enabled") error%message = "a restart cannot switch "// &
+               & "growth on or off: with it the last cells of fractures end at their tips; "// &
+               & "enable it from the start, which changes little until a tip reaches its toughness"
             return
          end associate
       end do
-      if (i <= max(size(old%name), size(new%name))) call refuse("number of groups", error)
+      if (i <= max(size(old%name), size(new%name))) then
+         call refuse("number of groups", error)
+         if (well_count(new) /= well_count(old)) error%message = "a restart cannot change the "// &
+            & "number of wells, for which tables have columns: give a well that comes later "// &
+            & "from the start, with its start after the end; stages may change"
+      end if
       if (allocated(error) .or. .not. scene%has_fluid()) return
       if (.not. scene%time%end < time) return
       call raise_error(error, "", "the checkpoint is of "//brief_text(time, 6)//" s, after the "// &
                        "end at "//brief_text(scene%time%end, 6)//" s")
    end subroutine check_changes
+
+   pure integer function well_count(names)
+      type(names_t), intent(in) :: names
+      integer :: i
+
+      well_count = count([(names%group(i)%text == "injection" .and. &
+                           names%name(i)%text == "group", i=1, size(names%name))])
+   end function well_count
 
    subroutine refuse(what, error)
       character(len=*), intent(in) :: what

@@ -78,6 +78,7 @@ contains
       logical, intent(out) :: refused, was_interrupted
       type(error_t), allocatable, intent(out) :: error
       character(len=*), intent(in), optional :: origin
+      type(scene_t) :: own  ! with the first step of a run that is continued
       type(journal_t), target :: journal
       type(follower_t), target :: follower
       type(run_record_t) :: record
@@ -87,6 +88,7 @@ contains
       logical :: is_meshed
 
       was_interrupted = .false.
+      own = scene
       call allocate_simulation(scene, simulation)
       call timers%begin()
       if (len_trim(scene%time%replay) > 0) then
@@ -98,7 +100,7 @@ contains
       call journal%files%open(directory, source, refused, error)
       if (allocated(error)) return
       if (present(origin)) then
-         call restart(simulation, journal, scene, origin, timers, refused, error)
+         call restart(simulation, journal, own, origin, timers, refused, error)
          is_meshed = .not. allocated(error)
       else
          call simulation%begin(scene, timers, error)
@@ -117,7 +119,7 @@ contains
       if (.not. allocated(error)) then
          call journal%progress%begin(quiet)
          if (.not. present(origin)) call write_network(journal, simulation)
-         call journal%checkpoints%begin(scene, simulation)
+         call journal%checkpoints%begin(own, simulation)
          follower%journal => journal
          timers%listener => follower
          call march(simulation, journal, timers, error)
@@ -286,7 +288,7 @@ contains
    subroutine restart(simulation, journal, scene, origin, timers, refused, error)
       class(simulation_t), intent(inout) :: simulation
       type(journal_t), intent(inout) :: journal
-      type(scene_t), intent(in) :: scene
+      type(scene_t), intent(inout) :: scene
       character(len=*), intent(in) :: origin
       type(timers_t), intent(inout) :: timers
       logical, intent(out) :: refused

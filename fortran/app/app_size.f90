@@ -286,8 +286,10 @@ contains
          if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
             regime_words(toughness), ", K_m = ", toughness, " (well '", &
             trim(scene%injections(well)%name), "')"
-         if (well > 0 .and. leakoff > 0.0_rk) write (unit, "(a,es9.3,a)") &
-            "leak-off:     C_m = ", leakoff, " at the end, by the least compression"
+         if (well > 0 .and. leakoff > 0.0_rk .and. leakoff <= huge(leakoff)) then
+            write (unit, "(a,es9.3,a)") "leak-off:     C_m = ", leakoff, &
+               " at the end, by the least compression"
+         end if
          write (unit, "(2a)") "VTU files:    ", trim(merge("yes     ", "left out", &
                                                            scene%output%vtu))
          write (unit, "(a,i0,a,i0,a)") "about:        ", int(estimate%cells, lk), " cells, ", &

@@ -14,7 +14,7 @@
 !!
 !! Extents of an array that is loaded are compared with those that its entry names (base_stream).
 module base_archive
-   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_loc
+   use, intrinsic :: iso_c_binding, only: c_f_pointer, c_loc, c_ptr
    use, intrinsic :: iso_fortran_env, only: int8
    use base_kinds, only: ik, lk, rk
    use base_stream, only: stream_t
@@ -89,6 +89,7 @@ contains
 
       call self%fixed(name, "l4", shape(x, lk))
       call self%move(c_loc(x), 4_lk*size(x, kind=lk))
+      call check_logicals(self, name, c_loc(x), size(x, kind=lk))
    end subroutine item_logical
 
    subroutine item_text(self, name, x)
@@ -187,8 +188,23 @@ contains
             if (exists) allocate (x(n(1), n(2)))
          end select
       end if
-      if (exists) call self%move(c_loc(x), 4_lk*product(n))
+      if (.not. exists) return
+      call self%move(c_loc(x), 4_lk*product(n))
+      call check_logicals(self, name, c_loc(x), product(n))
    end subroutine list_logical
+
+   !> Other values than those of .true. and .false. would be neither.
+   subroutine check_logicals(self, name, address, n)
+      class(archive_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      type(c_ptr), intent(in) :: address
+      integer(lk), intent(in) :: n
+      integer(ik), pointer :: values(:)
+
+      if (.not. self%is_loading .or. n == 0_lk) return
+      call c_f_pointer(address, values, [n])
+      if (any(values /= 0_ik .and. values /= 1_ik)) call self%set_fault(name)
+   end subroutine check_logicals
 
    subroutine list_byte(self, name, x, extents)
       class(archive_t), intent(inout) :: self

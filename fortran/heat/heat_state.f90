@@ -47,10 +47,13 @@ contains
       type(archive_t), intent(inout) :: archive
 
       call archive%enter("heat")
-      call archive%list("temperature", self%temperature)
-      call archive%list("capacity", self%capacity)
-      call archive%list("rate", self%rate)
-      call archive%list("well_temperature", self%well_temperature)
+      call archive%list("temperature", self%temperature, "heat ?")
+      call archive%list("capacity", self%capacity, "heat ?")
+      call archive%list("rate", self%rate, "heat ?")
+      call archive%list("well_temperature", self%well_temperature, "all_wells ?")
+      call archive%agree("heat", [allocated(self%temperature), allocated(self%capacity), &
+                                  allocated(self%well_temperature)])
+      if (allocated(self%rate)) call archive%agree("heat", [.true., allocated(self%temperature)])
       call archive%item("last", self%last)
       call archive%item("next", self%next)
       call archive%item("stored", self%stored)

@@ -5,7 +5,7 @@ module mesh_archive
    use, intrinsic :: iso_fortran_env, only: int8
    use base_archive, only: archive_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, lk
+   use base_kinds, only: ik, lk, rk
    use base_lists, only: lists_t
    use mesh_builder, only: mesher_t
    use mesh_c_arrays, only: copy_mesh
@@ -185,6 +185,7 @@ contains
    !> Whether there are all arrays, and lists of cells at points that fit them.
    pure logical function is_complete(f)
       type(fracture_mesh_t), intent(in) :: f
+      real(rk), parameter :: rounding = 1.0e-9_rk
 
       is_complete = allocated(f%cell_fracture) .and. allocated(f%cell_points) .and. &
                     allocated(f%cell_faces) .and. allocated(f%cell_s) .and. &
@@ -195,7 +196,9 @@ contains
                     allocated(f%point_cells%first) .and. allocated(f%point_cells%item)
       if (.not. is_complete) return
       associate (first => f%point_cells%first, item => f%point_cells%item)
-         is_complete = size(first) == f%n_points + 1 .and. within(f%tip_end, 2)
+         is_complete = size(first) == f%n_points + 1 .and. within(f%tip_end, 2) .and. &
+                       all(abs(f%cell_s) <= huge(f%cell_s)) .and. &
+                       all(abs(norm2(f%tip_direction, 1) - 1.0_rk) <= rounding)
          if (is_complete) is_complete = all(f%point_kind /= point_interior .or. &
                                             first(2:) - first(:f%n_points) == 2)
          if (is_complete) is_complete = within(item, f%n_cells) .and. first(1) == 1 .and. &

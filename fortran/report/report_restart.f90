@@ -7,12 +7,14 @@ module report_restart
    use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, lk
+   use base_texts, only: add_text, text_t
    use base_timers, only: timers_t
    use growth_archive, only: visit_front
    use mesh_archive, only: visit_network
    use report_rows, only: summary_t
    use report_simulation, only: simulation_t
    use scene_outline, only: sides_of_scene
+   use scene_plausible, only: doubts_of_scene
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -64,6 +66,7 @@ contains
       if (allocated(simulation%network%xy)) call archive%set_extent("vertices", &
                                                             size(simulation%network%xy, 2, kind=ik))
       call visit_summary(archive, simulation%summary)
+      call visit_warnings(archive, simulation%scene, simulation%summary)
       call simulation%watch%visit(archive)
       call simulation%catalogue%visit(archive)
       call simulation%tape%visit(archive)
@@ -115,7 +118,31 @@ contains
       end do
       call archive%texts("used", summary%used)
       call archive%texts("left_out", summary%left_out)
-      call archive%texts("warnings", summary%warnings)
    end subroutine visit_summary
+
+   !> Warnings of the run so far. Those about the scene are made again: it may differ.
+   subroutine visit_warnings(archive, scene, summary)
+      type(archive_t), intent(inout) :: archive
+      type(scene_t), intent(in) :: scene
+      type(summary_t), intent(inout) :: summary
+      type(text_t), allocatable :: doubts(:), others(:)
+      integer :: i, k
+
+      doubts = doubts_of_scene(scene)
+      allocate (others(0))
+      if (allocated(summary%warnings) .and. .not. archive%is_loading) then
+         do i = 1, size(summary%warnings)
+            associate (warning => summary%warnings(i)%text)
+               if (any([(doubts(k)%text == warning, k=1, size(doubts))])) cycle
+               call add_text(others, warning)
+            end associate
+         end do
+      end if
+      call archive%texts("warnings", others)
+      if (.not. (archive%is_loading .and. allocated(others))) return
+      do i = 1, size(others)
+         call summary%warn(others(i)%text)
+      end do
+   end subroutine visit_warnings
 
 end module report_restart

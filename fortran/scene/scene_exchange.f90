@@ -253,6 +253,7 @@ contains
          call exchange(record, "end", scene%time%end)
          call exchange(record, "step", scene%time%step, nothing=0.0_rk)
          call exchange(record, "tolerance", scene%time%tolerance)
+         call exchange(record, "first", scene%time%first, nothing=0.0_rk)
          call exchange(record, "growth_factor", scene%time%share_after_growth)
          call exchange(record, "smallest_factor", scene%time%smallest_factor)
          call exchange(record, "replay", scene%time%replay)

@@ -16,7 +16,7 @@ module scene_namelist
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, refuse, sheet_t
    use scene_sides, only: normal_tractions
    use scene_sizes, only: choose_sizes
-   use scene_types, only: injection_t, material_t, name_length, region_t, scene_t
+   use scene_types, only: first_share, injection_t, material_t, name_length, region_t, scene_t
    use scene_values, only: default_value, shortened, value_t
    use scene_words, only: is_identifier
    implicit none(type, external)
@@ -338,6 +338,7 @@ contains
                            scene%growth%law == "equilibrium")) then
             call default(time%tolerance, usual_tolerance)
          end if
+         if (time%tolerance > 0.0_rk) call default(time%first, first_share*time%end)
          call default(time%smallest_factor, merge(1.0e-9_rk, 1.0e-6_rk, is_free))
          call default(scene%adaptive%tolerance, merge(0.5_rk, 0.01_rk, scene%has_fluid()))
          call default(scene%output%interval, merge(0.01_rk*time%end, time%step, is_free))

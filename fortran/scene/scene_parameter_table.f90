@@ -287,12 +287,16 @@ module scene_parameter_table
          absent="0.01, or 0 with step alone", &
          meaning="Time error of a step relative to the range of pressure, slip and opening so "// &
                  "far; 0: the default, 0.01 without step or with growth in equilibrium"), &
+      parameter_t("time", "first", unit="s", range=positive, at_most="end", &
+         absent="with a tolerance 1e-7 of end", &
+         meaning="First step with a tolerance, at most step; that of a run that is continued "// &
+                 "stays"), &
       parameter_t("time", "growth_factor", default="0.01", range=share, &
          meaning="Fraction of step used after growth with law = 'paris'"), &
       parameter_t("time", "smallest_factor", range=below_one, derived=.true., &
          at_most="growth_factor", absent="1e-6, or 1e-9 without step", &
-         meaning="Fraction of step, or of end without it, below which a cut step ends the run; "// &
-                 "no step is cut to less than a 64th of that; 0: the default"), &
+         meaning="Fraction of step, or of 1e7 first steps without it, below which a cut step "// &
+                 "ends the run; no step is cut to less than a 64th of that; 0: the default"), &
       parameter_t("time", "replay", kind_text, default="''", scenes=in_fluid, &
          meaning="Folder of a run whose steps, path segments and windows are taken"), &
       parameter_t("in_situ", "sxx", unit="Pa", default="0.0", meaning="Stress xx at y_datum"), &

@@ -207,13 +207,15 @@ module scene_types
       real(rk) :: end = 0.0_rk  !< [s]
       real(rk) :: step = 0.0_rk  !< regular or longest step; 0: not given [s]
       real(rk) :: tolerance = 0.0_rk  !< tolerance of the step error; 0: every step is `step` [-]
+      real(rk) :: first = 0.0_rk  !< first step with a tolerance; 0: the default [s]
       real(rk) :: share_after_growth = 0.01_rk  !< first step after growth over the longest step [-]
       !> smallest step over the longest, at which a run ends [-]
       real(rk) :: smallest_factor = 0.0_rk
       character(len=256) :: replay = ""  !< folder of the run whose decisions are taken; empty: none
-   contains
-      procedure :: longest
    end type time_t
+
+   !> Default of the first step, over the time of the scene: so short that little happens [-].
+   real(rk), parameter, public :: first_share = 1.0e-7_rk
 
    !> Meshes and solvers of both levels.
    type :: discretization_t
@@ -325,13 +327,6 @@ contains
 
       in_equilibrium = self%enabled .and. self%law == "equilibrium"
    end function in_equilibrium
-
-   !> Longest step [s].
-   pure real(rk) function longest(self)
-      class(time_t), intent(in) :: self
-
-      longest = merge(self%step, self%end, self%step > 0.0_rk)
-   end function longest
 
    !> The scene has a fluid; otherwise it is mechanics only.
    pure logical function has_fluid(self)

@@ -196,6 +196,7 @@ contains
       write (style, "(a,i0,a)") "(f", len(word), ".0)"
       read (word, style, iostat=status) number
       good = status == 0 .and. abs(number) <= huge(number)
+      if (.not. abs(number) > 0.0_rk) number = 0.0_rk  ! not -0.0
    end subroutine read_real
 
    !> A whole number.

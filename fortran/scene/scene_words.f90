@@ -2,7 +2,7 @@
 !! exactly; and ranges of allowed values with their description in words.
 module scene_words
    use base_kinds, only: ik, rk
-   use base_number, only: decimal_digits, integer_text, most_digits
+   use base_number, only: brief_text, decimal_digits, integer_text, most_digits
    implicit none(type, external)
    private
 
@@ -131,9 +131,10 @@ contains
       if (is_identifier) is_identifier = index(alphanumeric, word(1:1)) > 0
    end function is_identifier
 
-   !> The shortest decimal text that reads back to the same bits, as `0.25`, `97200.0` or `4.0e-10`.
+   !> The shortest decimal text that reads back to the same bits, as `0.25`, `97200.0` or `4.0e-10`;
+   !! inf or nan for a result that is no number.
    pure function real_text(value, n_digits) result(text)
-      real(rk), intent(in) :: value  !< finite
+      real(rk), intent(in) :: value  !< [any unit]
       integer, intent(in), optional :: n_digits  !< significant digits; default: all
       character(len=:), allocatable :: text
       character(len=most_digits), parameter :: zeros = repeat("0", most_digits)
@@ -141,6 +142,10 @@ contains
       character(len=:), allocatable :: digits
       integer :: exponent
 
+      if (.not. abs(value) <= huge(value)) then
+         text = brief_text(value, most_digits)
+         return
+      end if
       call decimal_digits(value, all_digits, exponent, n_digits)
       digits = trim(all_digits)
       if (exponent >= 0 .and. exponent <= 6) then
@@ -157,7 +162,7 @@ contains
 
    !> A computed number for a message, rounded to four digits.
    pure function rounded_text(value) result(text)
-      real(rk), intent(in) :: value  !< finite
+      real(rk), intent(in) :: value  !< [any unit]
       character(len=:), allocatable :: text
 
       text = real_text(value, 4)

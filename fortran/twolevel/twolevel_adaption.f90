@@ -104,7 +104,7 @@ contains
       if (self%scene%initial%fracture_pressure == "equilibrated") then
          call self%equilibrate(timers, report, error)
       else
-         call self%try_step(undrained_share*self%scene%time%longest(), timers, report, error)
+         call self%try_step(undrained_share*step_scale(self%scene%time), timers, report, error)
       end if
       if (allocated(error) .or. .not. report%converged) return
       start = self%now

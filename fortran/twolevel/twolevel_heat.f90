@@ -13,16 +13,25 @@ module twolevel_heat
    use report_simulation, only: snapshot_t
    use scene_types, only: injection_t, scene_t
    use twolevel_problem, only: coarse_problem_t
+   use twolevel_stepping, only: first_step
    use twolevel_wells, only: rate
    implicit none(type, external)
    private
 
    public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, set_heat, warn_of_heat
 
-   !> First substep, at most: what layers resolve [s], and over the duration of the run [-].
-   real(rk), parameter :: first_step = 1.0_rk, first_share = 1.0e-6_rk
-
 contains
+
+   !> First substep, which layers resolve: ten first steps, or a share of equal ones [s].
+   pure real(rk) function first_substep(scene)
+      type(scene_t), intent(in) :: scene
+      real(rk), parameter :: longest = 1.0_rk, steps = 10.0_rk, share = 1.0e-4_rk
+
+      associate (time => scene%time)
+         first_substep = min(longest, merge(steps*first_step(time), share*time%step, &
+                                            time%tolerance > 0.0_rk))
+      end associate
+   end function first_substep
 
    !> Discretize heat on the mesh of a problem.
    subroutine set_heat(scene, problem, heat, error)
@@ -34,7 +43,7 @@ contains
       if (.not. allocated(scene%heat)) return
       allocate (heat)
       call heat%set_mesh(problem%mesh, scene, problem%model%connections, problem%model%joints, &
-                         min(first_step, first_share*scene%time%end), error)
+                         first_substep(scene), error)
    end subroutine set_heat
 
    !> Advance heat by an accepted step of the coarse level; before the first one, begin.
@@ -53,7 +62,7 @@ contains
             first = before
             if (.not. dt > 0.0_rk) first = after
             call heat%begin(first%aperture - first%void, cell_s(2, :) - cell_s(1, :), &
-                            min(first_step, first_share*scene%time%end), size(scene%injections), &
+                            first_substep(scene), size(scene%injections), &
                             state)
          end if
          if (.not. dt > same_time*after%time) return

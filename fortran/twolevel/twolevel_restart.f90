@@ -58,6 +58,7 @@ contains
                call archive%compare_range("mesh", mesh%face_side, "; 0:sides")
             end if
          end if
+         call archive%set_extent("all_wells", size(self%scene%injections, kind=ik))
          call archive%set_extent("cells", mesh%n_cells)
          call archive%set_extent("nodes", mesh%n_nodes)
          call archive%set_extent("fcells", mesh%fracture%n_cells)
@@ -115,6 +116,7 @@ contains
             call problem%feed_wells(self%scene, error)
             if (.not. allocated(error)) call set_heat(self%scene, problem, self%heat, error)
             if (allocated(error)) return
+            if (allocated(self%heat)) call archive%compare_extent("heat", self%heat%n)
             call archive%compare_extent("blocks", model%regions%n_blocks)
             call archive%compare_extent("corners", model%regions%traction_count())
             call archive%compare_extent("pairs", size(model%connections, 2, kind=ik))

@@ -11,7 +11,7 @@ module twolevel_setup
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
    use twolevel_schedule, only: shortest_stage
-   use twolevel_stepping, only: first_step
+   use twolevel_stepping, only: first_step, step_scale
    implicit none(type, external)
    private
 
@@ -40,8 +40,9 @@ contains
       real(rk), parameter :: share = 1.0e-4_rk  ! first step of a stage, over its length [-]
 
       if (scene%discretization%layers /= "auto") return
-      first = first_step(scene%time)
-      if (scene%time%tolerance > 0.0_rk) first = min(first, share*shortest_stage(scene))
+      first = step_scale(scene%time)
+      if (scene%time%tolerance > 0.0_rk) first = min(first_step(scene%time), &
+                                                     share*shortest_stage(scene))
    end subroutine choose_first_step
 
    !> Replace a toughness of 0, or next to it, by one that changes nothing that a run resolves: K_eq

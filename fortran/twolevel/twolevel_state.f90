@@ -25,7 +25,7 @@ module twolevel_state
    use twolevel_setup, only: pressure_scale
    use twolevel_tips, only: find_tip_intensities
    use twolevel_schedule, only: follow_sides, last_switch
-   use twolevel_stepping, only: stepper_t
+   use twolevel_stepping, only: step_scale, stepper_t
    use twolevel_stimulation, only: stimulation_t
    use twolevel_value_errors, only: value_errors_t
    use twolevel_wells, only: rate
@@ -281,7 +281,7 @@ contains
 
       self%now%undrained = .true.
       call self%problem%model%equilibrate(self%problem%mesh, &
-                                          undrained_share*self%scene%time%longest(), &
+                                          undrained_share*step_scale(self%scene%time), &
                                           self%now%coarse, timers, report, error)
       if (.not. allocated(error)) call explain(self, 0.0_rk, report)
       call self%rest_wells()

@@ -32,18 +32,15 @@
 module twolevel_stepping
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
-   use scene_types, only: time_t
+   use scene_types, only: first_share, time_t
    implicit none(type, external)
    private
 
    public :: first_step, improve_by_body, improve_edge, improve_elements, refinement_t, stepper_t
-   public :: trial_t, withdraw_edge, withdraw_elements
+   public :: step_scale, trial_t, withdraw_edge, withdraw_elements
 
    !> relative change of pressure at new tips in a short step
    real(rk), parameter :: settled = 0.01_rk
-
-   !> First step with a tolerance, over the time of the scene: so short that little happens [-].
-   real(rk), parameter :: first_share = 1.0e-7_rk
 
    !> Largest advance of a tip in a step, over the length of its segment [-].
    real(rk), parameter :: most = 0.75_rk
@@ -138,15 +135,21 @@ module twolevel_stepping
 
 contains
 
-   !> The first step of a run, and the shortest of those without growth, limits of wells and errors
-   !! that cut it [s].
-   real(rk) function first_step(time)
+   !> First step with a tolerance [s].
+   pure real(rk) function first_step(time)
       type(time_t), intent(in) :: time
-      type(stepper_t) :: stepper
 
-      call stepper%begin(time)
-      first_step = stepper%next
+      first_step = merge(time%first, first_share*time%end, time%first > 0.0_rk)
+      if (time%step > 0.0_rk) first_step = min(first_step, time%step)
    end function first_step
+
+   !> The regular or longest step; without it the duration of which the first step is that share. It
+   !! does not follow from the end where the first step is given, as in a run that is continued [s].
+   pure real(rk) function step_scale(time)
+      type(time_t), intent(in) :: time
+
+      step_scale = merge(time%step, first_step(time)/first_share, time%step > 0.0_rk)
+   end function step_scale
 
    !> Set the control from the time settings of the scene.
    subroutine begin(self, time)
@@ -154,11 +157,10 @@ contains
       type(time_t), intent(in) :: time
 
       self%tolerance = time%tolerance
-      self%shortest = time%smallest_factor*time%longest()
-      self%longest = time%longest()
-      self%after_growth = time%share_after_growth*time%longest()
-      self%next = self%longest
-      if (self%tolerance > 0.0_rk) self%next = min(self%longest, first_share*time%end)
+      self%shortest = time%smallest_factor*step_scale(time)
+      if (time%step > 0.0_rk) self%longest = time%step
+      self%after_growth = time%share_after_growth*step_scale(time)
+      self%next = merge(first_step(time), self%longest, self%tolerance > 0.0_rk)
    end subroutine begin
 
    !> Length of the step to try; no step straddles a switch of the wells.

@@ -220,8 +220,8 @@ contains
       class(stimulation_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
 
-      call archive%list("faces_fracture", self%faces%fracture)
-      call archive%list("faces_s", self%faces%s)
+      call archive%list("faces_fracture", self%faces%fracture, "stimulated; 1:fractures")
+      call archive%list("faces_s", self%faces%s, "2, stimulated")
       call visit_fracture_mesh(archive, "fracture", self%fracture)
       call archive%list("jump", self%jump, "2, own_cells")
       call archive%item("rock_pressure", self%rock_pressure)

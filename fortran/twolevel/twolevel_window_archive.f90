@@ -39,7 +39,10 @@ contains
       if (self%mesh%n_cells > 0) call visit_model(self, archive, scene, tips, error)
       call archive%leave()
       if (.not. (archive%is_loading .and. allocated(self%made)) .or. allocated(error)) return
-      if (self%made%is_projected) call self%project(mesher, coarse, values, error)
+      if (.not. self%made%is_projected) return
+      call self%project(mesher, coarse, values, error)
+      if (allocated(error)) return
+      if (any(self%faces%coarse_cell < 1)) call archive%set_fault("cell_fracture")
    end subroutine visit
 
    subroutine visit_made(self, archive)

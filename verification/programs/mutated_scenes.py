@@ -3,6 +3,7 @@
     .venv/bin/python verification/programs/mutated_scenes.py check --count 2000000
     .venv/bin/python verification/programs/mutated_scenes.py processes --count 20000
     .venv/bin/python verification/programs/mutated_scenes.py runs --count 2000
+    .venv/bin/python verification/programs/mutated_scenes.py checkpoints --count 20000
 
 Each number stands for one mutated file of inputs/ (docs/sweeps.md). What is found wrong is told
 with its number; `--first NUMBER --count 1` does it again.
@@ -36,6 +37,7 @@ from wingcrack.sweeps.scene import scene_text  # noqa: E402
 BUILD = TOP / "build" / "release"
 SOLVER = BUILD / "fortran" / "app" / "wingcrack-solver"
 PROGRAM = BUILD / "verification" / "mutated_scenes"
+LOADER = BUILD / "verification" / "mutated_checkpoints"
 # Those that are whole by themselves: a table beside a scene does not go along when it is mutated.
 SCENES = [
     path for path in sorted((TOP / "inputs").rglob("*.nml")) if "schedule" not in path.read_text()
@@ -168,7 +170,7 @@ def call(folder: Path, limit: float, *arguments: str) -> subprocess.CompletedPro
 def shortened(path: Path) -> str:
     """Text of a scene with coarser cells, few steps and little growth."""
     scene = f90nml.read(path)
-    changes: dict[str, Any] = {"output.vtu": True}
+    changes: dict[str, Any] = {"output.vtu": True, "output.checkpoint_states": 1}
     size = 0.1  # of the default sizes, which follow from the fractures [m]
     for level in ("coarse", "fe"):
         for name in ("size_fracture", "size_boundary"):
@@ -207,6 +209,45 @@ def run_short(first: int, count: int, scenes: list[Path]) -> Tally:
             elif outcome != "status 2":
                 print(f"{number}: {outcome}, {time.monotonic() - began:.1f} s", flush=True)
             shutil.rmtree(folder / "out", ignore_errors=True)
+    return tally
+
+
+def load_checkpoints(first: int, count: int, scenes: list[Path]) -> Tally:
+    """Load mutated checkpoints of short scenes; every tenth one goes on by a state."""
+    tally = Tally()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for path in scenes:
+            run = folder / f"{path.parent.name}_{path.stem}"
+            (folder / "scene.nml").write_text(shortened(path))
+            subprocess.run(
+                [SOLVER, "run", "scene.nml", "--out", run, "--quiet"],
+                cwd=folder,
+                capture_output=True,
+                check=False,
+            )
+            if (run / "checkpoint_old.bin").exists():
+                (run / "checkpoint_old.bin").rename(run / "checkpoint.bin")
+            else:
+                shutil.rmtree(run, ignore_errors=True)
+        runs = sorted(path for path in folder.iterdir() if path.is_dir())
+        for begin in range(first, first + count, 1000):
+            end = min(begin + 1000, first + count)
+            done = subprocess.run(
+                [LOADER, str(begin), str(end - 1), "10", *runs],
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                errors="replace",
+                check=False,
+            )
+            for line in done.stderr.splitlines():
+                if line.startswith("fault "):
+                    tally.blame(int(line.split()[1].rstrip(":")), line)
+            for words in done.stdout.strip().split(", "):
+                number, what = words.split(" ", 1)
+                tally.counts[what] += int(number)
+            print(f"{end - first} checkpoints: {dict(tally.counts)}", flush=True)
     return tally
 
 
@@ -290,7 +331,12 @@ def files_fault(folder: Path, number: int, done: subprocess.CompletedProcess[str
 
 def main() -> int:
     """Do what the command line asks for; 1 if anything is wrong."""
-    how = {"check": check_in_process, "processes": check_by_program, "runs": run_short}
+    how = {
+        "check": check_in_process,
+        "processes": check_by_program,
+        "runs": run_short,
+        "checkpoints": load_checkpoints,
+    }
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("how", choices=how)
     parser.add_argument("--first", type=int, default=1, help="number of the first file")

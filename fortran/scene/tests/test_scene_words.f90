@@ -1,5 +1,6 @@
 !> Numbers as texts are exact and short; likeness of words; what a name may be.
 program test_scene_words
+   use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_value
    use base_kinds, only: lk, rk
    use scene_words, only: edit_distance, is_identifier, lower_case, nearest_word, real_text, &
                           rounded_text
@@ -24,6 +25,7 @@ contains
       call checks%is_true(real_text(0.0_rk) == "0.0", "zero")
       call checks%is_true(real_text(-0.0_rk) == "-0.0", "negative zero keeps its sign")
       call checks%is_true(real_text(0.1_rk) == "0.1", "0.1")
+      call checks%is_true(real_text(ieee_value(0.0_rk, ieee_negative_inf)) == "-inf", "infinite")
       call checks%is_true(real_text(-20.0e6_rk) == "-2.0e7", "-2.0e7")
       call checks%is_true(real_text(97200.0_rk) == "97200.0", "97200.0")
       call checks%is_true(real_text(1234567.0_rk) == "1234567.0", "1234567.0")

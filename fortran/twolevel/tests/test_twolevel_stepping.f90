@@ -4,7 +4,7 @@ program test_twolevel_stepping
    use scene_types, only: injection_t, scene_t, time_t
    use testing_checks, only: checks_t
    use twolevel_schedule, only: next_switch
-   use twolevel_stepping, only: stepper_t, trial_t
+   use twolevel_stepping, only: step_scale, stepper_t, trial_t
    use twolevel_wells, only: rate
    implicit none(type, external)
 
@@ -16,6 +16,7 @@ program test_twolevel_stepping
    type(checks_t) :: checks
 
    call test_switches()
+   call test_first_step()
    call test_cuts()
    call test_error_in_time()
    call test_decay()
@@ -43,6 +44,22 @@ contains
       call checks%is_close(stepper%step_to(100.0_rk + 1.0e-8_rk), 100.0_rk + 1.0e-8_rk, 0.0_rk, &
                            "no tiny step before it")
    end subroutine test_switches
+
+   !> With the first step given no length follows from the end.
+   subroutine test_first_step()
+      type(stepper_t) :: stepper
+      type(time_t) :: time
+      integer :: i
+
+      do i = 1, 2
+         time = time_t(end=10.0_rk**(3*i), tolerance=0.01_rk, first=1.0e-3_rk, &
+                       smallest_factor=1.0e-9_rk)
+         call stepper%begin(time)
+         call checks%is_close(stepper%step_to(10.0_rk), 1.0e-3_rk, 0.0_rk, "the first step")
+         call checks%is_close(stepper%shortest, 1.0e-5_rk, 1.0e-20_rk, "the shortest one")
+         call checks%is_close(step_scale(time), 1.0e4_rk, 1.0e-10_rk, "what lengths are shares of")
+      end do
+   end subroutine test_first_step
 
    !> Steps are halved, and doubled again once they are accepted, up to the regular one.
    subroutine test_cuts()
