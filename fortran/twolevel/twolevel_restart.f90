@@ -77,7 +77,7 @@ contains
       call visit_windows(archive, "reference", self%reference, self%now%reference%tip, self, error)
       if (allocated(error) .or. allocated(archive%fault)) return
       call visit_control(archive, self)
-      if (allocated(self%heat)) self%summary%heat = heat_row(self%now%heat)
+      if (allocated(self%problem%heat)) self%summary%heat = heat_row(self%now%heat)
       if (archive%is_loading) call go_beyond_end(self)
    end subroutine visit
 
@@ -113,7 +113,7 @@ contains
             call model%set_mesh(problem%mesh, self%scene, timers, error)
             if (allocated(error)) return
             call problem%feed_wells(self%scene, error)
-            if (.not. allocated(error)) call set_heat(self%scene, problem, self%heat, error)
+            if (.not. allocated(error)) call set_heat(self%scene, problem, error)
             if (allocated(error)) return
             call archive%compare_extent("blocks", model%regions%n_blocks)
             call archive%compare_extent("corners", model%regions%traction_count())
