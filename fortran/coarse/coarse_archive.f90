@@ -122,7 +122,6 @@ contains
       call archive%list("joint_side_pressure", model%joints%side_pressure, "joints")
       call archive%list("ends_viscous", model%ends%viscous, "mesh_tips ?")
       call archive%list("source", model%source)
-      call archive%list("temperature", model%rock%temperature, "cells ?")
       call archive%leave()
    end subroutine visit_step_values
 

@@ -12,7 +12,8 @@
 !!
 !! A rise theta of the temperature above the initial one gives the stress -K_dr b_s theta I, which
 !! is that of a pressure p_T = K_dr b_s theta/alpha in the stress-strain relation, and lowers the
-!! fluid content by b_m theta, b_m = phi b_f + (alpha - phi) b_s.
+!! fluid content by b_m theta, b_m = phi b_f + (alpha - phi) b_s. Rock with alpha = 0 has no
+!! storage, which scenes are refused for.
 module coarse_rock
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
@@ -331,8 +332,8 @@ contains
       content_per_heat = self%biot*self%heat_stress/(self%lame + self%shear) - self%heat_content
    end function content_per_heat
 
-   !> Fluid content per pressure at constant stress in one direction and no strain in the others, as in layers and
-   !! around wells, S + alpha^2/(lambda + 2 G) [1/Pa].
+   !> Fluid content per pressure at constant stress in one direction and no strain in the others, as
+   !! in layers and around wells, S + alpha^2/(lambda + 2 G) [1/Pa].
    elemental real(rk) function uniaxial_storage(self)
       class(solid_t), intent(in) :: self
 

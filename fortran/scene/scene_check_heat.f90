@@ -62,8 +62,6 @@ contains
                      "&growth to .false.")
          return
       end if
-      call check_expansion(sheet, scene, error)
-      if (allocated(error)) return
       do i = 1, size(scene%injections)
          record = sheet%find("injection", i)
          associate (well => scene%injections(i))
@@ -80,28 +78,6 @@ contains
          end associate
       end do
    end subroutine check_heat
-
-   !> The stress of temperatures acts as a pressure over the Biot coefficient (coarse_rock).
-   pure subroutine check_expansion(sheet, scene, error)
-      type(sheet_t), intent(in) :: sheet
-      type(scene_t), intent(in) :: scene
-      type(error_t), allocatable, intent(out) :: error
-      character(len=*), parameter :: needs = "is 0, but rock with heat_expansion must have a "// &
-                                     "positive one, however small"
-      integer :: i
-
-      if (scene%material%heat_expansion > 0.0_rk .and. .not. scene%material%biot > 0.0_rk) then
-         call refuse(error, sheet, sheet%find("material"), "biot", needs)
-      end if
-      if (.not. allocated(scene%regions)) return
-      do i = 1, size(scene%regions)
-         if (allocated(error)) return
-         associate (rock => scene%regions(i)%material)
-            if (rock%biot > 0.0_rk .or. .not. rock%heat_expansion > 0.0_rk) cycle
-         end associate
-         call refuse(error, sheet, sheet%find("region", i), "biot", needs)
-      end do
-   end subroutine check_expansion
 
    !> No fluid of the well can enter the body.
    pure logical function only_extracts(well)

@@ -295,7 +295,6 @@ contains
          call exchange(record, "checkpoint", scene%output%checkpoint)
          call exchange(record, "checkpoint_states", scene%output%checkpoint_states)
       case default  ! a repeated group, see exchange_group
-         return
       end select
    end subroutine exchange_single
 

@@ -81,8 +81,8 @@ contains
       end associate
    end subroutine begin_heat
 
-   !> The temperatures that act in a step of the coarse level to come: those at its end, if the fluid
-   !! flows as in the last step.
+   !> The temperatures that act in the step to come: those at its end, if the fluid flows as in the
+   !! last step.
    subroutine predict_heat(scene, state, now, dt, problem, error)
       type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state  !< before the step

@@ -125,6 +125,9 @@ contains
             if (allocated(archive%fault)) return
          end if
          call visit_step_values(archive, "step", model)
+         if (allocated(problem%heat)) then
+            call archive%list("temperature", model%rock%temperature, "cells ?")
+         end if
          call visit_factors(archive, "factors", model, problem%mesh, error)
          if (allocated(error)) return
          call visit_values(archive, "values", problem%values)

@@ -177,10 +177,9 @@ contains
          if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
          if (allocated(self%problem%heat)) then
             call summary%use_feature("heat: conduction, and carried by the fluid")
-            call summary%leave_out_feature("thermal stress and viscosity by temperature")
-            if (scene%growth%intensities) then
-               call summary%warn("stress intensity factors are without thermal stress")
-            end if
+            call summary%note(any(self%problem%model%rock%heat_stress > 0.0_rk), "thermal stress", &
+                              "no thermal stress: heat_expansion is not given")
+            call summary%leave_out_feature("viscosity by temperature")
          end if
          if (scene%discretization%chosen) then
             call summary%use_feature("default sizes: "//sizes_text(scene))
