@@ -54,7 +54,7 @@ def varied(*changes: tuple[str, str]) -> str:
 def with_heat(scene: str) -> str:
     """Give a scene like SCENE with heat: cold water in hot rock."""
     for group, words in (
-        ("material", "heat_conductivity = 2.6, heat_capacity = 2.2e6,"),
+        ("material", "heat_conductivity = 2.6, heat_capacity = 2.2e6, heat_expansion = 2.4e-5,"),
         ("fluid", "heat_capacity = 4.2e6,"),
         ("injection", "temperature = 50.0,"),
     ):

@@ -117,7 +117,6 @@ MADE_AGAIN = {
         "last": "the next step begins with it",
         "kept_problem": _EMPTY,
         "load_pressure": _RULE,
-        "heat": _RULE,
     },
     "summary_t": {"heat": "that of the state"},
     "matrix_fields_t": {"temperature": _HEAT},
@@ -128,7 +127,7 @@ MADE_AGAIN = {
         "end_time": _RULE,
     },
     "front_t": {"rules": _RULE},
-    "coarse_problem_t": _each("joint_share rock_cell entries well_of", _RULE),
+    "coarse_problem_t": _each("joint_share rock_cell entries well_of heat heat_field", _RULE),
     "coarse_model_t": _each("rock sides in_situ regions matrix layers drained", _RULE)
     | {"rock_resistance": _RULE, "weight": _RULE},
     "condensed_t": _each("is_full stiffness coupling body normal length n", _RULE)

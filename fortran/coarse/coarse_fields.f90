@@ -63,6 +63,8 @@ contains
             content(c) = matrix%storage(c)*unknowns(3, c) &
                          + solid%biot*cell_area(mesh, c)*mean_trace(regions, tractions, c) &
                          /(2.0_rk*(solid%lame + solid%shear))
+            if (allocated(rock%temperature)) content(c) = content(c) &
+               & + solid%content_per_heat()*rock%temperature(c)*cell_area(mesh, c)
          end associate
       end do
       !$omp end parallel do
@@ -160,7 +162,8 @@ contains
       gradient(1, 2, :) = gradient(1, 2, :) - rotation
    end subroutine corner_gradients
 
-   !> Strain (without rotation) at a corner: eps = A (sigma + alpha p I), and the vertex' rotation.
+   !> Strain (without rotation) at a corner: eps = A (sigma + (alpha p + K_dr b_s theta) I), and the
+   !! vertex' rotation.
    pure subroutine corner_strain(rock, regions, unknowns, tractions, cell, k, strain, rotation)
       type(rock_t), intent(in) :: rock
       type(regions_t), intent(in) :: regions
@@ -175,6 +178,8 @@ contains
       call corner_stress(regions, tractions, cell, k, stress, rotation)
       do i = 1, 2
          stress(i, i) = stress(i, i) + rock%biot(at)*unknowns(3, cell)
+         if (allocated(rock%temperature)) stress(i, i) = stress(i, i) &
+            & + rock%heat_stress(at)*rock%temperature(cell)
       end do
       nu = rock%lame(at)/(2.0_rk*(rock%lame(at) + rock%shear(at)))
       strain = stress

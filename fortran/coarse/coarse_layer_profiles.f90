@@ -41,7 +41,7 @@ contains
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
       real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
       real(rk), intent(in) :: xy(2)  !< [m]
-      integer(ik), intent(in) :: cell  !< in which the point lies
+      integer(ik), intent(in) :: cell  !< in which the point lies, or next to it
       real(rk), intent(in) :: at_nodes(3)  !< pressures at the nodes of this cell [Pa]
       real(rk), intent(inout) :: pressure  !< [Pa]
       real(rk) :: along(2), at_face, distance(3), height, nearest, normal(2), offset(2), start(2)
@@ -70,7 +70,7 @@ contains
             if (layers%at(1, l) > 0) at_face = unknowns(3, layers%at(1, l)/3)
             pressure = along_chain([0.0_rk, chain%place, distance(far)], &
                                    [at_face, inner(:n - 1, l), unknowns(1, layer_block(mesh, l)), &
-                                    at_nodes(far)], nearest)
+                                    at_nodes(far)], min(nearest, distance(far)))
          end associate
       end do
    end subroutine find_pressure

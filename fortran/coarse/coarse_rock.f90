@@ -9,11 +9,16 @@
 !! energy of the true body for a stress that is uniform in each cell. It is positive definite as
 !! those of the rocks are. Layers in series are exact; layers in parallel are too soft in the cut
 !! cells.
+!!
+!! A rise theta of the temperature above the initial one gives the stress -K_dr b_s theta I, which
+!! is that of a pressure p_T = K_dr b_s theta/alpha in the stress-strain relation, and lowers the
+!! fluid content by b_m theta, b_m = phi b_f + (alpha - phi) b_s. Rock with alpha = 0 has no
+!! storage, which scenes are refused for.
 module coarse_rock
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_value
    use mesh_types, only: mesh_t
-   use scene_fluid_law, only: storage
+   use scene_fluid_law, only: bulk_modulus, storage
    use scene_types, only: fluid_t, material_t
    implicit none(type, external)
    private
@@ -28,6 +33,10 @@ module coarse_rock
       real(rk), allocatable :: lame(:)  !< first Lame constant, reduced for plane stress [Pa]
       real(rk), allocatable :: biot(:)  !< alpha of the stress in the plane [-]
       real(rk), allocatable :: storage(:)  !< S at fixed strain in the plane [1/Pa]
+      real(rk), allocatable :: heat_stress(:)  !< K_dr b_s in the plane [Pa/K]
+      real(rk), allocatable :: heat_content(:)  !< b_m in the plane [1/K]
+      !> (cells) rise above the initial one that acts now; unallocated: no thermal stress [K]
+      real(rk), allocatable :: temperature(:)
       !> Rocks of one stiffness have one number: across an outline between two of them, the rotation
       !! is discontinuous (coarse_regions).
       integer(ik), allocatable :: stiffness(:)
@@ -42,6 +51,8 @@ module coarse_rock
    contains
       procedure :: mobility_at
       procedure :: solid_at
+      procedure :: heat_pressure
+      procedure :: with_heat
    end type rock_t
 
    !> Poroelastic constants without those of flow, as in rock_t.
@@ -50,11 +61,14 @@ module coarse_rock
       real(rk) :: lame = 0.0_rk  !< [Pa]
       real(rk) :: biot = 0.0_rk  !< [-]
       real(rk) :: storage = 0.0_rk  !< [1/Pa]
+      real(rk) :: heat_stress = 0.0_rk  !< [Pa/K]
+      real(rk) :: heat_content = 0.0_rk  !< [1/K]
       integer(ik) :: stiffness = 0  !< as in rock_t
    contains
       procedure :: crack_modulus
       procedure :: poisson
       procedure :: storage_at_stress
+      procedure :: content_per_heat
       procedure :: uniaxial_storage
    end type solid_t
 
@@ -79,6 +93,9 @@ contains
       end associate
       rock%biot = material%biot
       rock%storage = storage(material, fluid)
+      rock%heat_stress = [bulk_modulus(material)*material%heat_expansion]
+      rock%heat_content = [material%porosity*fluid%heat_expansion &
+                           + (material%biot - material%porosity)*material%heat_expansion]
       if (material%plane_stress) then
          ! Without stress across the plane, strain follows there: e_zz = (alpha p - lambda (e_xx +
          ! e_yy))/(lambda + 2 G), lambda that of the solid.
@@ -87,6 +104,8 @@ contains
          end associate
          rock%biot = material%biot*2.0_rk*rock%shear/modulus
          rock%storage = rock%storage + material%biot**2/modulus
+         rock%heat_content = rock%heat_content - material%biot*rock%heat_stress/modulus
+         rock%heat_stress = rock%heat_stress*2.0_rk*rock%shear/modulus
       end if
       allocate (rock%permeability(3, 1), rock%resistivity(2, 2, 1))
       rock%permeability(:, 1) = [material%permeability_xx, material%permeability_yy, &
@@ -136,8 +155,36 @@ contains
 
       at = min(cell, size(self%shear, kind=ik))
       solid = solid_t(shear=self%shear(at), lame=self%lame(at), biot=self%biot(at), &
-                      storage=self%storage(at), stiffness=self%stiffness(at))
+                      storage=self%storage(at), heat_stress=self%heat_stress(at), &
+                      heat_content=self%heat_content(at), stiffness=self%stiffness(at))
    end function solid_at
+
+   !> The pressure p_T that has the stress of a rise of the temperature in a cell [Pa].
+   pure real(rk) function heat_pressure(self, cell, temperature)
+      class(rock_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: temperature  !< [K]
+      integer(ik) :: at
+
+      at = min(cell, size(self%shear, kind=ik))
+      heat_pressure = 0.0_rk
+      if (self%heat_stress(at) > 0.0_rk) heat_pressure = self%heat_stress(at)*temperature &
+                                                         /self%biot(at)
+   end function heat_pressure
+
+   !> The unknowns with p_T added to the pressures of the cells: what the stress follows from.
+   pure function with_heat(self, unknowns) result(acting)
+      class(rock_t), intent(in) :: self
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), allocatable :: acting(:, :)
+      integer(ik) :: c
+
+      acting = unknowns
+      if (.not. allocated(self%temperature)) return
+      do c = 1, size(self%temperature, kind=ik)
+         acting(3, c) = acting(3, c) + self%heat_pressure(c, self%temperature(c))
+      end do
+   end function with_heat
 
    !> Number the rocks by stiffness.
    pure subroutine number_stiffnesses(solid)
@@ -162,7 +209,9 @@ contains
 
       any_differ = any(solid%stiffness /= solid(1)%stiffness) .or. &
                    any(abs(solid%biot - solid(1)%biot) > 0.0_rk) .or. &
-                   any(abs(solid%storage - solid(1)%storage) > 0.0_rk)
+                   any(abs(solid%storage - solid(1)%storage) > 0.0_rk) .or. &
+                   any(abs(solid%heat_stress - solid(1)%heat_stress) > 0.0_rk) .or. &
+                   any(abs(solid%heat_content - solid(1)%heat_content) > 0.0_rk)
    end function any_differ
 
    !> Allocate separate constants for each cell.
@@ -171,8 +220,10 @@ contains
       type(rock_t), intent(inout) :: rock
 
       deallocate (rock%shear, rock%lame, rock%biot, rock%storage, rock%stiffness)
+      deallocate (rock%heat_stress, rock%heat_content)
       allocate (rock%shear(n_cells), rock%lame(n_cells), rock%biot(n_cells), &
-                rock%storage(n_cells), rock%stiffness(n_cells))
+                rock%storage(n_cells), rock%stiffness(n_cells), rock%heat_stress(n_cells), &
+                rock%heat_content(n_cells))
    end subroutine make_room
 
    !> Set the constants of a cell from its parts.
@@ -192,6 +243,8 @@ contains
       rock%lame(cell) = own%lame
       rock%biot(cell) = own%biot
       rock%storage(cell) = own%storage
+      rock%heat_stress(cell) = own%heat_stress
+      rock%heat_content(cell) = own%heat_content
       rock%stiffness(cell) = own%stiffness
    end subroutine set_solid
 
@@ -209,6 +262,10 @@ contains
       mean%lame = 2.0_rk*mean%shear*nu/(1.0_rk - 2.0_rk*nu)
       mean%biot = 2.0_rk*(mean%lame + mean%shear)*by_pressure
       mean%storage = content - mean%biot**2/(mean%lame + mean%shear)
+      mean%heat_stress = 2.0_rk*(mean%lame + mean%shear) &
+                         *sum(part*solid%heat_stress/(2.0_rk*(solid%lame + solid%shear)))
+      mean%heat_content = mean%biot*mean%heat_stress/(mean%lame + mean%shear) &
+                          - sum(part*solid%content_per_heat())
       mean%stiffness = solid(maxloc(part, dim=1))%stiffness
    end function mixed
 
@@ -268,8 +325,15 @@ contains
       storage_at_stress = self%storage + self%biot**2/(self%lame + self%shear)
    end function storage_at_stress
 
-   !> The same at constant stress in one direction and no strain in the others, as in layers and
-   !! around wells, S + alpha^2/(lambda + 2 G) [1/Pa].
+   !> Fluid content per rise of the temperature at constant stress in the plane [1/K].
+   elemental real(rk) function content_per_heat(self)
+      class(solid_t), intent(in) :: self
+
+      content_per_heat = self%biot*self%heat_stress/(self%lame + self%shear) - self%heat_content
+   end function content_per_heat
+
+   !> Fluid content per pressure at constant stress in one direction and no strain in the others, as
+   !! in layers and around wells, S + alpha^2/(lambda + 2 G) [1/Pa].
    elemental real(rk) function uniaxial_storage(self)
       class(solid_t), intent(in) :: self
 

@@ -11,7 +11,9 @@ submodule(coarse_model) coarse_steps
    use coarse_newton, only: solve_fractures
    use coarse_state, only: go_back
    use coarse_tips, only: dampers, jumps_of, place_tips, tip_springs
+   use coarse_rock, only: solid_t
    use coarse_wells, only: wells_t
+   use mesh_geometry, only: cell_area
    implicit none(type, external)
 
 contains
@@ -163,7 +165,29 @@ contains
       if (allocated(self%weight)) then
          load(:2, :mesh%n_cells) = load(:2, :mesh%n_cells) + self%weight
       end if
+      if (allocated(self%rock%temperature)) call add_heat_load(self, mesh, load)
    end subroutine find_load
+
+   !> Add the stress of the temperatures, and the fluid that they press out of the pores.
+   subroutine add_heat_load(self, mesh, load)
+      class(coarse_model_t), intent(in) :: self
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(inout) :: load(:, :)  !< (3, n_blocks) [N/m], [m2]
+      real(rk), allocatable :: acting(:, :)
+      type(solid_t) :: solid
+      integer(ik) :: c
+
+      allocate (acting, mold=load)
+      acting = 0.0_rk
+      acting = self%rock%with_heat(acting)
+      load = load - self%matrix%elastic_forces(acting)
+      do c = 1, mesh%n_cells
+         solid = self%rock%solid_at(c)
+         load(3, c) = load(3, c) - cell_area(mesh, c)*(solid%storage*acting(3, c) &
+                                                       + solid%heat_content &
+                                                       *self%rock%temperature(c))
+      end do
+   end subroutine add_heat_load
 
    !> Add the loads of dampers and of a stress in situ on the faces.
    subroutine add_face_loads(self, mesh, settings, dt, jump, load)
@@ -240,7 +264,7 @@ contains
       if (allocated(error)) return
       call timers%start(phase_assemble)
       if (self%layers%n > 0) call self%layers%update(state%unknowns, state%layer)
-      call corner_tractions(self%regions, state%unknowns, state%tractions)
+      call corner_tractions(self%regions, self%rock%with_heat(state%unknowns), state%tractions)
       call cell_contents(mesh, self%rock, self%regions, self%matrix, state%unknowns, &
                          state%tractions, state%content)
       state%time = state%time + dt

@@ -80,6 +80,7 @@ contains
       type(joints_t), intent(in) :: joints
       real(rk), intent(in) :: first  !< [s]
       type(error_t), allocatable, intent(out) :: error
+      integer(ik) :: l
 
       self%mesh = mesh
       self%heat = scene%heat
@@ -89,6 +90,12 @@ contains
       self%sides%temperature = self%sides%temperature - self%heat%temperature
       self%rock = thermal_rock(scene, mesh)
       call place_layers(self%mesh, self%rock, self%sides, first, self%layers, finer)
+      do l = 1, self%layers%n
+         if (self%layers%fracture_cell(l) > 0) cycle
+         ! In the rise above the initial temperatures (heat_field)
+         self%layers%given(l) = self%sides(self%layers%side(l))%temperature - self%undisturbed( &
+                                0.5_rk*sum(mesh%xy(2, mesh%face_nodes(:, self%mesh%layer_face(l)))))
+      end do
       call find_regions(self%mesh, self%regions)
       call number_unknowns(self, joints)
       call conduct(self, error)

@@ -143,6 +143,8 @@ contains
                substep%rhs(i) = substep%rhs(i) + ab(1)*(external%temperature - before(i))
             end associate
          end do
+         ! Flows of another step, as for a step to come, may take out more fluid than there is.
+         substep%capacity = max(substep%capacity, 0.0_rk)
          diagonal = diagonal + substep%capacity
       end associate
    end subroutine assemble

@@ -31,7 +31,7 @@ contains
                   if (record%values(item)%is_set) then
                      call refuse(error, sheet, i, trim(rule%name), "is given, but the scene "// &
                                  "has no group &"//trim(rule%only_with))
-                  else if (any(rule%group == ["material    ", "fluid       "])) then
+                  else if (rule%absent == "no &heat") then
                      call refuse(error, sheet, i, trim(rule%name), "is missing but must be "// &
                                  "given with &"//trim(rule%only_with))
                   end if

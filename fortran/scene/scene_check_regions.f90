@@ -19,10 +19,11 @@ module scene_check_regions
    public :: check_given_regions, check_regions
 
    !> Names of which a region must give at least one.
-   character(len=17), parameter :: of_rock(10) = [character(len=17) :: &
+   character(len=17), parameter :: of_rock(11) = [character(len=17) :: &
                                            "young", "poisson", "biot", "porosity", "permeability", &
                                                   "permeability_xx", "density", "toughness", &
-                                                  "heat_capacity", "heat_conductivity"]
+                                                  "heat_capacity", "heat_conductivity", &
+                                                  "heat_expansion"]
    !> Largest ratio of Young's moduli of adjacent rocks, limited by rounding [-].
    real(rk), parameter :: stiffest = 1.0e9_rk
    real(rk), parameter :: most_contrast = 1.0e12_rk  !< largest ratio of permeabilities [-]
@@ -46,7 +47,7 @@ contains
             call refuse(error, sheet, i, "name", "is given, but the region has no rock "// &
                         "properties: it must have at least one of young, poisson, biot, "// &
                         "porosity, permeability, density, toughness, heat_capacity, "// &
-                        "heat_conductivity")
+                        "heat_conductivity, heat_expansion")
             return
          end if
          do axis = 1, 2

@@ -296,7 +296,6 @@ contains
          call exchange(record, "checkpoint", scene%output%checkpoint)
          call exchange(record, "checkpoint_states", scene%output%checkpoint_states)
       case default  ! a repeated group, see exchange_group
-         return
       end select
    end subroutine exchange_single
 
@@ -309,6 +308,7 @@ contains
       call exchange(record, "viscosity", fluid%viscosity)
       call exchange(record, "density", fluid%density, nothing=0.0_rk)
       call exchange(record, "heat_capacity", fluid%heat_capacity, nothing=0.0_rk)
+      call exchange(record, "heat_expansion", fluid%heat_expansion, nothing=0.0_rk)
       call exchange(record, "vapour_pressure", fluid%vapour_pressure, nothing=-unlimited)
       call exchange(record, "viscosity_law", fluid%viscosity_law)
       call exchange(record, "viscosity_exponent", fluid%viscosity_exponent)

@@ -205,6 +205,7 @@ contains
       call exchange(record, "density", material%density, nothing=0.0_rk)
       call exchange(record, "heat_capacity", material%heat_capacity, nothing=0.0_rk)
       call exchange(record, "heat_conductivity", material%heat_conductivity, nothing=0.0_rk)
+      call exchange(record, "heat_expansion", material%heat_expansion, nothing=0.0_rk)
       call exchange(record, "toughness", material%toughness, nothing=huge(1.0_rk))
       call exchange(record, "radiation_damping", material%radiation_damping)
       plane = merge("stress", "strain", material%plane_stress)
@@ -238,6 +239,7 @@ contains
             own%toughness = not_given
             own%heat_capacity = not_given
             own%heat_conductivity = not_given
+            own%heat_expansion = not_given
          end if
          call exchange(record, "young", own%young)
          call exchange(record, "poisson", own%poisson)
@@ -248,6 +250,7 @@ contains
          call exchange(record, "toughness", own%toughness, nothing=huge(1.0_rk))
          call exchange(record, "heat_capacity", own%heat_capacity, nothing=0.0_rk)
          call exchange(record, "heat_conductivity", own%heat_conductivity, nothing=0.0_rk)
+         call exchange(record, "heat_expansion", own%heat_expansion, nothing=0.0_rk)
       end associate
    end subroutine exchange_region
 

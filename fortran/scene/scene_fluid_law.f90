@@ -18,8 +18,8 @@ module scene_fluid_law
    implicit none(type, external)
    private
 
-   public :: fluid_law_t, has_law, least_compressibility, new_fluid_law, skempton, storage
-   public :: strained_storage
+   public :: bulk_modulus, fluid_law_t, has_law, least_compressibility, new_fluid_law, skempton
+   public :: storage, strained_storage
 
    !> Range of an exponential law, as a logarithm of its change: values remain finite in every
    !! iteration [-].

@@ -309,6 +309,7 @@ contains
             call take(own%toughness, all%toughness)
             call take(own%heat_capacity, all%heat_capacity)
             call take(own%heat_conductivity, all%heat_conductivity)
+            call take(own%heat_expansion, all%heat_expansion)
             if (.not. own%permeability_xx > 0.0_rk) cycle
             all%permeability_xx = own%permeability_xx
             all%permeability_yy = own%permeability_yy

@@ -55,6 +55,9 @@ module scene_parameter_table
       parameter_t("material", "heat_conductivity", unit="W/m/K", absent="no &heat", &
          range=positive, scenes=in_fluid, only_with="heat", &
          meaning="Heat conductivity, with the pore fluid"), &
+      parameter_t("material", "heat_expansion", unit="1/K", absent="none", &
+         range=at_least_zero, scenes=in_fluid, only_with="heat", &
+         meaning="Thermal expansion of volume of the solid, three times that of length"), &
       parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
          meaning="Compressibility c_p"), &
       parameter_t("fluid", "viscosity", unit="Pa s", need=need_always, range=positive, &
@@ -91,6 +94,8 @@ module scene_parameter_table
          meaning="Densities at these pressures, not decreasing; only ratios matter"), &
       parameter_t("fluid", "heat_capacity", unit="J/m3/K", absent="no &heat", range=positive, &
          only_with="heat", meaning="Heat capacity per volume at the reference density"), &
+      parameter_t("fluid", "heat_expansion", unit="1/K", absent="none", only_with="heat", &
+         meaning="Thermal expansion of volume, in the pores"), &
       parameter_t("region", "name", kind_name, need=need_always, &
          meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
@@ -143,7 +148,10 @@ module scene_parameter_table
          meaning="Heat capacity per volume"), &
       parameter_t("region", "heat_conductivity", unit="W/m/K", absent="that of &material", &
          derived=.true., range=positive, scenes=in_fluid, only_with="heat", &
-         meaning="Heat conductivity")]
+         meaning="Heat conductivity"), &
+      parameter_t("region", "heat_expansion", unit="1/K", absent="that of &material", &
+         derived=.true., range=at_least_zero, scenes=in_fluid, only_with="heat", &
+         meaning="Thermal expansion of volume of the solid")]
 
    type(parameter_t), parameter :: fracture_parameters(*) = [ &
       parameter_t("fracture", "name", kind_name, need=need_always, &

@@ -33,12 +33,12 @@ module scene_types
       real(rk) :: poisson = 0.0_rk  !< Poisson's ratio [-]
       real(rk) :: biot = 0.0_rk  !< Biot's coefficient [-]
       real(rk) :: porosity = 0.0_rk  !< [-]
-      real(rk) :: permeability_xx = 0.0_rk  !< [m2]
-      real(rk) :: permeability_yy = 0.0_rk  !< [m2]
+      real(rk) :: permeability_xx = 0.0_rk, permeability_yy = 0.0_rk  !< [m2]
       real(rk) :: permeability_xy = 0.0_rk  !< [m2]
       real(rk) :: density = 0.0_rk  !< density with the pore fluid [kg/m3]
       real(rk) :: heat_capacity = 0.0_rk  !< with the pore fluid [J/(m3 K)]
       real(rk) :: heat_conductivity = 0.0_rk  !< [W/(m K)]
+      real(rk) :: heat_expansion = 0.0_rk  !< of the solid's volume, b_s [1/K]
       real(rk) :: toughness = huge(1.0_rk)  !< K_IC [Pa m^1/2]
       real(rk) :: radiation_damping = 0.0_rk  !< eta = G/(2 c_s) [Pa s/m]
       logical :: plane_stress = .false.
@@ -66,6 +66,7 @@ module scene_types
       real(rk) :: viscosity = 0.0_rk  !< mu [Pa s]
       real(rk) :: density = 0.0_rk  !< density; 0: no weight [kg/m3]
       real(rk) :: heat_capacity = 0.0_rk  !< at the reference density [J/(m3 K)]
+      real(rk) :: heat_expansion = 0.0_rk  !< of its volume, b_f [1/K]
       real(rk) :: vapour_pressure = -huge(1.0_rk)  !< lowest pressure in fractures [Pa]
       ! In fractures, as functions of pressure (scene_fluid_law):
       character(len=name_length) :: viscosity_law = "constant"  !< or "exponential", "table"

@@ -54,7 +54,7 @@ contains
          call model%condensed%expand(q, force, unknowns, error)
          if (allocated(error)) return
          unknowns = unknowns + state%unknowns
-         call corner_tractions(model%regions, unknowns, tractions)
+         call corner_tractions(model%regions, model%rock%with_heat(unknowns), tractions)
          call nodal_fields(problem%mesh, model%rock, model%regions, unknowns, tractions, &
                            curved=displacement, gradients=gradient)
       end associate

@@ -4,6 +4,7 @@ module twolevel_heat
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_time
    use coarse_state, only: state_t
+   use heat_field, only: new_field
    use heat_flows, only: set_flows
    use heat_links, only: external_t
    use heat_model, only: heat_model_t
@@ -18,7 +19,8 @@ module twolevel_heat
    implicit none(type, external)
    private
 
-   public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, set_heat, warn_of_heat
+   public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, predict_heat, set_heat
+   public :: warn_of_heat
 
 contains
 
@@ -34,49 +36,86 @@ contains
    end function first_substep
 
    !> Discretize heat on the mesh of a problem.
-   subroutine set_heat(scene, problem, heat, error)
+   subroutine set_heat(scene, problem, error)
       type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(heat_model_t), allocatable, intent(inout) :: heat
+      type(coarse_problem_t), intent(inout) :: problem
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. allocated(scene%heat)) return
-      allocate (heat)
-      call heat%set_mesh(problem%mesh, scene, problem%model%connections, problem%model%joints, &
-                         first_substep(scene), error)
+      allocate (problem%heat)
+      call problem%heat%set_mesh(problem%mesh, scene, problem%model%connections, &
+                                 problem%model%joints, first_substep(scene), error)
    end subroutine set_heat
 
    !> Advance heat by an accepted step of the coarse level; before the first one, begin.
-   subroutine follow_heat(scene, problem, before, after, heat, state, error)
+   subroutine follow_heat(scene, before, after, problem, now, error)
       type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: before, after
-      type(heat_model_t), allocatable, intent(inout) :: heat
-      type(heat_state_t), intent(inout) :: state
+      type(coarse_problem_t), intent(inout) :: problem
+      type(heat_state_t), intent(inout) :: now
       type(error_t), allocatable, intent(out) :: error
-      type(state_t) :: first
+      real(rk) :: dt
 
-      if (.not. allocated(heat)) return
-      associate (cell_s => problem%mesh%fracture%cell_s, dt => after%time - before%time)
-         if (.not. allocated(state%temperature)) then
-            first = before
-            if (.not. dt > 0.0_rk) first = after
-            call heat%begin(first%aperture - first%void, cell_s(2, :) - cell_s(1, :), &
-                            first_substep(scene), size(scene%injections), &
-                            state)
-         end if
-         if (.not. dt > same_time*after%time) return
-         call set_flows(heat, problem%mesh, problem%model, after, &
-                        well_flows(scene, problem, heat, before%time, after))
-         call advance_heat(heat, dt, state, error)
-      end associate
+      if (.not. allocated(problem%heat)) return
+      dt = after%time - before%time
+      if (dt > 0.0_rk) then
+         call begin_heat(scene, before, problem, now)
+      else
+         call begin_heat(scene, after, problem, now)
+      end if
+      if (.not. dt > same_time*after%time) return
+      call set_flows(problem%heat, problem%mesh, problem%model, after, &
+                     well_flows(scene, problem, before%time, after))
+      call advance_heat(problem%heat, dt, now, error)
    end subroutine follow_heat
 
+   !> Set the heat of the first state.
+   subroutine begin_heat(scene, state, problem, now)
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: state
+      type(coarse_problem_t), intent(in) :: problem
+      type(heat_state_t), intent(inout) :: now
+
+      if (allocated(now%temperature)) return
+      associate (cell_s => problem%mesh%fracture%cell_s)
+         call problem%heat%begin(state%aperture - state%void, cell_s(2, :) - cell_s(1, :), &
+                                 first_substep(scene), size(scene%injections), now)
+      end associate
+   end subroutine begin_heat
+
+   !> The temperatures that act in the step to come: those at its end, if the fluid flows as in the
+   !! last step.
+   subroutine predict_heat(scene, state, now, dt, problem, error)
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: state  !< before the step
+      type(heat_state_t), intent(in) :: now
+      real(rk), intent(in) :: dt  !< [s]
+      type(coarse_problem_t), intent(inout) :: problem
+      type(error_t), allocatable, intent(out) :: error
+      type(heat_state_t) :: rise
+      type(state_t) :: after
+
+      if (.not. allocated(problem%heat)) return
+      associate (heat => problem%heat, rock => problem%model%rock)
+         if (.not. any(abs([rock%heat_stress, rock%heat_content]) > 0.0_rk)) return
+         after = state
+         after%time = state%time + dt
+         call set_flows(heat, problem%mesh, problem%model, state, &
+                        well_flows(scene, problem, state%time, after))
+         rise = now
+         call begin_heat(scene, state, problem, rise)
+         call advance_heat(heat, dt, rise, error)
+         if (allocated(error)) return
+         rise%temperature = rise%temperature - heat%initial
+         rock%temperature = heat%cell_means(rise)
+         problem%heat_field = new_field(heat, rise%temperature)
+      end associate
+   end subroutine predict_heat
+
    !> What wells supply to fracture cells, joints and rock in a step.
-   function well_flows(scene, problem, heat, since, state) result(externals)
+   function well_flows(scene, problem, since, state) result(externals)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
-      type(heat_model_t), intent(in) :: heat
       real(rk), intent(in) :: since  !< start of the step [s]
       type(state_t), intent(in) :: state  !< after it
       type(external_t), allocatable :: externals(:)
@@ -87,18 +126,18 @@ contains
       do e = 1, size(problem%entries, kind=ik)
          external%well = problem%well_of(e)
          associate (well => scene%injections(external%well), &
-                    flow => heat%fluid_capacity*entry_flow(problem, e, since, state))
+                    flow => problem%heat%fluid_capacity*entry_flow(problem, e, since, state))
             external%temperature = temperature_of(well, 0.5_rk*(since + state%time)) &
-                                   - heat%heat%temperature
+                                   - problem%heat%heat%temperature
             if (well%fracture == 0) then
                call add(problem%rock_cell(external%well), flow)
                cycle
             end if
             do i = 1, size(problem%share, 1, kind=ik)
-               call add(heat%first_cell - 1 + i, flow*problem%share(i, e))
+               call add(problem%heat%first_cell - 1 + i, flow*problem%share(i, e))
             end do
             do j = 1, size(problem%joint_share, 1, kind=ik)
-               call add(heat%first_joint - 1 + j, flow*problem%joint_share(j, e))
+               call add(problem%heat%first_joint - 1 + j, flow*problem%joint_share(j, e))
             end do
          end associate
       end do

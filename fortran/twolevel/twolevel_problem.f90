@@ -17,6 +17,8 @@ module twolevel_problem
    use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t
    use scene_types, only: injection_t, scene_t
+   use heat_field, only: heat_field_t
+   use heat_model, only: heat_model_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
    use twolevel_wells, only: ask_wells, between_cells, control_wells, entries_of, feed_joints, &
@@ -37,6 +39,8 @@ module twolevel_problem
       real(rk), allocatable :: joint_share(:, :)  !< (joints, entries) of each entry's flow [-]
       !> (wells) cells of the wells in the rock; 0: other wells
       integer(ik), allocatable :: rock_cell(:)
+      type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
+      type(heat_field_t) :: heat_field  !< rise of the temperatures that acts in the present step
       type(coarse_values_t) :: values  !< values of the state in which tips were evaluated last
    contains
       procedure :: feed_wells

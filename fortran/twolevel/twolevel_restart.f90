@@ -78,7 +78,7 @@ contains
       call visit_windows(archive, "reference", self%reference, self%now%reference%tip, self, error)
       if (allocated(error) .or. allocated(archive%fault)) return
       call visit_control(archive, self)
-      if (allocated(self%heat)) self%summary%heat = heat_row(self%now%heat)
+      if (allocated(self%problem%heat)) self%summary%heat = heat_row(self%now%heat)
       if (archive%is_loading) call go_beyond_end(self)
    end subroutine visit
 
@@ -114,7 +114,7 @@ contains
             call model%set_mesh(problem%mesh, self%scene, timers, error)
             if (allocated(error)) return
             call problem%feed_wells(self%scene, error)
-            if (.not. allocated(error)) call set_heat(self%scene, problem, self%heat, error)
+            if (.not. allocated(error)) call set_heat(self%scene, problem, error)
             if (allocated(error)) return
             if (allocated(self%heat)) call archive%compare_extent("heat", self%heat%n)
             call archive%compare_extent("blocks", model%regions%n_blocks)
@@ -127,6 +127,9 @@ contains
             if (allocated(archive%fault)) return
          end if
          call visit_step_values(archive, "step", model)
+         if (allocated(problem%heat)) then
+            call archive%list("temperature", model%rock%temperature, "cells ?")
+         end if
          call visit_factors(archive, "factors", model, problem%mesh, error)
          if (allocated(error)) return
          call visit_values(archive, "values", problem%values)

@@ -75,7 +75,7 @@ contains
       allocate (self%now%grown(0), self%now%segment(size(self%tip)))
       call self%now%interaction%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
-      call set_heat(self%scene, self%problem, self%heat, error)
+      call set_heat(self%scene, self%problem, error)
    end subroutine mesh_levels
 
    !> Mesh the coarse level, with &adaptive again until the estimated error is small enough.
@@ -175,12 +175,11 @@ contains
             call summary%use_feature("stress in situ, hydrostatic")
          end if
          if (any(abs(scene%gravity) > 0.0_rk)) call summary%use_feature("gravity")
-         if (allocated(self%heat)) then
+         if (allocated(self%problem%heat)) then
             call summary%use_feature("heat: conduction, and carried by the fluid")
-            call summary%leave_out_feature("thermal stress and viscosity by temperature")
-            if (scene%growth%intensities) then
-               call summary%warn("stress intensity factors are without thermal stress")
-            end if
+            call summary%note(any(self%problem%model%rock%heat_stress > 0.0_rk), "thermal stress", &
+                              "no thermal stress: heat_expansion is not given")
+            call summary%leave_out_feature("viscosity by temperature")
          end if
          if (scene%discretization%chosen) then
             call summary%use_feature("default sizes: "//sizes_text(scene))

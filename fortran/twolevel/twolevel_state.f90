@@ -8,14 +8,13 @@ module twolevel_state
    use base_timers, only: phase_tips, timers_t
    use mesh_geometry, only: cell_area
    use coarse_state, only: state_t, step_report_t
-   use heat_model, only: heat_model_t
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use report_rows, only: history_row_t, probe_row_t
    use report_restart, only: restartable_t
    use report_simulation, only: snapshot_t
    use twolevel_field_errors, only: add_rock_errors, find_fracture_errors, note_joint_errors
-   use twolevel_heat, only: add_heat_fields, heat_row
+   use twolevel_heat, only: add_heat_fields, heat_row, predict_heat
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_pace, only: pace_t
@@ -73,7 +72,6 @@ module twolevel_state
       type(coarse_problem_t), allocatable :: kept_problem
       type(windows_t) :: windows
       type(windows_t) :: reference  !< the body as one window, with which the windows are compared
-      type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
       real(rk) :: load_pressure = 0.0_rk  !< largest pressure expected from the loads [Pa]
       !> largest number of coarse fracture cells for this comparison
       integer(ik) :: reference_most = 800
@@ -295,6 +293,8 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
+      call predict_heat(self%scene, self%now%coarse, self%now%heat, dt, self%problem, error)
+      if (allocated(error)) return
       call self%problem%advance(self%scene, dt, self%now%coarse, timers, report, error)
       if (allocated(error)) return
       call explain(self, dt, report)
@@ -467,7 +467,7 @@ contains
       call self%stimulation%describe(self%scene, self%start, self%front_state_t, self%problem, &
                                      self%now%coarse, row)
       row%error = self%value_errors%row
-      if (allocated(self%heat)) row%heat = heat_row(self%now%heat)
+      if (allocated(self%problem%heat)) row%heat = heat_row(self%now%heat)
       row%length_error = -1.0_rk
       row%well_pressure_error = -1.0_rk
       if (.not. states_errors(self%scene%growth)) return
@@ -504,7 +504,7 @@ contains
          fields%windows = self%windows%meshes(self%tip)
          if (size(fields%windows%tip) == 0) deallocate (fields%windows)
       end if
-      call add_heat_fields(self%heat, self%now%heat, fields)
+      call add_heat_fields(self%problem%heat, self%now%heat, fields)
    end subroutine snapshot
 
    !> Time of the present state [s].

@@ -94,8 +94,7 @@ contains
       real(rk), allocatable :: pressure(:)
 
       call book_change(self)
-      call follow_heat(self%scene, self%problem, self%before, self%now%coarse, self%heat, &
-                       self%now%heat, error)
+      call follow_heat(self%scene, self%before, self%now%coarse, self%problem, self%now%heat, error)
       if (allocated(error)) return
       self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
       row = self%history()
@@ -123,7 +122,7 @@ contains
       call note_well_rows(self)
       call watch_errors(self)
       self%summary%heat = row%heat
-      if (allocated(self%heat)) call warn_of_heat(self%now%heat, self%summary)
+      if (allocated(self%problem%heat)) call warn_of_heat(self%now%heat, self%summary)
       call note_state(self, row%mass_error_relative)
    end subroutine commit_step
 
@@ -466,7 +465,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
       call self%value_errors%note_wells(self%scene, self%problem, rows, self%now%stated_errors, &
                                         facts_of(self))
-      call add_well_temperatures(self%heat, self%now%heat, rows)
+      call add_well_temperatures(self%problem%heat, self%now%heat, rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
       if (.not. self%scene%has_entries()) return
       entries = entry_rows(self%problem, self%now%coarse)

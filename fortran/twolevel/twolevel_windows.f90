@@ -22,6 +22,7 @@ module twolevel_windows
    use twolevel_back_stress, only: back_stress_of
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window, only: window_t
+   use twolevel_window_heat, only: warm_window
    use twolevel_window_slot, only: renew, slot_t
    use twolevel_window_tip, only: window_tip_t
    use twolevel_windows_state, only: window_history_t, windows_state_t
@@ -262,6 +263,7 @@ contains
             if (allocated(error)) return
          end if
          call window%choose_tips(window%at > 0 .and. front%tip(window%serves)%is_loaded())
+         call warm_window(problem, window%model%mesh, window%map)
          call window%find_intensities(scene, problem%mesh, problem%values, state, seen, &
                                       known%history(w), error)
          if (allocated(error)) return

@@ -9,6 +9,7 @@ program test_heat_steps
    use base_kinds, only: ik, pi, rk
    use base_lists, only: inverted
    use base_timers, only: timers_t
+   use coarse_fields, only: cell_stresses
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
@@ -22,7 +23,7 @@ program test_heat_steps
    use sample_bodies, only: boxes, load_sides, mesh_square, porous_body, shake, straight_network, &
                             uniform_cells
    use scene_heat, only: heat_t
-   use scene_types, only: initial_t, scene_t
+   use scene_types, only: initial_t, material_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -39,6 +40,9 @@ program test_heat_steps
    call network(.true.)
    call network(.false.)
    call regions_in_series()
+   call thermal_stress(0.0_rk, .false.)
+   call thermal_stress(0.3_rk, .false.)
+   call thermal_stress(0.0_rk, .true.)
    call checks%finish()
 
 contains
@@ -58,17 +62,18 @@ contains
    end function hot_body
 
    !> The square as n by n boxes, without fractures, in a state without flow.
-   subroutine start_boxes(scene, n, mesh, model, state)
+   subroutine start_boxes(scene, n, mesh, model, state, as_drawn)
       type(scene_t), intent(in) :: scene
       integer(ik), intent(in) :: n
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
+      logical, intent(in), optional :: as_drawn  !< the nodes are not moved
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
       mesh = boxes(n)
-      call shake(mesh)
+      if (.not. present(as_drawn)) call shake(mesh)
       associate (no => mesh%fracture)
          allocate (no%cell_s(2, 0), no%cell_fracture(0), no%tip_point(0))
          allocate (no%tip_node(0), no%tip_fracture(0), no%tip_end(0))
@@ -279,5 +284,91 @@ contains
       call checks%is_true(all(pack(now%temperature, heat%place(1, :) < 0.8_rk) < 0.5_rk), &
                           "the drop lies in the right half")
    end subroutine regions_in_series
+
+   !> A temperature that rises without flow, uniform in a body (free and in plane stress, or held at
+   !! its sides) or in each of two layers that differ in all constants:
+   !!   plane stress and free: p = (b_m - alpha b_s) theta/(S + alpha^2/K),
+   !!   held: p = (b_m - alpha beta/M) theta/(S + alpha^2/M), beta = K b_s, M = K + 4/3 G,
+   !!   sigma_xx = -2 G/M (alpha p + beta theta), sigma_yy = 0.
+   !! Exact in the scheme, so to rounding (1e-9).
+   subroutine thermal_stress(contrast, is_free)
+      real(rk), intent(in) :: contrast  !< the rock below is softer by this share; 0: one rock [-]
+      logical, intent(in) :: is_free
+      type(scene_t) :: scene
+      type(mesh_t) :: mesh
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(timers_t) :: timers
+      type(step_report_t) :: report
+      type(error_t), allocatable :: error
+      real(rk), parameter :: rise = -40.0_rk
+      real(rk), allocatable :: pressure(:), sideways(:), stress(:, :)
+      real(rk) :: values(2)
+      integer(ik) :: c
+
+      scene = hot_body(2.0_rk)
+      scene%domain%x_max = 2.0_rk
+      scene%domain%y_max = 2.0_rk
+      scene%material%heat_expansion = 3.0e-5_rk
+      scene%fluid%heat_expansion = 4.0e-4_rk
+      scene%material%plane_stress = is_free
+      scene%sides(2)%displacement_given(1) = .not. is_free
+      if (contrast > 0.0_rk) then
+         allocate (scene%regions(1))
+         scene%regions(1)%shape = "half_plane"
+         scene%regions(1)%x = [2.0_rk, 0.0_rk]
+         scene%regions(1)%y = [1.0_rk, 1.0_rk]
+         scene%regions(1)%material = scene%material
+         associate (below => scene%regions(1)%material)
+            below%young = (1.0_rk - contrast)*below%young
+            below%biot = (1.0_rk - contrast)*below%biot
+            below%heat_expansion = 0.5_rk*below%heat_expansion
+         end associate
+         call start_boxes(scene, 4_ik, mesh, model, state, as_drawn=.true.)
+      else
+         call start_boxes(scene, 4_ik, mesh, model, state)
+      end if
+      model%rock%temperature = spread(rise, 1, int(mesh%n_cells))
+      call model%advance(mesh, 1.0e-9_rk, state, timers, report, error)
+      call checks%no_error(error, "thermal stress")
+      call checks%is_true(report%converged, "thermal stress: converged")
+      allocate (pressure(mesh%n_cells), sideways(mesh%n_cells), stress(3, mesh%n_cells))
+      do c = 1, mesh%n_cells
+         values = expected(scene, scene%material, rise)
+         if (contrast > 0.0_rk .and. sum(mesh%xy(2, mesh%cell_nodes(:, c))) < 3.0_rk) then
+            values = expected(scene, scene%regions(1)%material, rise)
+         end if
+         pressure(c) = values(1)
+         sideways(c) = values(2)
+      end do
+      call cell_stresses(mesh, model%regions, state%tractions, stress)
+      associate (scale => maxval(abs(pressure)) + maxval(abs(sideways)))
+         call checks%is_close(maxval(abs(state%unknowns(3, :mesh%n_cells) - pressure)), 0.0_rk, &
+                              1.0e-9_rk*scale, "pressure of a rise")
+         call checks%is_close(maxval(abs(stress(1, :) - sideways)), 0.0_rk, 1.0e-9_rk*scale, &
+                              "stress along the layers")
+         call checks%is_close(maxval(abs(stress(2:, :))), 0.0_rk, 1.0e-9_rk*scale, "no others")
+      end associate
+      call checks%is_close(maxval(abs(state%content)), 0.0_rk, 1.0e-15_rk, "fluid stays")
+   end subroutine thermal_stress
+
+   !> Pressure [Pa], and stress along the layers [Pa].
+   pure function expected(scene, m, rise) result(values)
+      type(scene_t), intent(in) :: scene
+      type(material_t), intent(in) :: m
+      real(rk), intent(in) :: rise  !< [K]
+      real(rk) :: values(2)
+      real(rk) :: bulk, content, modulus, shear, stored
+
+      bulk = m%young/(3.0_rk*(1.0_rk - 2.0_rk*m%poisson))
+      shear = m%young/(2.0_rk*(1.0_rk + m%poisson))
+      stored = m%porosity*scene%fluid%compressibility + (m%biot - m%porosity)/bulk
+      content = m%porosity*scene%fluid%heat_expansion + (m%biot - m%porosity)*m%heat_expansion
+      modulus = merge(bulk, bulk + 4.0_rk/3.0_rk*shear, m%plane_stress)
+      values(1) = (content - m%biot*bulk*m%heat_expansion/modulus)*rise &
+                  /(stored + m%biot**2/modulus)
+      values(2) = -2.0_rk*shear/modulus*(m%biot*values(1) + bulk*m%heat_expansion*rise)
+      if (m%plane_stress) values(2) = 0.0_rk
+   end function expected
 
 end program test_heat_steps

@@ -16,15 +16,16 @@ program test_scene_heat
       "&domain x_min=0.0 x_max=2.0 y_min=0.0 y_max=1.0 /", &  ! 2
       "&material young=40.0e9 poisson=0.2 biot=0.8 porosity=0.01 permeability=5.0e-20", &  ! 3
       "  toughness=1.0e6 heat_capacity=2.2e6 heat_conductivity=2.6 /", &  ! 4
-      "&fluid compressibility=4.0e-10 viscosity=1.0e-3 heat_capacity=4.2e6 /", &  ! 5
+      "&fluid compressibility=4e-10 viscosity=1e-3 heat_capacity=4e6 heat_expansion=4e-4 /", &  ! 5
       "&fracture name='f1' x=0.9, 1.1 y=0.5, 0.6 friction=0.5 aperture=1.0e-3 /", &  ! 6
       "&side name='left' x_displacement=0.0 temperature=80.0 /", &  ! 7
       "&side name='bottom' y_displacement=0.0 heat_flux=0.06 /", &  ! 8
       "&injection fracture='f1' time=0.0, 60.0 rate=1.0e-9, 2.0e-9 temperature=20.0 /", &  ! 9
       "&heat temperature=150.0 temperature_per_y=-0.03 /", &  ! 10
-      "&region name='r' shape='half_plane' x=1.0, 1.0 y=0.0, 1.0 heat_capacity=1.0e6 /", &  ! 11
-      "&time end=3600.0 step=60.0 /", &  ! 12
-      "&growth enabled=.false. /"]  ! 13
+      "&region name='r' shape='half_plane' x=1.0, 1.0 y=0.0, 1.0 heat_capacity=1.0e6", &  ! 11
+      "  heat_expansion=2.4e-5 /", &  ! 12
+      "&time end=3600.0 step=60.0 /", &  ! 13
+      "&growth enabled=.false. /"]  ! 14
    !&>
    type(checks_t) :: checks
    type(scene_t) :: scene
@@ -44,6 +45,9 @@ program test_scene_heat
       call checks%is_close(scene%regions(1)%material%heat_capacity, 1.0e6_rk, 0.0_rk, "region")
       call checks%is_close(scene%regions(1)%material%heat_conductivity, 2.6_rk, 0.0_rk, &
                            "of the scene's rock")
+      call checks%is_close(scene%material%heat_expansion, 0.0_rk, 0.0_rk, "none is given")
+      call checks%is_close(scene%regions(1)%material%heat_expansion, 2.4e-5_rk, 0.0_rk, "expansion")
+      call checks%is_close(scene%fluid%heat_expansion, 4.0e-4_rk, 0.0_rk, "of the fluid")
       call put_bytes(path, scene_text(scene))
    end do
    call refuse(10, "", ":4: &material: heat_capacity is given, but the scene has no group &heat")
@@ -61,7 +65,7 @@ program test_scene_heat
    call refuse(10, "&heat temperature=150.0 tolerance=2.0 /", &
                ":10: &heat: tolerance is 2.0 but must be a finite number "// &
                "greater than 0.0 and at most 1.0")
-   call refuse(13, "&growth enabled=.true. /", ":10: &heat: is given with growth, but heat is "// &
+   call refuse(14, "&growth enabled=.true. /", ":10: &heat: is given with growth, but heat is "// &
                "not carried over to grown fractures yet; omit &heat or set enabled of &growth "// &
                "to .false.")
    call put_changed(path, good, 9, "&injection fracture='f1' rate=-1.0e-9 /", 9, &

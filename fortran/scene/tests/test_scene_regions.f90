@@ -141,7 +141,7 @@ contains
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 /", ":4: &region: name is given, but the region "// &
                   "has no rock properties: it must have at least one of young, poisson, biot, "// &
                   "porosity, permeability, density, toughness, heat_capacity, heat_conductivity"// &
-                  doc)
+                  ", heat_expansion"//doc)
      call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=-1e-14 /", ":5: &region: permeability "// &
                   "is -1e-14 but must be a finite number greater than 0.0 [m2]"//doc)
       call refuse(5, "  y=0.1, 0.1, 0.4, 0.4 permeability=1e-14 permeability_xx=1e-14 /", &
