@@ -7,16 +7,18 @@
 !!
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
 !! that slips is one of K_II of the friction times sqrt(pi L/2) times it; errors in time of slip and
-!! opening are relative errors of K. The net pressure of an open fracture follows from the
-!! compliance of its faces and has no term here. Faces at a tip that have slipped and now stick with
-!! less than the friction hold a rest of the slip before them. A cell does not resolve how this
-!! rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi) s.
-!! Closed faces that slide with dilation have K_I = tan(psi) |K_II|, with its error.
+!! opening are relative errors of K. The net pressure of an open fracture whose volume is known
+!! follows from the compliance of its cells; windows have this pressure on their faces, so K_I has
+!! the relative error of the compliance. A joint that closes has the relative error that the
+!! pressure causes in its closure, by the law of its faces. Faces at a tip that have slipped and now
+!! stick with less than the friction hold a rest of the slip before them. A cell does not resolve
+!! how this rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi)
+!! s. Closed faces that slide with dilation have K_I = tan(psi) |K_II|, with its whole error.
 module twolevel_field_errors
    use base_kinds, only: ik, pi, rk
    use coarse_fields, only: cell_stress
    use coarse_state, only: state_t
-   use contact_law, only: state_open
+   use contact_law, only: state_open, state_slip
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: jump_errors_t, unevenness
@@ -24,7 +26,7 @@ module twolevel_field_errors
                           matrix_fields_t
    use scene_types, only: scene_t
    use twolevel_jump_errors, only: jumps_in_space_t
-   use twolevel_pressure_errors, only: least
+   use twolevel_pressure_errors, only: have_given_pressure, least
    use twolevel_problem, only: coarse_problem_t
    use twolevel_value_errors, only: of_solution, value_errors_t
    implicit none(type, external)
@@ -90,7 +92,8 @@ contains
    end subroutine find_fracture_errors
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
-   !! traction that the error of the jump is equal to, and in contact that of the pressure.
+   !! traction that the error of the jump is equal to, and in contact that of the pressure. Faces
+   !! that slip have the friction of their normal traction, which their slip does not change.
    subroutine note_tractions(scene, problem, state, jumps, fields)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -108,10 +111,12 @@ contains
                  friction => problem%model%cells%law%friction)
          e%traction_n = max(unevenness(fracture, fields%traction_n), &
                             0.5_rk*abs(t(1, 2, :) - t(1, 1, :))) &
-                        + by_jump*hypot(fields%jump_n, fields%jump_t) + e%pressure
+                        + by_jump*merge(abs(fields%jump_n), hypot(fields%jump_n, fields%jump_t), &
+                                        fields%state == state_slip) + e%pressure
          e%traction_t = max(unevenness(fracture, fields%traction_t), &
                             0.5_rk*abs(t(2, 2, :) - t(2, 1, :))) &
                         + by_jump*hypot(fields%jump_n, fields%jump_t) + friction*e%pressure
+         where (fields%state == state_slip) e%traction_t = friction*e%traction_n
          where (fields%state == state_open)
             e%traction_n = 0.0_rk
             e%traction_t = 0.0_rk
@@ -144,18 +149,42 @@ contains
             if (at == 0) cycle
             associate (k => tips(i)%intensity, half => 0.5_rk*(fracture%cell_s(2, at) &
                                                                - fracture%cell_s(1, at)))
-               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening, errors%of_slip]
+               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening + of_faces(at), errors%of_slip]
                of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
                             *root(jumps%slip%reach(at), half)
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then
                   of_k(2, i) = of_k(2, i) + sqrt(4.0_rk*half/pi)*rest(at)
                end if
-               of_k(1, i) = max(of_k(1, i), problem%model%cells%law(at)%dilation*of_k(2, i))
+               if (k%closed .and. abs(k%k2) > 0.0_rk) then
+                  of_k(1, i) = max(of_k(1, i), abs(k%k1/k%k2)*(k%k2_error + of_k(2, i)) &
+                                   - k%k1_error)
+               end if
             end associate
          end do
       end associate
 
    contains
+
+      !> Relative error of K_I by the compliance of the faces, or by the closure of the joint, of
+      !! the fracture of a cell [-].
+      pure real(rk) function of_faces(cell) result(share)
+         integer(ik), intent(in) :: cell
+         real(rk), dimension(size(rest)) :: closed, length, slope
+         logical :: given(size(scene%fractures))
+
+         share = 0.0_rk
+         given = have_given_pressure(scene)
+         associate (fracture => problem%mesh%fracture, law => problem%model%cells%law)
+            length = merge(fracture%cell_s(2, :) - fracture%cell_s(1, :), 0.0_rk, &
+                           fracture%cell_fracture == fracture%cell_fracture(cell))
+            if (jumps%n(cell) > 0.0_rk) then
+               if (.not. given(fracture%cell_fracture(cell))) share = jumps%opening%of_sum(cell)
+            else if (law(cell)%compliance > 0.0_rk) then
+               call law%closure(-0.5_rk*sum(state%traction(1, :, :), dim=1), closed, slope)
+               share = sum(length*slope*of_pressure)/max(sum(length*abs(jumps%n)), tiny(1.0_rk))
+            end if
+         end associate
+      end function of_faces
 
       !> sqrt(pi L/2) of a zone of length L, from the reach of its last cell [m^1/2].
       elemental real(rk) function root(reach, half)

@@ -22,9 +22,10 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, leaking_share, least, &
-                                       mean_in_rock, mean_pressure, of_first_pressure, of_layers, &
-                                       of_steps, of_well_in_rock, undrained_share
+   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
+                                       leaking_share, least, mean_in_rock, mean_pressure, &
+                                       of_first_pressure, of_layers, of_steps, of_well_in_rock, &
+                                       undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -177,13 +178,12 @@ contains
          self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
                                                 /max(self%fractures%changes(), tiny(1.0_rk))), &
                                             mask=have_given_pressure(scene)))
-         self%of_pressure = 0.0_rk
-         if (facts%has_given_rates) self%of_pressure = self%of_flow
+         self%of_pressure = merge(self%of_flow, 0.0_rk, facts%has_given_rates)
          call self%jumps_of(scene, problem, state, jumps)
          if (self%quantities%n_steps == 0) self%of_start = jumps%volume
          call note_jumps(self, problem, jumps, row)
       end if
-      call note_fluid(self, scene, problem, row, facts, layers)
+      call note_fluid(self, scene, problem, state, row, facts, layers)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
 
@@ -204,8 +204,11 @@ contains
          self%of_held = jumps%volume
          self%row%fracture_volume = time(volume) + jumps%volume
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
+         ! Where faces open, cells slide by a share of what they open.
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                  + of_slip_rate*row%max_slip_rate
+                                  + of_slip_rate*row%max_slip_rate &
+                                  + jumps%slip%of_slip(maxloc(jumps%n, dim=1)) &
+                                  *abs(self%quantities%rate(opening))
          self%of_opening = 0.0_rk
          if (row%max_opening > 0.0_rk) self%of_opening = time(opening)/row%max_opening
          self%of_slip = 0.0_rk
@@ -227,10 +230,11 @@ contains
    end subroutine jumps_of
 
    !> Errors of the fluid volumes.
-   subroutine note_fluid(self, scene, problem, row, facts, layers)
+   subroutine note_fluid(self, scene, problem, state, row, facts, layers)
       class(value_errors_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       type(history_row_t), intent(in) :: row
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
@@ -241,8 +245,8 @@ contains
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         first = half*min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk))) &
-                 *abs(row%fracture_fluid)
+         first = held_at_first(scene, problem, state, self%of_first) + abs(row%leakoff) &
+                 *half*min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
          leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
                 *abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
@@ -279,8 +283,7 @@ contains
       type(step_facts_t), intent(in) :: facts
       real(rk) :: grown, longest
 
-      grown = 0.0_rk
-      if (facts%has_estimate) grown = max(0.0_rk, stated%length)
+      grown = merge(max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       associate (error => self%row, fracture => problem%mesh%fracture)
          if (fracture%n_cells == 0) return
          longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
@@ -405,8 +408,7 @@ contains
       do w = 1, size(rows)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
-            share = self%of_pressure
-            if (well%fracture == 0) share = self%of_rock
+            share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
             error%pressure = time(w) + share*changes(w) + by_length + of_solution*abs(row%pressure)
             if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
             if (.not. well%has_given_flow()) then
