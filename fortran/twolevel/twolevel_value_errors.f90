@@ -11,7 +11,7 @@
 !!   prescribed, their sum is exact, and each is at most the error of the other. The volume of the
 !!   fractures has that before the first step besides. A produced volume may be nothing where it is
 !!   less than the error of the net volume.
-!! Growing fractures: the relative error of the length, of all these quantities.
+!! Growing fractures: the relative error of the length.
 module twolevel_value_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
@@ -36,14 +36,14 @@ module twolevel_value_errors
    ! Positions of the quantities of a row that are followed.
    integer, parameter :: injected = 1, produced = 2, leakoff = 3, outflow = 4, fracture_fluid = 5, &
                          rock_fluid = 6, rock_outflow = 7, volume = 8, slip = 9, opening = 10, &
-                         moment = 11, slip_rate = 12, pressure = 13, in_rock = 14
-   integer, parameter :: n_followed = 14
+                         moment = 11, slip_rate = 12, pressure = 13, in_rock = 14, n_followed = 14
 
    !> relative error of pressures by the solver: the limit of its forward error bound [-]
    real(rk), parameter :: of_solution = 1.0e-6_rk
    !> error of a fracture's compliance, over the relative error of its volume [-]
    real(rk), parameter :: of_compliance = 0.5_rk
-   real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
+   !> least error of a probe, over the range, and of its displacement [-]
+   real(rk), parameter :: of_range = 0.001_rk, of_displacement = 4.0e-4_rk
 
    !> What the errors of a step need besides its row.
    type :: step_facts_t
@@ -491,7 +491,7 @@ contains
          end associate
          row%pressure_error(i) = row%pressure_error(i) + added(1) + of_range*rise
          row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3)) &
-                                     + of_range*maxval(abs(row%displacement(:, i)))
+                                     + of_displacement*maxval(abs(row%displacement(:, i)))
          row%stress_error(i) = row%stress_error(i) + maxval(added(4:)) &
                                + of_range*maxval(abs(row%stress(:, i)))
       end do
