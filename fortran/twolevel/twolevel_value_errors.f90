@@ -245,10 +245,10 @@ contains
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         first = held_at_first(scene, problem, state, self%of_first) + abs(row%leakoff) &
-                 *half*min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
-         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
-                *abs(row%leakoff) + first + lost
+         first = held_at_first(scene, problem, state, self%of_first)
+         leak = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
+         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*(self%of_pressure &
+                                                   + leak))*abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
                 + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
