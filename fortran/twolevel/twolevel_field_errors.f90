@@ -7,9 +7,8 @@
 !!
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
 !! that slips is one of K_II of the friction times sqrt(pi L/2) times it; errors in time of slip and
-!! opening are relative errors of K. The net pressure of an open fracture whose volume is known
-!! follows from the compliance of its cells; windows have this pressure on their faces, so K_I has
-!! the relative error of the compliance. A joint that closes has the relative error that the
+!! opening are relative errors of K. The net pressure of an open fracture follows from the
+!! compliance of its faces and has no term here. A joint that closes has the relative error that the
 !! pressure causes in its closure, by the law of its faces. Faces at a tip that have slipped and now
 !! stick with less than the friction hold a rest of the slip before them. A cell does not resolve
 !! how this rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi)
@@ -26,7 +25,7 @@ module twolevel_field_errors
                           matrix_fields_t
    use scene_types, only: scene_t
    use twolevel_jump_errors, only: jumps_in_space_t
-   use twolevel_pressure_errors, only: have_given_pressure, least
+   use twolevel_pressure_errors, only: least
    use twolevel_problem, only: coarse_problem_t
    use twolevel_value_errors, only: of_solution, value_errors_t
    implicit none(type, external)
@@ -149,7 +148,7 @@ contains
             if (at == 0) cycle
             associate (k => tips(i)%intensity, half => 0.5_rk*(fracture%cell_s(2, at) &
                                                                - fracture%cell_s(1, at)))
-               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening + of_faces(at), errors%of_slip]
+               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening + of_closure(at), errors%of_slip]
                of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
                             *root(jumps%slip%reach(at), half)
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then
@@ -165,26 +164,20 @@ contains
 
    contains
 
-      !> Relative error of K_I by the compliance of the faces, or by the closure of the joint, of
-      !! the fracture of a cell [-].
-      pure real(rk) function of_faces(cell) result(share)
+      !> Relative error of K_I by the closure of a joint: the fracture of a cell [-].
+      pure real(rk) function of_closure(cell) result(share)
          integer(ik), intent(in) :: cell
          real(rk), dimension(size(rest)) :: closed, length, slope
-         logical :: given(size(scene%fractures))
 
          share = 0.0_rk
-         given = have_given_pressure(scene)
          associate (fracture => problem%mesh%fracture, law => problem%model%cells%law)
+            if (jumps%n(cell) > 0.0_rk .or. .not. law(cell)%compliance > 0.0_rk) return
             length = merge(fracture%cell_s(2, :) - fracture%cell_s(1, :), 0.0_rk, &
                            fracture%cell_fracture == fracture%cell_fracture(cell))
-            if (jumps%n(cell) > 0.0_rk) then
-               if (.not. given(fracture%cell_fracture(cell))) share = jumps%opening%of_sum(cell)
-            else if (law(cell)%compliance > 0.0_rk) then
-               call law%closure(-0.5_rk*sum(state%traction(1, :, :), dim=1), closed, slope)
-               share = sum(length*slope*of_pressure)/max(sum(length*abs(jumps%n)), tiny(1.0_rk))
-            end if
+            call law%closure(-0.5_rk*sum(state%traction(1, :, :), dim=1), closed, slope)
+            share = sum(length*slope*of_pressure)/max(sum(length*abs(jumps%n)), tiny(1.0_rk))
          end associate
-      end function of_faces
+      end function of_closure
 
       !> sqrt(pi L/2) of a zone of length L, from the reach of its last cell [m^1/2].
       elemental real(rk) function root(reach, half)
