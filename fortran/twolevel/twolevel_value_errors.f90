@@ -248,7 +248,7 @@ contains
          first = held_at_first(scene, problem, state, self%of_first)
          leak = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
          leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*(self%of_pressure &
-                                                   + leak))*abs(row%leakoff) + first + lost
+                                                            + leak))*abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
                 + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
