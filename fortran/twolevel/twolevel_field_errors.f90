@@ -92,7 +92,7 @@ contains
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
    !! traction that the error of the jump is equal to, and in contact that of the pressure. Faces
-   !! that slip have the friction of their normal traction, which their slip does not change.
+   !! that slip have the friction of their normal traction.
    subroutine note_tractions(scene, problem, state, jumps, fields)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -110,8 +110,7 @@ contains
                  friction => problem%model%cells%law%friction)
          e%traction_n = max(unevenness(fracture, fields%traction_n), &
                             0.5_rk*abs(t(1, 2, :) - t(1, 1, :))) &
-                        + by_jump*merge(abs(fields%jump_n), hypot(fields%jump_n, fields%jump_t), &
-                                        fields%state == state_slip) + e%pressure
+                        + by_jump*hypot(fields%jump_n, fields%jump_t) + e%pressure
          e%traction_t = max(unevenness(fracture, fields%traction_t), &
                             0.5_rk*abs(t(2, 2, :) - t(2, 1, :))) &
                         + by_jump*hypot(fields%jump_n, fields%jump_t) + friction*e%pressure
