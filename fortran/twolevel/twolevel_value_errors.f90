@@ -1,7 +1,6 @@
 !> Estimated errors of the published quantities of a run with a fluid: in time (twolevel_followed)
-!! and in space; no further solution is needed.
+!! and in space; no further solution is needed. In space:
 !!
-!! In space:
 !! - Slip, opening and their sums: twolevel_jump_errors.
 !! - Pressures in fractures, relative to the changes of all stages: where the fluid leaks off, the
 !!   error of the layers next to the faces, by its share of the fluid; of what opens the fractures,
@@ -193,10 +192,10 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(jumps_in_space_t), intent(in) :: jumps
       type(history_row_t), intent(in) :: row
-      real(rk), parameter :: of_slip_rate = 0.5_rk  ! cells slip in turn as their zone grows
+      real(rk), parameter :: of_slip_rate = 0.3_rk  ! cells slip in turn as their zone grows
 
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
-         ! At a kink the faces may open by all of their slip across it.
+         ! At a kink the faces may open by all of their slip.
          self%row%max_opening = time(opening) &
                                 + max(error_of_largest(fracture, jumps%n, jumps%error_n), &
                                       maxval(jumps%slip%kink*jumps%t) - row%max_opening)
@@ -245,10 +244,11 @@ contains
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         first = held_at_first(scene, problem, state, self%of_first)
-         leak = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
-         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*(self%of_pressure &
-                                                            + leak))*abs(row%leakoff) + first + lost
+         first = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
+         first = min(held_at_first(scene, problem, state, self%of_first), &
+                     half*first*abs(row%fracture_fluid))
+         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
+                *abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
                 + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
