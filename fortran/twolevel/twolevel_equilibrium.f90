@@ -173,7 +173,8 @@ contains
       if (allocated(error)) return
       call close_tips(self)
       call self%now%stated_errors%see_try(total_length(self%network), &
-                                          self%problem%well_pressure(self%now%coarse))
+                                          self%problem%well_pressure(self%now%coarse), &
+                                          count(self%tip%is_free))
       if (.not. is_first) return
       search%unmoved = self%tip%excess(self%rules%toughness)
       if (.not. search%is_last) then

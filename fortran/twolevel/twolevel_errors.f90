@@ -91,7 +91,8 @@ module twolevel_errors
       !! grown [m2]
       real(rk), private :: volume = 0.0_rk, volume_then = 0.0_rk
       integer :: tries = 0  !< number of tries of the present step
-      real(rk) :: tried(2, 2) = 0.0_rk  !< length [m], pressure [Pa] of the last two tries
+      !> length [m], pressure [Pa] and number of free tips of the last two tries
+      real(rk) :: tried(3, 2) = 0.0_rk
       real(rk) :: slope = 0.0_rk  !< derivative of the pressure with respect to the length [Pa/m]
       type(accumulated_error_t) :: time_error  !< time error of the pressure [Pa]
       logical :: has_layers = .false.  !< on fractures or sides (coarse_layers)
@@ -135,18 +136,21 @@ contains
       self%tries = 0
    end subroutine begin_step
 
-   !> Update the derivative of the pressure from a try of the step.
-   elemental subroutine see_try(self, length, pressure)
+   !> Update the derivative of the pressure from a try of the step. Where a joint opens, the
+   !! pressure falls without a change of the length.
+   elemental subroutine see_try(self, length, pressure, n_free)
       class(stated_errors_t), intent(inout) :: self
       real(rk), intent(in) :: length  !< length of the fractures in the try [m]
       real(rk), intent(in) :: pressure  !< pressure at the wells [Pa]
-      real(rk) :: change(2)
+      integer, intent(in) :: n_free  !< number of free tips
+      real(rk) :: change(3)
 
       self%tried(:, 1) = self%tried(:, 2)
-      self%tried(:, 2) = [length, pressure]
+      self%tried(:, 2) = [length, pressure, real(n_free, rk)]
       self%tries = self%tries + 1
       if (self%tries < 2) return
       change = self%tried(:, 2) - self%tried(:, 1)
+      if (abs(change(3)) > 0.0_rk) return
       if (abs(change(1)) > sqrt(epsilon(1.0_rk))*length) self%slope = change(2)/change(1)
    end subroutine see_try
 

@@ -8,15 +8,16 @@
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
 !! that slips is one of K_II of the friction times sqrt(pi L/2) times it; errors in time of slip and
 !! opening are relative errors of K. The net pressure of an open fracture follows from the
-!! compliance of its faces and has no term here. Faces at a tip that have slipped and now stick with
-!! less than the friction hold a rest of the slip before them. A cell does not resolve how this
-!! rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi) s.
-!! Closed faces that slide with dilation have K_I = tan(psi) |K_II|, with its error.
+!! compliance of its faces and has no term here. A joint that closes has the relative error that the
+!! pressure causes in its closure, by the law of its faces. Faces at a tip that have slipped and now
+!! stick with less than the friction hold a rest of the slip before them. A cell does not resolve
+!! how this rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi)
+!! s. Closed faces that slide with dilation have K_I = tan(psi) |K_II|, with its whole error.
 module twolevel_field_errors
    use base_kinds, only: ik, pi, rk
    use coarse_fields, only: cell_stress
    use coarse_state, only: state_t
-   use contact_law, only: state_open
+   use contact_law, only: state_open, state_slip
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: jump_errors_t, unevenness
@@ -90,7 +91,8 @@ contains
    end subroutine find_fracture_errors
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
-   !! traction that the error of the jump is equal to, and in contact that of the pressure.
+   !! traction that the error of the jump is equal to, and in contact that of the pressure. Faces
+   !! that slip have the friction of their normal traction.
    subroutine note_tractions(scene, problem, state, jumps, fields)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -112,6 +114,7 @@ contains
          e%traction_t = max(unevenness(fracture, fields%traction_t), &
                             0.5_rk*abs(t(2, 2, :) - t(2, 1, :))) &
                         + by_jump*hypot(fields%jump_n, fields%jump_t) + friction*e%pressure
+         where (fields%state == state_slip) e%traction_t = friction*e%traction_n
          where (fields%state == state_open)
             e%traction_n = 0.0_rk
             e%traction_t = 0.0_rk
@@ -144,18 +147,36 @@ contains
             if (at == 0) cycle
             associate (k => tips(i)%intensity, half => 0.5_rk*(fracture%cell_s(2, at) &
                                                                - fracture%cell_s(1, at)))
-               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening, errors%of_slip]
+               of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening + of_closure(at), errors%of_slip]
                of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
                             *root(jumps%slip%reach(at), half)
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then
                   of_k(2, i) = of_k(2, i) + sqrt(4.0_rk*half/pi)*rest(at)
                end if
-               of_k(1, i) = max(of_k(1, i), problem%model%cells%law(at)%dilation*of_k(2, i))
+               if (k%closed .and. abs(k%k2) > 0.0_rk) then
+                  of_k(1, i) = max(of_k(1, i), abs(k%k1/k%k2)*(k%k2_error + of_k(2, i)) &
+                                   - k%k1_error)
+               end if
             end associate
          end do
       end associate
 
    contains
+
+      !> Relative error of K_I by the closure of a joint: the fracture of a cell [-].
+      pure real(rk) function of_closure(cell) result(share)
+         integer(ik), intent(in) :: cell
+         real(rk), dimension(size(rest)) :: closed, length, slope
+
+         share = 0.0_rk
+         associate (fracture => problem%mesh%fracture, law => problem%model%cells%law)
+            if (jumps%n(cell) > 0.0_rk .or. .not. law(cell)%compliance > 0.0_rk) return
+            length = merge(fracture%cell_s(2, :) - fracture%cell_s(1, :), 0.0_rk, &
+                           fracture%cell_fracture == fracture%cell_fracture(cell))
+            call law%closure(-0.5_rk*sum(state%traction(1, :, :), dim=1), closed, slope)
+            share = sum(length*slope*of_pressure)/max(sum(length*abs(jumps%n)), tiny(1.0_rk))
+         end associate
+      end function of_closure
 
       !> sqrt(pi L/2) of a zone of length L, from the reach of its last cell [m^1/2].
       elemental real(rk) function root(reach, half)

@@ -28,8 +28,8 @@ module twolevel_pressure_errors
    implicit none(type, external)
    private
 
-   public :: fracture_means, have_given_pressure, leaking_share, least, mean_in_rock, &
-             mean_pressure, of_first_pressure, of_layers, of_steps, of_well_in_rock, &
+   public :: fracture_means, have_given_pressure, held_at_first, leaking_share, least, &
+             mean_in_rock, mean_pressure, of_first_pressure, of_layers, of_steps, of_well_in_rock, &
              undrained_share, unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
@@ -225,6 +225,26 @@ contains
                                           abs(p - error(problem%mesh%fracture%cell_fracture)))
       end associate
    end function of_first_pressure
+
+   !> What closed fractures and joints hold by these errors [m2].
+   function held_at_first(scene, problem, state, of_first) result(held)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: of_first(:)  !< (fractures) [Pa]
+      real(rk) :: held
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: closed, slope
+
+      held = 0.0_rk
+      if (size(closed) == 0) return
+      associate (fracture => problem%mesh%fracture)
+         call problem%model%cells%law%closure(-0.5_rk*sum(state%traction(1, :, :), dim=1), closed, &
+                                              slope)
+         held = sum((fracture%cell_s(2, :) - fracture%cell_s(1, :)) &
+                    *(slope + scene%fluid%compressibility*state%aperture) &
+                    *of_first(fracture%cell_fracture))
+      end associate
+   end function held_at_first
 
    !> Share of these errors that is left after a time: that of the rock, as far as the rock takes up
    !! what the fractures hold [-].

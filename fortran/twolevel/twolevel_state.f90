@@ -473,6 +473,8 @@ contains
       if (.not. states_errors(self%scene%growth)) return
       row%length_error = self%now%stated_errors%length
       row%well_pressure_error = self%now%stated_errors%pressure
+      if (.not. allocated(self%value_errors%of_wells)) return
+      row%well_pressure_error = min(row%well_pressure_error, maxval(self%value_errors%of_wells))
    end function history
 
    !> Displacement, stress and pressure at the probes.

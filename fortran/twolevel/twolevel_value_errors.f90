@@ -1,7 +1,6 @@
 !> Estimated errors of the published quantities of a run with a fluid: in time (twolevel_followed)
-!! and in space; no further solution is needed.
+!! and in space; no further solution is needed. In space:
 !!
-!! In space:
 !! - Slip, opening and their sums: twolevel_jump_errors.
 !! - Pressures in fractures, relative to the changes of all stages: where the fluid leaks off, the
 !!   error of the layers next to the faces, by its share of the fluid; of what opens the fractures,
@@ -11,7 +10,7 @@
 !!   prescribed, their sum is exact, and each is at most the error of the other. The volume of the
 !!   fractures has that before the first step besides. A produced volume may be nothing where it is
 !!   less than the error of the net volume.
-!! Growing fractures: the relative error of the length, of all these quantities.
+!! Growing fractures: the relative error of the length.
 module twolevel_value_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
@@ -22,9 +21,10 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, leaking_share, least, &
-                                       mean_in_rock, mean_pressure, of_first_pressure, of_layers, &
-                                       of_steps, of_well_in_rock, undrained_share
+   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
+                                       leaking_share, least, mean_in_rock, mean_pressure, &
+                                       of_first_pressure, of_layers, of_steps, of_well_in_rock, &
+                                       undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -35,14 +35,14 @@ module twolevel_value_errors
    ! Positions of the quantities of a row that are followed.
    integer, parameter :: injected = 1, produced = 2, leakoff = 3, outflow = 4, fracture_fluid = 5, &
                          rock_fluid = 6, rock_outflow = 7, volume = 8, slip = 9, opening = 10, &
-                         moment = 11, slip_rate = 12, pressure = 13, in_rock = 14
-   integer, parameter :: n_followed = 14
+                         moment = 11, slip_rate = 12, pressure = 13, in_rock = 14, n_followed = 14
 
    !> relative error of pressures by the solver: the limit of its forward error bound [-]
    real(rk), parameter :: of_solution = 1.0e-6_rk
    !> error of a fracture's compliance, over the relative error of its volume [-]
    real(rk), parameter :: of_compliance = 0.5_rk
-   real(rk), parameter :: of_range = 0.001_rk  !< least error of a probe, over the range [-]
+   !> least error of a probe, over the range, and of its displacement [-]
+   real(rk), parameter :: of_range = 0.001_rk, of_displacement = 4.0e-4_rk
 
    !> What the errors of a step need besides its row.
    type :: step_facts_t
@@ -177,13 +177,12 @@ contains
          self%of_drive = max(0.0_rk, maxval(min(1.0_rk, self%undrained(scene, problem) &
                                                 /max(self%fractures%changes(), tiny(1.0_rk))), &
                                             mask=have_given_pressure(scene)))
-         self%of_pressure = 0.0_rk
-         if (facts%has_given_rates) self%of_pressure = self%of_flow
+         self%of_pressure = merge(self%of_flow, 0.0_rk, facts%has_given_rates)
          call self%jumps_of(scene, problem, state, jumps)
          if (self%quantities%n_steps == 0) self%of_start = jumps%volume
          call note_jumps(self, problem, jumps, row)
       end if
-      call note_fluid(self, scene, problem, row, facts, layers)
+      call note_fluid(self, scene, problem, state, row, facts, layers)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
 
@@ -193,10 +192,10 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(jumps_in_space_t), intent(in) :: jumps
       type(history_row_t), intent(in) :: row
-      real(rk), parameter :: of_slip_rate = 0.5_rk  ! cells slip in turn as their zone grows
+      real(rk), parameter :: of_slip_rate = 0.3_rk  ! cells slip in turn as their zone grows
 
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
-         ! At a kink the faces may open by all of their slip across it.
+         ! At a kink the faces may open by all of their slip.
          self%row%max_opening = time(opening) &
                                 + max(error_of_largest(fracture, jumps%n, jumps%error_n), &
                                       maxval(jumps%slip%kink*jumps%t) - row%max_opening)
@@ -204,8 +203,11 @@ contains
          self%of_held = jumps%volume
          self%row%fracture_volume = time(volume) + jumps%volume
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
+         ! Where faces open, cells slide by a share of what they open.
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                  + of_slip_rate*row%max_slip_rate
+                                  + of_slip_rate*row%max_slip_rate &
+                                  + jumps%slip%of_slip(maxloc(jumps%n, dim=1)) &
+                                  *abs(self%quantities%rate(opening))
          self%of_opening = 0.0_rk
          if (row%max_opening > 0.0_rk) self%of_opening = time(opening)/row%max_opening
          self%of_slip = 0.0_rk
@@ -227,10 +229,11 @@ contains
    end subroutine jumps_of
 
    !> Errors of the fluid volumes.
-   subroutine note_fluid(self, scene, problem, row, facts, layers)
+   subroutine note_fluid(self, scene, problem, state, row, facts, layers)
       class(value_errors_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       type(history_row_t), intent(in) :: row
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
@@ -241,8 +244,9 @@ contains
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         first = half*min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk))) &
-                 *abs(row%fracture_fluid)
+         first = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
+         first = min(held_at_first(scene, problem, state, self%of_first), &
+                     half*first*abs(row%fracture_fluid))
          leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
                 *abs(row%leakoff) + first + lost
          held = time(fracture_fluid) + error%fracture_volume - time(volume) &
@@ -279,8 +283,7 @@ contains
       type(step_facts_t), intent(in) :: facts
       real(rk) :: grown, longest
 
-      grown = 0.0_rk
-      if (facts%has_estimate) grown = max(0.0_rk, stated%length)
+      grown = merge(max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       associate (error => self%row, fracture => problem%mesh%fracture)
          if (fracture%n_cells == 0) return
          longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
@@ -405,8 +408,7 @@ contains
       do w = 1, size(rows)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
-            share = self%of_pressure
-            if (well%fracture == 0) share = self%of_rock
+            share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
             error%pressure = time(w) + share*changes(w) + by_length + of_solution*abs(row%pressure)
             if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
             if (.not. well%has_given_flow()) then
@@ -489,7 +491,7 @@ contains
          end associate
          row%pressure_error(i) = row%pressure_error(i) + added(1) + of_range*rise
          row%displacement_error(i) = row%displacement_error(i) + maxval(added(2:3)) &
-                                     + of_range*maxval(abs(row%displacement(:, i)))
+                                     + of_displacement*maxval(abs(row%displacement(:, i)))
          row%stress_error(i) = row%stress_error(i) + maxval(added(4:)) &
                                + of_range*maxval(abs(row%stress(:, i)))
       end do

@@ -183,7 +183,7 @@ contains
 
    !> Add K_I of layers of fluid pressure on the faces (twolevel_back_stress), unless the faces
    !! touch at the tip. It may close the tip; opening, it is at most what the tip has without it, so
-   !! that K_I does not jump where faces begin to touch.
+   !! that K_I does not jump where faces begin to touch. A joint that closes (K_I < 0) bears it.
    pure subroutine add_back_stress(of_layers, crack_modulus, intensity)
       real(rk), intent(in) :: of_layers  !< [Pa m^1/2]
       real(rk), intent(in) :: crack_modulus  !< E' [Pa]
@@ -193,11 +193,21 @@ contains
       before = intensity%k1
       k1 = min(of_layers, max(0.0_rk, before))
       if (intensity%closed .or. .not. abs(k1) > 0.0_rk) return
-      intensity%k1 = max(0.0_rk, before + k1)
-      intensity%k1_inner = max(0.0_rk, intensity%k1_inner + k1)
-      intensity%k1_dc = max(0.0_rk, intensity%k1_dc + k1)
+      intensity%k1 = with_layers(before)
+      intensity%k1_inner = with_layers(intensity%k1_inner)
+      intensity%k1_dc = with_layers(intensity%k1_dc)
       intensity%k1_corrected = intensity%k1_corrected + intensity%k1 - before
       intensity%g_domain = intensity%g_domain + (intensity%k1**2 - before**2)/crack_modulus
+
+   contains
+
+      !> K_I with that of the layers [Pa m^1/2].
+      pure real(rk) function with_layers(without)
+         real(rk), intent(in) :: without  !< [Pa m^1/2]
+
+         with_layers = max(min(0.0_rk, without), without + k1)
+      end function with_layers
+
    end subroutine add_back_stress
 
 end module twolevel_window_tip

@@ -11,6 +11,7 @@ program test_twolevel_back_stress
    use twolevel_back_stress, only: back_stress_of, weighted
    use twolevel_coarse_errors, only: layer_at_tip, layer_t
    use twolevel_state, only: two_levels_t
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
 
    type(checks_t) :: checks
@@ -19,6 +20,7 @@ program test_twolevel_back_stress
    call test_one_long_strip()
    call test_strips()
    call test_layer()
+   call test_closed()
    call checks%finish()
 
 contains
@@ -46,6 +48,28 @@ contains
       call checks%is_close(weighted([0.0_rk, 0.03_rk], place, pressure), near + far, 1.0e-12_rk, &
                            "both")
    end subroutine test_strips
+
+   !> A layer closes a tip, and a joint that is closed stays as it is.
+   subroutine test_closed()
+      type(window_tip_t) :: tip
+      real(rk), parameter :: modulus = 4.0e10_rk  ! [Pa]
+
+      tip%back_stress = -2.0e6_rk
+      tip%found%k1 = 3.0e6_rk
+      associate (k => tip%with_coarse_error(modulus))
+         call checks%is_close(k%k1, 1.0e6_rk, 1.0e-3_rk, "less by the layer")
+      end associate
+      tip%found%k1 = 1.0e6_rk
+      associate (k => tip%with_coarse_error(modulus))
+         call checks%is_close(k%k1, 0.0_rk, 1.0e-3_rk, "closed")
+      end associate
+      tip%found%k1 = -3.0e6_rk
+      tip%found%k1_corrected = -3.0e6_rk
+      associate (k => tip%with_coarse_error(modulus))
+         call checks%is_close(k%k1, -3.0e6_rk, 1.0e-3_rk, "joint")
+         call checks%is_close(k%k1_corrected, -3.0e6_rk, 1.0e-3_rk, "joint, corrected")
+      end associate
+   end subroutine test_closed
 
    !> The layer of a pressure dp that began a time t ago, dp erfc(n/(2 sqrt(c t))), against the
    !! closed form of docs/theory.md times the half moment of the layer, linear between its nodes,

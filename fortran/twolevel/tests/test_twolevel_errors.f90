@@ -24,8 +24,9 @@ contains
       type(stated_errors_t) :: stated_errors
 
       call stated_errors%begin_step()
-      call stated_errors%see_try(0.19_rk, 3.01e6_rk)
-      call stated_errors%see_try(0.2_rk, 3.0e6_rk)
+      call stated_errors%see_try(0.19_rk, 3.01e6_rk, 2)
+      call stated_errors%see_try(0.2_rk, 3.0e6_rk, 2)
+      call stated_errors%see_try(0.201_rk, 2.0e6_rk, 1)  ! a joint opens
       call accept(stated_errors, [.true., .true.])
       call checks%is_close(stated_errors%length, 7.0e-3_rk, 1.0e-12_rk, "length")
       call checks%is_close(stated_errors%pressure, 7.0e3_rk + 0.0175_rk*3.0e6_rk, 1.0e-3_rk, &
