@@ -91,6 +91,7 @@ function(component_compile_options name)
       -Wall
       -Wextra
       $<$<BOOL:${WINGCRACK_WARNINGS_ARE_ERRORS}>:-Werror>
+      $<$<CONFIG:Debug>:-g1>
       $<$<COMPILE_LANG_AND_ID:Fortran,GNU>:-std=f2018
       -Wimplicit-interface
       -fimplicit-none
@@ -99,7 +100,7 @@ function(component_compile_options name)
       $<$<CONFIG:Release>:${WINGCRACK_PROCESSOR}>
       -Wno-uninitialized
       -Wno-maybe-uninitialized
-      $<$<CONFIG:Debug>:-fcheck=all
+      $<$<CONFIG:Debug>:-fcheck=all,no-array-temps
       -fbacktrace
       -finit-real=snan>>
   )

@@ -45,25 +45,35 @@ def test_a_measurement_as_table_and_json(tmp_path: Path) -> None:
 @needs_valgrind
 def test_a_loss_of_instructions_is_found(tmp_path: Path) -> None:
     baseline = tmp_path / "baseline.json"
-    options = ("b1", "--repeat", "1", "--baseline", str(baseline), "--out", str(tmp_path / "out"))
+    options = (
+        "quick_fractures",
+        "--repeat",
+        "1",
+        "--baseline",
+        str(baseline),
+        "--out",
+        str(tmp_path / "out"),
+    )
     done = call(tmp_path, "bench", *options, "--store")
     if done.returncode == 1 and "not all could be counted" in done.stderr:
         pytest.skip(done.stdout.splitlines()[-1])
     assert done.returncode == 0, done.stderr
     stored = json.loads(baseline.read_text())
-    assert stored["instructions"]["b1"] > 1e8
+    assert stored["instructions"]["quick_fractures"] > 1e8
     # the same program: the same count, within what the length of a path's name makes
-    stored["instructions"]["b1"] = int(stored["instructions"]["b1"] / 1.05)
+    stored["instructions"]["quick_fractures"] = int(
+        stored["instructions"]["quick_fractures"] / 1.05
+    )
     baseline.write_text(json.dumps(stored))
     done = call(tmp_path, "bench", *options, "--instructions")
     assert done.returncode == 0, done.stderr
-    assert "instructions are judged for b1" in done.stdout
+    assert "instructions are judged for quick_fractures" in done.stdout
     # a program that had taken a fifth less
-    stored["instructions"]["b1"] = int(stored["instructions"]["b1"] / 1.2)
+    stored["instructions"]["quick_fractures"] = int(stored["instructions"]["quick_fractures"] / 1.2)
     baseline.write_text(json.dumps(stored))
     done = call(tmp_path, "bench", *options, "--instructions")
     assert done.returncode == 1
-    assert "a loss: b1 takes 1.2" in done.stderr.splitlines()[-1]
+    assert "a loss: quick_fractures takes 1.2" in done.stderr.splitlines()[-1]
 
 
 def test_a_loss_against_another_program_is_found(tmp_path: Path) -> None:

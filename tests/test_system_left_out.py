@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -175,26 +174,6 @@ def test_what_is_left_out_saves(
         ]
         assert totals == sorted(totals)
         assert len(set(totals)) == len(totals)
-
-
-@pytest.mark.usefixtures("program")
-def test_mechanics_links_nothing_of_the_fluid() -> None:
-    """The test program of the component has no symbol of the coarse level or of both levels."""
-    names = shutil.which("nm")
-    assert names is not None  # comes with the compiler
-    build = TOP / "build" / "release" / "fortran"
-    for program, holds_fluid in (
-        (build / "mechanics" / "test_mechanics_simulation", False),
-        (build / "app" / "wingcrack-solver", True),
-    ):
-        if not program.exists():
-            pytest.skip(f"{program.name} is not built; ./wingcrack test builds all")
-        symbols = subprocess.run(
-            [names, program], capture_output=True, text=True, check=True
-        ).stdout
-        assert "__mechanics_simulation_MOD_" in symbols
-        assert ("__coarse_" in symbols) == holds_fluid
-        assert ("__twolevel_" in symbols) == holds_fluid
 
 
 @pytest.mark.usefixtures("program")

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.usefixtures("program")
 
 @pytest.mark.parametrize(
     ("rate", "stop_gain", "more"),
-    [("1.0e-7", 0.06, ""), ("1.0e-6", 0.02, ", increment = 0.0025")],
+    [("1.0e-7", 0.04, ""), ("1.0e-6", 0.02, ", increment = 0.0025")],
     ids=["20 times the rate", "200 times, finer increments"],
 )
 def test_wings_of_a_fast_well_gain_alike(

@@ -21,11 +21,21 @@ readonly linters=(
 
 # lint [NAME...]: all linters, or those that one of the names is part of.
 lint() {
-    local linter name words asked
+    local linter name words asked types_log=$root/build/mypy.log types=''
+    if (($# == 0)); then
+        # it takes one processor only: beside the others
+        mkdir -p "$root/build"
+        check_python_types >"$types_log" 2>&1 &
+        types=$!
+    fi
     for linter in "${linters[@]}"; do
         name=${linter%%|*}
         read -ra words <<<"${linter#*|}"
-        if (($# == 0)); then step "$name" "${words[@]}"; fi
+        if [[ $name == mypy && -n $types ]]; then
+            step "$name" await "$types" "$types_log"
+        elif (($# == 0)); then
+            step "$name" "${words[@]}"
+        fi
         for asked; do
             if [[ $name == *"$asked"* ]]; then
                 step "$name" "${words[@]}"
@@ -33,6 +43,15 @@ lint() {
             fi
         done
     done
+}
+
+# await PROCESS LOG: its status, and what it said.
+await() {
+    local status
+    wait "$1"
+    status=$?
+    cat "$2"
+    return "$status"
 }
 
 format_sources() {

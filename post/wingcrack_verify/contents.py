@@ -64,6 +64,7 @@ class Run(Entry):
     method: Text
     size: Positive | None = None
     default: bool = False
+    quick: bool = True  # part of --quick, if its part is
     scene: Path | None = None
     set: Table = Field(default_factory=dict)
     unset: Texts = ()
@@ -260,6 +261,29 @@ class Part:
     figures: tuple[FigureRequest, ...]
     quick: bool  # part of --quick
 
+    @property
+    def quick_part(self) -> Part:
+        """What of it is part of --quick: without checks and figures that have nothing left."""
+        names = {run.name for run in self.runs if run.quick}
+
+        def kept(names_of_check: Texts) -> Texts:
+            return tuple(name for name in names_of_check if name in names)
+
+        return replace(
+            self,
+            runs=tuple(run for run in self.runs if run.quick),
+            checks=tuple(
+                check.model_copy(update={"runs": kept(check.runs), "judged": kept(check.judged)})
+                for check in self.checks
+                if kept(check.judged) and check.reference.other_run in (None, *names)
+            ),
+            figures=tuple(
+                figure
+                for figure in self.figures
+                if {figure.run, *(line.run for line in figure.lines)} <= {None, *names}
+            ),
+        )
+
     def named(self, name: str) -> Part:
         """The same with the name of the part in front of all names."""
 
@@ -328,4 +352,4 @@ class Case:
     @property
     def quick_part(self) -> Case:
         """What of it is part of --quick."""
-        return replace(self, parts=tuple(part for part in self.parts if part.quick))
+        return replace(self, parts=tuple(part.quick_part for part in self.parts if part.quick))

@@ -65,7 +65,7 @@ class Report:
 
 
 def make_report(report: Report, folder: Path) -> tuple[Path, str]:
-    """Write index.html, report.json and, where a browser can print it, report.pdf, each whole.
+    """Write index.html, report.json and, if not quick and a browser can, report.pdf, each whole.
 
     Gives the page's path, and why there is no PDF, else an empty text.
     """
@@ -88,7 +88,9 @@ def make_report(report: Report, folder: Path) -> tuple[Path, str]:
     write_whole(folder / "report.json", json.dumps(record, indent=1, allow_nan=False).encode())
     page = folder / "index.html"
     write_whole(page, page_text(report.judged, record, pictures, folder).encode())
-    return page, print_page(page, folder / "report.pdf")
+    target = folder / "report.pdf"
+    target.unlink(missing_ok=True)
+    return page, "" if report.quick else print_page(page, target)
 
 
 def _scope(report: Report) -> str:

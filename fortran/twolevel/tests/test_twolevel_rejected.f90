@@ -15,7 +15,7 @@ program test_twolevel_rejected
    use twolevel_stepping, only: trial_t
    implicit none(type, external)
 
-   integer, parameter :: most = 60  !< number of states compared
+   integer, parameter :: most = 36  !< number of states compared
    type(checks_t) :: checks
    type(timers_t) :: timers
 
@@ -61,22 +61,20 @@ contains
       real(rk), parameter :: lengths(2) = [0.5_rk, 8.0_rk]
       type(history_row_t), allocatable :: alone(:), row(:)
       real(rk), allocatable :: k_alone(:, :), k(:, :)
-      integer :: i, new_meshes, none
+      integer :: new_meshes(size(lengths)), none(0)
 
-      call follow(0.0_rk, alone, k_alone, none)
+      call follow([real(rk) ::], alone, k_alone, none)
       call checks%is_true(maxval(alone%fracture_length) > alone(1)%fracture_length + 0.04_rk, &
-                          "growth of several pieces")
-      do i = 1, size(lengths)
-         call follow(lengths(i), row, k, new_meshes)
-         if (lengths(i) > 1.0_rk) call checks%is_true(new_meshes > 3, "pieces are begun in vain")
-         call same(alone%time, row%time, "times")
-         call same(pressures(alone), pressures(row), "pressures")
-         call same(alone%fracture_length, row%fracture_length, "lengths")
-         call same(alone%max_slip, row%max_slip, "slip")
-         call same(alone%length_error, row%length_error, "errors of the length")
-         call same(alone%well_pressure_error, row%well_pressure_error, "errors of the pressure")
-         call same(reshape(k_alone, [size(k)]), reshape(k, [size(k)]), "intensities")
-      end do
+                          "growth of several segments")
+      call follow(lengths, row, k, new_meshes)
+      call checks%is_true(new_meshes(2) > 3, "segments are begun in vain")
+      call same(alone%time, row%time, "times")
+      call same(pressures(alone), pressures(row), "pressures")
+      call same(alone%fracture_length, row%fracture_length, "lengths")
+      call same(alone%max_slip, row%max_slip, "slip")
+      call same(alone%length_error, row%length_error, "errors of the length")
+      call same(alone%well_pressure_error, row%well_pressure_error, "errors of the pressure")
+      call same(reshape(k_alone, [size(k)]), reshape(k, [size(k)]), "intensities")
    end subroutine test_rejected
 
    !> Values of all wells, row after row.
@@ -100,7 +98,7 @@ contains
       type(scene_t) :: scene
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
-      scene%time = time_t(end=1.0e5_rk, tolerance=1.0e-2_rk, smallest_factor=1.0e-9_rk)
+      scene%time = time_t(end=1.0e5_rk, tolerance=3.0e-2_rk, smallest_factor=1.0e-9_rk)
       scene%growth%enabled = .true.
       scene%growth%law = "equilibrium"
       scene%growth%increment = 0.02_rk
@@ -112,14 +110,14 @@ contains
    end function two_fractures
 
    !> States of a run, with rejected tries before each of its steps.
-   subroutine follow(length, row, k, new_meshes)
-      real(rk), intent(in) :: length  !< length of the tries, over that of the step; 0: no tries [-]
+   subroutine follow(lengths, row, k, new_meshes)
+      real(rk), intent(in) :: lengths(:)  !< (kinds of tries) length over that of the step [-]
       type(history_row_t), allocatable, intent(out) :: row(:)  !< (states)
       real(rk), allocatable, intent(out) :: k(:, :)  !< (tips, states) K_eq [Pa m^1/2]
-      integer, intent(out) :: new_meshes  !< number of tries with a separate mesh
+      integer, intent(out) :: new_meshes(:)  !< (kinds of tries) number with a separate mesh
       type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
-      integer :: i
+      integer :: i, kind
 
       new_meshes = 0
       call simulation%begin(two_fractures(), timers, error)
@@ -127,7 +125,9 @@ contains
       allocate (row(most), k(size(simulation%tip), most))
       do i = 1, most
          ! The first two states are that at rest and one without previous rates.
-         if (length > 0.0_rk .and. i > 2) call reject(simulation, length, new_meshes)
+         do kind = 1, merge(size(lengths), 0, i > 2)
+            call reject(simulation, lengths(kind), new_meshes(kind))
+         end do
          call simulation%next_state(timers, error)
          if (.not. allocated(error)) call simulation%grow(timers, error)
          call checks%no_error(error, "a state")

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from synthetic_run import LENGTH, STEPS, polyline, times, wing_length
 from wingcrack.command_line import main
-from wingcrack.figures import AbsentError, read_run
+from wingcrack.figures import AbsentError, read_run, style
 from wingcrack.figures.story import story
 
 TITLES = [
@@ -151,6 +151,29 @@ def test_the_map_has_states_wells_and_events(stimulated: Path) -> None:
     assert length == pytest.approx(LENGTH + 2.0 * wing_length(STEPS - 1))
 
 
+@pytest.mark.parametrize("flat", [False, True])
+@pytest.mark.parametrize(("layout", "width"), [("page", 7.1), ("column", 3.5), ("slide", 13.25)])
+def test_legend_facts_and_panels_lie_apart(
+    stimulated: Path, layout: str, width: float, flat: bool
+) -> None:
+    scene = stimulated / "scene.nml"
+    if flat:
+        text = scene.read_text()
+        scene.write_text(text.replace("y_min = 0.0, y_max = 2.0", "y_min = 0.8, y_max = 1.2"))
+    with style.layout(layout):
+        figure = story(read_run(stimulated))
+    assert figure.get_figwidth() == pytest.approx(width)
+    figure.draw_without_rendering()
+    legend, facts = (axes for axes in figure.axes if not axes.axison)
+    found = [legend.get_legend(), *facts.texts, *(axes for axes in figure.axes if axes.axison)]
+    boxes = [item.get_window_extent() for item in found if item is not None]
+    whole = figure.bbox.padded(1.0)
+    for k, box in enumerate(boxes):
+        assert whole.x0 <= box.x0 and whole.y0 <= box.y0 and box.y1 <= whole.y1
+        # the pressure and its rate share a place
+        assert not [b for b in boxes[:k] if box.overlaps(b) and not np.allclose(box, b)]
+
+
 def test_files_and_what_is_missing(
     stimulated: Path, wet_run: Path, dry_run: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -159,7 +182,7 @@ def test_files_and_what_is_missing(
     assert names == ["story.png"]
     (stimulated / "slip_events.csv").write_text(HEAD, encoding="utf-8")
     figure = story(read_run(stimulated))
-    assert "none" in [text.get_text() for text in panel(figure, "slip events").texts]
+    assert not [axes for axes in figure.axes if "slip events" in axes.get_title(loc="left")]
     with pytest.raises(AbsentError, match="no well, or an earlier version"):
         story(read_run(wet_run))
     with pytest.raises(AbsentError, match="mechanics only"):

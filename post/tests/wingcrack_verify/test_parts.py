@@ -140,6 +140,16 @@ def test_only_quick_parts_are_part_of_quick(tmp_path: Path) -> None:
     assert len(case.calls) == 3
 
 
+def test_only_quick_runs_are_part_of_quick(tmp_path: Path) -> None:
+    case = liked_case(tmp_path)
+    case.toml = case.toml.replace("size = 0.2", "size = 0.2\nquick = false")
+    report = case.judge_all(quick=True).cases[0]
+    assert [item.run.name for item in report.checks[0].measured] == ["middle", "fine"]
+    assert len(case.calls) == 2
+    case.toml = case.toml.replace("size = 0.05", "size = 0.05\nquick = false")
+    assert case.judge_all(quick=True).cases[0].checks == ()
+
+
 def test_a_case_without_quick_parts_is_no_part_of_quick(tmp_path: Path) -> None:
     case = small_case(tmp_path, "relative")
     case.toml = case.toml.replace("quick = true\n", "")

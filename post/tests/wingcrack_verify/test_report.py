@@ -151,8 +151,9 @@ def test_quick_leaves_the_long_cases_out(case: SmallCase) -> None:
     assert verify(case) == 0
 
 
-def test_quick_draws_what_did_not_pass(case: SmallCase) -> None:
+def test_quick_draws_what_did_not_pass(case: SmallCase, capsys: pytest.CaptureFixture[str]) -> None:
     assert verify(case, "--quick") == 0
+    assert "report.pdf" not in capsys.readouterr().out
     assert '<svg viewBox="' not in (case.root / "report" / "index.html").read_text()
     case.toml = case.toml.replace("expected = 2.0", "expected = 1.0")
     assert verify(case, "--quick") == 1

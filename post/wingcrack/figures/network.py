@@ -31,6 +31,7 @@ _LARGE = 0.5  # share of the body from which on the whole body is shown
 _SIZE = (3.6, 5.0)  # [inch] of the axes at most
 _BESIDE = (1.75, 0.95)  # [inch] for labels and colour bar
 _ONLY_LABELS = 0.8  # [inch] next to the axes without a colour bar
+_BAR = 0.9  # [inch] for a colour bar below
 
 
 @style.styled
@@ -43,9 +44,14 @@ def network_figure(run: Run) -> Figure:
     assert run.network is not None
     box = network_box(growths, run.scene)
     ratio = (box[3] - box[2]) / (box[1] - box[0])
-    beside = _BESIDE[0] if _order(growths) else _ONLY_LABELS
-    width = min(_SIZE[0] if _order(growths) else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
-    figure = style.new_figure(width + beside, width * ratio + _BESIDE[1])
+    # in a column the colour bar stands below
+    has_bar, below = bool(_order(growths)), _BESIDE[1]
+    wide = style.chosen(page=has_bar, column=False, slide=has_bar)
+    beside = _BESIDE[0] if wide else _ONLY_LABELS
+    width = min(_SIZE[0] if wide else style.SINGLE_COLUMN - beside, _SIZE[1] / ratio)
+    if has_bar and not wide:
+        below, beside = below + _BAR, style.SINGLE_COLUMN - width
+    figure = style.new_figure(width + beside, width * ratio + below)
     axes = figure.add_subplot()
     handles = draw_network(axes, growths, run.network, run.history, run.scene)
     # a region's entry is as long as two others
@@ -158,9 +164,16 @@ def _colour_bar(
         what = f"time [{unit.name}]"
     values = {number: float(unit.of(moment)) for number, moment in moments.items()}
     bar = axes.figure.colorbar(
-        ScalarMappable(norm, style.time_colours()), ax=axes, aspect=30, pad=0.03, shrink=0.9
+        ScalarMappable(norm, style.time_colours()),
+        ax=axes,
+        location=style.chosen(page="right", column="bottom", slide="right"),
+        aspect=30,
+        pad=0.03,
+        shrink=0.9,
     )
-    places = MaxNLocator(6, integer=True).tick_values(1, max(values))
+    places = MaxNLocator(style.chosen(page=6, column=3, slide=6), integer=True).tick_values(
+        1, max(values)
+    )
     ticks = [1, *(round(place) for place in places if 1 < place <= max(values))]
     bar.set_ticks(ticks, labels=_tick_labels(ticks, values))
     bar.set_label(f"increment of growth ({what}{_constant_from(values)})")

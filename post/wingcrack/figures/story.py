@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.gridspec import SubplotSpec
+from matplotlib.gridspec import GridSpecFromSubplotSpec
 
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
@@ -25,12 +25,12 @@ from wingcrack.figures.read import Run, needed
 from wingcrack.figures.scales import run_length_unit
 from wingcrack.figures.slip import ASEISMIC_COLOUR, SEISMIC_COLOUR, seismic, slip_words
 from wingcrack.figures.states import growth_start
-from wingcrack.figures.story_map import HALO, draw_map
+from wingcrack.figures.story_map import HALO, draw_map, map_ratio
 from wingcrack.figures.table import FloatArray, Table
 from wingcrack.figures.units import MEGAPASCAL, rate_unit, time_unit, volume_label, volume_unit
 from wingcrack.figures.wells import MOST_WELLS, well_rows
 
-_SIZE = (style.DOUBLE_COLUMN, 9.4)  # [inch] on A4
+_FLAT = 0.45  # height of a map over its width, up to which it is as wide as the page
 COLUMNS = (
     "injection_rate_m2_s",
     "fracture_fluid_m2",
@@ -83,32 +83,66 @@ def story(run: Run) -> Figure:
     if table.rows == 1:
         raise AbsentError("the run has one state, so nothing has flowed yet")
     cells = needed(run.fractures, "fractures.csv", "the states of the fractures")
-    figure = style.new_figure(*_SIZE)
-    grid = figure.add_gridspec(4, 2, height_ratios=(2.1, 1.0, 1.0, 1.0))
-    above = grid[0, :].subgridspec(1, 2, width_ratios=(2.3, 1.0))
+    draws = {
+        "pressure": draw_pressure,
+        "injectivity": _draw_injectivity,
+        "fluid": _draw_fluid,
+        "lengths": draw_lengths,
+        "moment": _draw_moment,
+        "events": _draw_events,
+    }
+    shown = [name for name in draws if name not in _empty(run)]
+    marks = find_marks(run)
+    facts = _facts(run, marks)[: style.chosen(page=_MOST_FACTS, column=_MOST_FACTS, slide=8)]
+    columns = style.chosen(page=2, column=1, slide=3)
+    rows = -(-len(shown) // columns)
+    # beside a flat map there is no room for the facts: they stand below
+    beside = style.chosen(page=map_ratio(run) > _FLAT, column=False, slide=True)
+    width = style.whole_width()
+    stacked = style.chosen(page=beside, column=True, slide=True)
+    text = style.text_height(len(facts) + 8 if stacked else max(len(facts), 7) + 1)
+    heights = [(0.62 if beside else 1.0) * (width - 0.8) * map_ratio(run) + 0.7]
+    heights = [max(*heights, text)] if beside else [*heights, text]
+    heights = style.chosen(page=heights, column=heights, slide=[text])
+    panel = 1.9
+    figure = style.new_figure(width, sum(heights) + panel * rows, whole=True)
+    grid = figure.add_gridspec(len(heights) + 1, 1, height_ratios=(*heights, panel * rows))
+    above = grid[0].subgridspec(1, 2, width_ratios=(2.3, 1.0)) if beside else grid
     network = figure.add_subplot(above[0, 0])
-    pressure, injectivity, fluid, lengths, moment, events = (
-        figure.add_subplot(grid[row, column]) for row in (1, 2, 3) for column in (0, 1)
-    )
     handles = draw_map(network, run, cells)
     network.set_title("network at the end")
-    marks = find_marks(run)
-    _draw_facts(figure, above[0, 1], handles, "\n".join(_facts(run, marks)))
-    draw_pressure(pressure, run)
-    _draw_injectivity(injectivity, run)
-    _draw_fluid(fluid, run)
-    draw_lengths(lengths, run)
-    _draw_moment(moment, run)
-    _draw_events(events, run)
-    panels = [pressure, injectivity, fluid, lengths, moment, events]
+    place = (above[0, 1] if beside else above[1, 0]).subgridspec(*((2, 1) if stacked else (1, 2)))
+    _draw_facts(figure, place, handles, "\n".join(facts))
+    below = grid[-1].subgridspec(rows, columns)
+    panels = {name: figure.add_subplot(below[divmod(k, columns)]) for k, name in enumerate(shown)}
+    for name, axes in panels.items():
+        draws[name](axes, run)
     end = float(abscissa(run, table.moments())[0][-1])
-    for axes in panels:
+    for k, axes in enumerate(panels.values()):
         axes.set_xlim(0.0, end)
-    for axes in panels[-2:]:
-        axes.set_xlabel(abscissa(run, table.moments())[1])
-    draw_marks(panels, [pressure, injectivity, moment, events], run, marks)
-    style.letter([network, *panels])
+        title, label = axes.get_title(loc="left"), axes.get_ylabel()
+        axes.set_title(style.chosen(page=title, column=title, slide=title.partition(":")[0]))
+        axes.set_ylabel(
+            style.chosen(page=label, column=label, slide=label.replace(" per ", "\nper "))
+        )
+        if k + columns >= len(shown):
+            axes.set_xlabel(abscissa(run, table.moments())[1])
+    named = [axes for name, axes in panels.items() if name not in ("fluid", "lengths")]
+    draw_marks(list(panels.values()), named, run, marks)
+    style.letter([network, *panels.values()])
     return figure
+
+
+def _empty(run: Run) -> set[str]:
+    """Panels that would show nothing."""
+    empty = set()
+    if not any(np.any(values > 0.0) for *_, values in _injectivities(run)):
+        empty.add("injectivity")
+    if not np.any(np.diff(run.history.number("seismic_moment_nm")) > 0.0):
+        empty.add("moment")
+    if run.slip_events is None or run.slip_events.rows == 0:
+        empty.add("events")
+    return empty
 
 
 def find_marks(run: Run) -> list[Mark]:
@@ -208,8 +242,6 @@ def _draw_injectivity(axes: Axes, run: Run) -> None:
         if np.any(np.isfinite(later)):
             lows.append(float(np.nanmin(shown)))
             highs.append(float(np.nanmax(later)))
-    if not axes.lines:
-        axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", color=_GREY)
     if lows:
         axes.set_ylim(0.8 * min(lows), max(1.25 * max(highs), 3.0 * min(lows)))
 
@@ -297,12 +329,7 @@ def _draw_moment(axes: Axes, run: Run) -> None:
 def _draw_events(axes: Axes, run: Run) -> None:
     """Slip events from their beginning to their end, at their moment; seismic ones stand out."""
     axes.set(title="slip events: seismic (orange), aseismic", ylabel="moment [N m]")
-    table = run.slip_events
-    if table is None or table.rows == 0:
-        axes.set_ylim(0.0, 1.0)
-        axes.set_yticks([])
-        axes.text(0.5, 0.5, "none", transform=axes.transAxes, ha="center", color=_GREY)
-        return
+    table = needed(run.slip_events, "slip_events.csv", "what has slipped when")
     begin, end = (abscissa(run, table.number(name))[0] for name in ("time_s", "end_s"))
     moment = table.number("moment_nm")
     size, fast = np.log10(moment), seismic(table)
@@ -342,12 +369,15 @@ def _name_events(axes: Axes, run: Run, table: Table, begin: FloatArray, size: Fl
             break
 
 
-def _draw_facts(figure: Figure, place: SubplotSpec, handles: Sequence[Artist], facts: str) -> None:
-    """Legend of the map, and below it the run in numbers."""
+def _draw_facts(
+    figure: Figure, places: GridSpecFromSubplotSpec, handles: Sequence[Artist], facts: str
+) -> None:
+    """Legend of the map, and the run in numbers, below or beside it."""
     labels = [str(handle.get_label()) for handle in handles]
     heights = (sum(label.count("\n") + 1.0 for label in labels) + 1.0, facts.count("\n") + 2.0)
-    grid = place.subgridspec(2, 1, height_ratios=heights)
-    legend, text = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
+    if places.nrows > 1:
+        places.set_height_ratios(heights)
+    legend, text = figure.add_subplot(places[0]), figure.add_subplot(places[1])
     for axes in (legend, text):
         axes.axis("off")
     legend.legend(
@@ -357,7 +387,15 @@ def _draw_facts(figure: Figure, place: SubplotSpec, handles: Sequence[Artist], f
         bbox_to_anchor=(0.0, 1.0),
         handlelength=1.6,
     )
-    text.text(0.0, 1.0, facts, transform=text.transAxes, va="top", fontsize=7, linespacing=1.35)
+    text.text(
+        0.0,
+        1.0,
+        facts,
+        transform=text.transAxes,
+        va="top",
+        fontsize=style.text_size(),
+        linespacing=1.35,
+    )
 
 
 def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:

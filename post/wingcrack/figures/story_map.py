@@ -149,6 +149,16 @@ _EVENT_SIZES = (6.0, 20.0)  # [points] of the smallest and the largest event
 _EVENT_RANGE = 3.0  # powers of ten of the moment between these, at least
 
 
+def map_ratio(run: Run) -> float:
+    """Height of the map over its width."""
+    network = run.network or {}
+    growths = read_growth(network) if network.get("steps") else []
+    if not growths:
+        return 1.0
+    left, right, bottom, top = _flat(network_box(growths, run.scene), growths)
+    return (top - bottom) / (right - left)
+
+
 def draw_map(axes: Axes, run: Run, cells: Table) -> list[Artist]:
     """Draw the network into axes and give the entries of a legend."""
     network = run.network or {}

@@ -19,6 +19,7 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 from wingcrack.figures.units import Unit
 
@@ -29,8 +30,11 @@ _LAYOUT = ContextVar("layout", default="page")
 _ENLARGED, _LARGER_TEXT = 1.25, 1.6  # of slides, compared with pages
 
 _PAGE, _PAGE_DPI = 9.0, 200.0  # height from which on a figure is a page for the screen [inch]
+_WHOLE = "whole"  # label of a figure that is all of a page
 SINGLE_COLUMN = 3.5  # [inch], as most journals have it
 DOUBLE_COLUMN = 7.1  # [inch]
+_SLIDE = 10.6  # [inch on a page], 13.3 inches after enlargement
+_SMALL, _LINE = 7.0, 0.133  # of small text: its size [point], height of its lines [inch]
 
 # Okabe and Ito (2008), "Color universal design"; yellow is left out: too light on paper
 CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
@@ -45,11 +49,8 @@ STEADY = 1.0e-6  # share of the values below which their differences say nothing
 
 FIELD_COLOURS = "cividis"
 JUMP_COLOURS = "magma_r"  # of slip and aperture: what is zero is pale
-_METADATA: dict[str, dict[str, Any]] = {"png": {"Software": None}, "pdf": {"CreationDate": None}}
-
-_PNG: dict[str, Any] = {
-    "pil_kwargs": {"compress_level": 1}
-}  # a fifth more bytes, a tenth less time
+_METADATA: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}}
+_PNG_LEVEL = 1  # of compression: a fifth more bytes, a tenth less time
 
 RC: dict[Any, Any] = {
     "axes.axisbelow": True,
@@ -112,20 +113,42 @@ def across(panels: int) -> int:
     return 1 if _LAYOUT.get() == "column" else panels
 
 
+def chosen(*, page: R, column: R, slide: R) -> R:
+    """Choose what the layout takes."""
+    return {"page": page, "column": column, "slide": slide}[_LAYOUT.get()]
+
+
+def text_height(lines: float) -> float:
+    """Height of small text [inch on a page]."""
+    return chosen(page=1.0, column=1.0, slide=_LARGER_TEXT / _ENLARGED) * _LINE * lines
+
+
+def text_size() -> float:
+    """Size of small text [point]."""
+    return chosen(page=1.0, column=1.0, slide=_LARGER_TEXT) * _SMALL
+
+
+def whole_width() -> float:
+    """Width of a figure that is all of a page, a column or a slide [inch on a page]."""
+    return chosen(page=DOUBLE_COLUMN, column=SINGLE_COLUMN, slide=_SLIDE)
+
+
 def _side_by_side(entries: int) -> int:
     """Entries of a legend in a row where a page has so many."""
-    return {"page": entries, "column": min(entries, 2), "slide": (entries + 1) // 2}[_LAYOUT.get()]
+    return chosen(page=entries, column=min(entries, 2), slide=(entries + 1) // 2)
 
 
-def new_figure(width: float, height: float) -> Figure:
+def new_figure(width: float, height: float, *, whole: bool = False) -> Figure:
     """Empty figure in the common style; sizes in inches, as a page has them.
 
-    No pyplot: a figure belongs to its caller and leaves no state behind.
+    `whole`: a figure for the screen, that is all of a page. No pyplot: a figure belongs to its
+    caller and leaves no state behind.
     """
-    if _LAYOUT.get() == "column":
-        return _Column(figsize=(width, height))
+    kind = _Column if _LAYOUT.get() == "column" else Figure
     larger = _ENLARGED if _LAYOUT.get() == "slide" else 1.0
-    return Figure(figsize=(larger * width, larger * height))
+    figure = kind(figsize=(larger * width, larger * height))
+    figure.set_label(_WHOLE if whole else "")
+    return figure
 
 
 def _settings() -> dict[Any, Any]:
@@ -235,18 +258,23 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     gives the same bytes.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
+    for axes in figure.axes:
+        for spine in axes.spines.values():
+            spine.set_in_layout(False)  # it lies on the edge of its axes, and takes time to measure
     written = []
     for form in formats:
         aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
         try:
             if form == "png":
-                is_page = figure.get_figheight() > _PAGE
+                is_page = figure.get_figheight() > _PAGE or figure.get_label() == _WHOLE
                 figure.set_dpi(min(RC["savefig.dpi"], _PAGE_DPI if is_page else np.inf))
                 # savefig draws twice, first for the layout; this draws once
                 canvas: Any = FigureCanvasAgg(figure)
-                canvas.print_png(aside, metadata=_METADATA["png"], **_PNG)
+                canvas.draw()
+                image = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+                image.save(aside, dpi=(figure.dpi, figure.dpi), compress_level=_PNG_LEVEL)
             else:
-                figure.savefig(aside, metadata=_METADATA[form])
+                figure.savefig(aside, metadata=_METADATA.get(form))
             written.append(aside.replace(stem.with_name(f"{stem.name}.{form}")))
         finally:
             aside.unlink(missing_ok=True)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -17,13 +19,14 @@ from wingcrack.figures.geometry import draw_geometry
 from wingcrack.figures.growth import read_growth
 from wingcrack.figures.history import draw_jumps, draw_length, draw_pressure, draw_states
 from wingcrack.figures.load import STEP_LABEL, abscissa, draw_load, has_load, tip_steps
-from wingcrack.figures.read import Run
-from wingcrack.figures.states import growth_start
+from wingcrack.figures.read import Run, needed
+from wingcrack.figures.states import growth_start, slips_or_opens
 from wingcrack.figures.story import COLUMNS, Mark, draw_lengths, draw_marks, find_marks
 from wingcrack.figures.story import draw_pressure as draw_pressure_and_rate
-from wingcrack.figures.story_map import draw_map
+from wingcrack.figures.story_map import draw_map, map_ratio
 
-_SIZE = (style.DOUBLE_COLUMN, 9.6)  # [inch] on A4
+# Draws into a place of a figure, and gives the axes that get letters.
+Cell: TypeAlias = Callable[[Run, Figure, SubplotSpec], list[Axes]]
 _GREY = "#555555"
 _STATUS_COLOURS = {"finished": "#009E73", "stopped": "#E69F00", "failed": "#D55E00"}
 _NEAR = 0.09  # share of the axis between marks that are both named
@@ -35,66 +38,108 @@ _MOST_LINES = 21  # of a column of text; what has no room is counted
 @style.styled
 def summary(run: Run) -> Figure:
     """Draw geometry, network by state, pressure or load, lengths, K_eq over K_IC, and the facts."""
-    figure = style.new_figure(*_SIZE)
-    grid = figure.add_gridspec(5, 2, height_ratios=(0.24, 2.45, 0.5, 1.75, 2.3))
     facts = gather_facts(run)
-    _draw_head(figure, grid[0, :], facts)
-    geometry, network = figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
-    entries = draw_geometry(geometry, run)
-    geometry.set_title("body, loads, wells")
-    _legend(figure, grid[2, 0], entries)
-    _legend(figure, grid[2, 1], _draw_network(network, run))
-    middle = grid[3, :].subgridspec(1, 3, wspace=0.1)
-    drive, length, ratio = (figure.add_subplot(middle[0, k]) for k in range(3))
     marks = [] if has_load(run) else find_marks(run)
-    if run.history.rows > 1:
-        _draw_drive(drive, run)
-        _draw_length(length, run)
-    else:
-        _say(drive, "one state:")
-        _say(length, "no curves")
-    _draw_ratio(ratio, run)
+    texts: list[Cell] = [
+        partial(_draw_text, facts.left(), "what came of it"),
+        partial(_draw_text, facts.right(_words(run, marks)), "what to know"),
+    ]
+    maps: list[Cell] = [_geometry, *([_network] if _has_network(run) else [])]
+    curves = [_draw_drive, _draw_length] if run.history.rows > 1 else []
+    curves += [_draw_ratio] if _has_ratio(run) else []
+    panels: list[Cell] = [partial(_panel, draw) for draw in curves]
+    if len(maps) == 1 or style.chosen(page=False, column=False, slide=True):
+        maps.append(texts.pop(0))
+    if style.chosen(page=False, column=False, slide=True):
+        texts.clear()  # there is no room
+    columns = style.chosen(page=2, column=1, slide=3)
+    side = style.whole_width() / columns - 0.7
+    words = style.text_height(2.0 + max(map(len, map(_wrapped, (facts.left(), facts.right([]))))))
+    groups = [
+        (maps, columns, side * min(max(map_ratio(run), 0.5), 1.0) + 0.6 + style.text_height(5.0)),
+        (panels, style.across(min(3, len(panels))), 2.2),
+        (texts, columns, words),
+    ]
+    groups = [group for group in groups if group[0]]
+    heights = [0.45, *(-(-len(cells) // across) * height for cells, across, height in groups)]
+    figure = style.new_figure(style.whole_width(), sum(heights), whole=True)
+    grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
+    _draw_head(figure, grid[0], facts)
+    drawn: list[Axes] = []
+    for row, (cells, across, _) in enumerate(groups, start=1):
+        places = grid[row].subgridspec(-(-len(cells) // across), across)
+        for k, cell in enumerate(cells):
+            drawn += cell(run, figure, places[divmod(k, across)])
     if marks and run.history.rows > 1:
-        _draw_marks([drive, length, ratio], run, marks)
-    _draw_text(figure, grid[4, 0], facts.left(), "what came of it")
-    _draw_text(figure, grid[4, 1], facts.right(_words(run, marks)), "what to know")
-    style.letter([geometry, network, drive, length, ratio])
+        _draw_marks(drawn[-len(panels) :], run, marks)
+    style.letter(drawn)
     return figure
+
+
+def _has_network(run: Run) -> bool:
+    network = run.network or {}
+    written = run.fractures is not None and run.fractures.rows > 0
+    return written and bool(network.get("steps")) and bool(read_growth(network))
+
+
+def _has_tips(run: Run) -> bool:
+    toughness = run.scene.toughness_pa_sqrtm if run.scene else None
+    return run.tips is not None and run.tips.rows > 0 and bool(toughness)
+
+
+def _has_ratio(run: Run) -> bool:
+    """Whether tips are driven, or fractures slip or open where nothing can grow."""
+    return _has_tips(run) or (run.history.rows > 1 and slips_or_opens(run))
+
+
+def _geometry(run: Run, figure: Figure, place: SubplotSpec) -> list[Axes]:
+    return _with_legend(figure, place, "body, loads, wells", lambda axes: draw_geometry(axes, run))
+
+
+def _network(run: Run, figure: Figure, place: SubplotSpec) -> list[Axes]:
+    """The network at the end by contact state."""
+    cells = needed(run.fractures, "fractures.csv", "the states of the fractures")
+    title = "fractures at the end, by state"
+    return _with_legend(figure, place, title, lambda axes: draw_map(axes, run, cells))
+
+
+def _with_legend(
+    figure: Figure, place: SubplotSpec, title: str, draw: Callable[[Axes], Sequence[Artist]]
+) -> list[Axes]:
+    grid = place.subgridspec(2, 1, height_ratios=(4.0, 1.0))
+    axes, below = figure.add_subplot(grid[0]), figure.add_subplot(grid[1])
+    handles = draw(axes)
+    axes.set_title(title)
+    below.set_axis_off()
+    if handles:
+        size = style.text_size() - 1.0
+        below.legend(
+            handles=list(handles), loc="upper left", ncols=2, fontsize=size, borderaxespad=0.0
+        )
+    return [axes]
+
+
+def _panel(
+    draw: Callable[[Axes, Run], None], run: Run, figure: Figure, place: SubplotSpec
+) -> list[Axes]:
+    axes = figure.add_subplot(place)
+    draw(axes, run)
+    return [axes]
 
 
 def _draw_head(figure: Figure, place: SubplotSpec, facts: Facts) -> None:
     """Title, and how the run ended."""
     axes = figure.add_subplot(place)
     axes.set_axis_off()
-    title = textwrap.shorten(facts.title, _TITLE, placeholder=" ...")
-    axes.text(0.0, 1.0, title, fontsize=9, va="top")
+    title = textwrap.shorten(
+        facts.title, style.chosen(page=_TITLE, column=_LINE - 10, slide=_TITLE), placeholder=" ..."
+    )
+    axes.text(0.0, 1.0, title, fontsize=style.text_size() + 2.0, va="top")
     colour = _STATUS_COLOURS.get(facts.status, _GREY)
-    ended = textwrap.shorten(facts.ended, 2 * _LINE, placeholder=" ...")
-    axes.text(0.0, 0.05, ended, fontsize=8, va="bottom", color=colour)
-
-
-def _draw_network(axes: Axes, run: Run) -> list[Artist]:
-    """The network at the end by contact state."""
-    axes.set_title("fractures at the end, by state")
-    network = run.network or {}
-    drawn = bool(network.get("steps")) and bool(read_growth(network))
-    if not drawn or run.fractures is None or run.fractures.rows == 0:
-        _say(axes, "no fractures written")
-        return []
-    return draw_map(axes, run, run.fractures)
-
-
-def _say(axes: Axes, words: str) -> None:
-    """Put words in the place of a panel."""
-    axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", color=_GREY)
-    axes.set_axis_off()
-
-
-def _legend(figure: Figure, place: SubplotSpec, handles: Sequence[Artist]) -> None:
-    axes = figure.add_subplot(place)
-    axes.set_axis_off()
-    if handles:
-        axes.legend(handles=list(handles), loc="upper left", ncols=2, fontsize=6, borderaxespad=0.0)
+    ended = textwrap.shorten(
+        facts.ended, style.chosen(page=2, column=1, slide=2) * _LINE, placeholder=" ..."
+    )
+    axes.text(0.0, 0.05, ended, fontsize=style.text_size() + 1.0, va="bottom", color=colour)
 
 
 def _draw_drive(axes: Axes, run: Run) -> None:
@@ -128,10 +173,7 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
     axes.set_title(r"largest $K_\mathrm{eq}/K_\mathrm{IC}$")
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
     if run.tips is None or run.tips.rows == 0 or not toughness:
-        if run.history.rows > 1:
-            draw_jumps(axes, run)  # nothing can grow: how far fractures slip and open
-        else:
-            _say(axes, "no tips" if toughness else "no toughness")
+        draw_jumps(axes, run)  # nothing can grow: how far fractures slip and open
         return
     if has_load(run) and growth_start(run) is not None:
         place, below = tip_steps(run, run.tips), STEP_LABEL
@@ -150,8 +192,7 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
 def _draw_marks(panels: Sequence[Axes], run: Run, marks: Sequence[Mark]) -> None:
     end = float(abscissa(run, run.history.moments())[0][-1])
     for axes in panels:
-        if axes.axison:
-            axes.set_xlim(0.0, end)
+        axes.set_xlim(0.0, end)
     draw_marks(panels, panels[:1], run, marks, near=_NEAR)
 
 
@@ -166,14 +207,23 @@ def _words(run: Run, marks: Sequence[Mark]) -> list[str]:
     ]
 
 
-def _draw_text(figure: Figure, place: SubplotSpec, lines: Sequence[str], title: str) -> None:
-    axes = figure.add_subplot(place)
-    axes.set_axis_off()
-    axes.set_title(title)
+def _wrapped(lines: Sequence[str]) -> list[str]:
     wrapped: list[str] = []
     for line in lines:
         wrapped += textwrap.wrap(line, _LINE, subsequent_indent="   ") or [""]
-    if len(wrapped) > _MOST_LINES:
-        more = len(wrapped) - _MOST_LINES + 1
-        wrapped = [*wrapped[: _MOST_LINES - 1], f"... and {more} lines more: see run.json"]
-    axes.text(0.0, 1.0, "\n".join(wrapped), va="top", fontsize=7, linespacing=1.3)
+    most = style.chosen(page=_MOST_LINES, column=_MOST_LINES, slide=_MOST_LINES - 4)
+    if len(wrapped) <= most:
+        return wrapped
+    more = len(wrapped) - most + 1
+    return [*wrapped[: most - 1], f"... and {more} lines more: see run.json"]
+
+
+def _draw_text(
+    lines: Sequence[str], title: str, _run: Run, figure: Figure, place: SubplotSpec
+) -> list[Axes]:
+    axes = figure.add_subplot(place)
+    axes.set_axis_off()
+    axes.set_title(title)
+    words = "\n".join(_wrapped(lines))
+    axes.text(0.0, 1.0, words, va="top", fontsize=style.text_size(), linespacing=1.3)
+    return []
