@@ -56,7 +56,7 @@ module coarse_wells
       procedure :: lost
       procedure :: at_places
       procedure :: first_flows
-      procedure :: flow_between
+      procedure :: allowed_flow
       procedure :: flow_number
       procedure :: first_entry
       procedure :: last_entry
@@ -141,10 +141,11 @@ contains
    !! change of the rate distributed by the losses of the entries; where nothing flows yet, the rate
    !! that is prescribed or that the losses allow at a prescribed pressure. Losses by the square of
    !! the flow have no derivative there, and Newton's method would begin as if there were none.
-   pure function first_flows(self, well_flow, well_head) result(flow)
+   pure function first_flows(self, well_flow, well_head, dt) result(flow)
       class(wells_t), intent(in) :: self
       real(rk), intent(in) :: well_flow(:)  !< of state_t [m2/s]
       real(rk), intent(in) :: well_head(:)  !< of state_t [Pa]
+      real(rk), intent(in) :: dt  !< [s]
       real(rk) :: flow(self%n + self%n_entries)  !< [m2/s]
       real(rk) :: loss, rate
       logical :: follows
@@ -154,14 +155,7 @@ contains
       do w = 1, self%n
          loss = self%entries_loss(w)
          if (.not. (loss > 0.0_rk .or. self%turbulence(w) > 0.0_rk)) cycle
-         rate = self%rate(w)
-         if (self%control(w) == control_shut) then
-            rate = 0.0_rk
-         else if (self%control(w) /= control_rate) then
-            rate = self%flow_between(w, well_head(w), self%pressure(w))
-            if (self%control(w) == control_limited) rate = sign(1.0_rk, self%rate(w)) &
-               *max(0.0_rk, min(abs(self%rate(w)), sign(1.0_rk, self%rate(w))*rate))
-         end if
+         rate = self%allowed_flow(w, well_head(w), dt)
          follows = self%control(w) == control_shut .or. (self%control(w) == control_rate &
                                                          .and. .not. self%storage(w) > 0.0_rk)
          associate (of_entries => flow(self%first_entry(w):self%last_entry(w)))
@@ -175,20 +169,33 @@ contains
       end do
    end function first_flows
 
-   !> The flow that loses the difference of two pressures [m2/s].
-   pure real(rk) function flow_between(self, well, inside, at_head) result(flow)
+   !> The prescribed rate of a well, or the flow that loses the rise of the head to the prescribed
+   !! pressure, as far as the storage of the well lets the head rise in a step of length dt [m2/s].
+   pure real(rk) function allowed_flow(self, well, head, dt) result(flow)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well  !< among the n in fractures, with a loss by squares
-      real(rk), intent(in) :: inside, at_head  !< [Pa]
-      real(rk) :: drop
+      real(rk), intent(in) :: head  !< before the step [Pa]
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk) :: change, direction, rise
 
-      drop = abs(at_head - inside)
-      associate (linear => self%friction(well), square => self%resistance(well, 1.0_rk) &
-                                                           - self%friction(well))
-         flow = sign(2.0_rk*drop/max(tiny(1.0_rk), linear + sqrt(linear**2 + 4.0_rk*square*drop)), &
-                     at_head - inside)
+      associate (rate => self%rate(well), control => self%control(well), linear => &
+                 self%friction(well), square => self%resistance(well, 1.0_rk) - self%friction(well))
+         flow = merge(0.0_rk, rate, control == control_shut)
+         change = rate
+         if (control == control_pressure) change = self%pressure(well) - head
+         direction = sign(1.0_rk, change)
+         rise = merge(direction*(self%pressure(well) - head), huge(1.0_rk), &
+                      control == control_pressure .or. control == control_limited)
+         if (control /= control_pressure .and. self%storage(well) > 0.0_rk) then
+            rise = min(rise, abs(rate)*dt/self%storage(well))
+         end if
+         if (.not. rise < huge(1.0_rk)) return
+         rise = max(0.0_rk, rise)
+         flow = 2.0_rk*rise/max(tiny(1.0_rk), linear + sqrt(linear**2 + 4.0_rk*square*rise))
+         if (control /= control_pressure) flow = min(abs(rate), flow)
+         flow = direction*flow
       end associate
-   end function flow_between
+   end function allowed_flow
 
    !> The well of each flow of a state, among all wells of the scene.
    pure function flow_number(self) result(number)
