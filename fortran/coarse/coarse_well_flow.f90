@@ -171,14 +171,16 @@ contains
       real(rk), intent(out) :: residual  !< [Pa]
       real(rk), intent(out) :: per_flow  !< [Pa s/m2]
       real(rk), intent(out) :: per_head  !< [-]
-      real(rk) :: factor, scale
+      real(rk) :: factor, resistance, scale
 
       scale = eq%dt/eq%unit
       associate (wells => eq%paths%wells, condition => condition_of(w, eq, flow, head))
-         factor = 1.0_rk + wells%resistance(w, wells%rate(w))/scale
+         per_head = wells%storage(w)/eq%unit
+         resistance = wells%resistance(w, wells%rate(w))
+         factor = 1.0_rk + resistance/(scale + per_head*resistance)
          scale = factor*scale
+         per_head = factor*per_head
          per_flow = merge(0.0_rk, scale, condition == control_pressure)
-         per_head = factor*wells%storage(w)/eq%unit
          if (condition == control_pressure) per_head = 1.0_rk
          if (wells%control(w) == control_shut) per_head = 0.0_rk
          residual = per_flow*flow + per_head*(head - eq%before%well_head(w))

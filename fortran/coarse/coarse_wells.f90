@@ -176,8 +176,11 @@ contains
       integer(ik), intent(in) :: well  !< among the n in fractures, with a loss by squares
       real(rk), intent(in) :: head  !< before the step [Pa]
       real(rk), intent(in) :: dt  !< [s]
-      real(rk) :: change, direction, rise
+      real(rk), parameter :: small = 1.0e-6_rk  ! rise that other wells may cause, over the pressure
+      real(rk) :: change, direction, other, rise
 
+      other = small*abs(head)
+      if (allocated(self%pressure_in_situ)) other = small*abs(head + self%pressure_in_situ(well))
       associate (rate => self%rate(well), control => self%control(well), linear => &
                  self%friction(well), square => self%resistance(well, 1.0_rk) - self%friction(well))
          flow = merge(0.0_rk, rate, control == control_shut)
@@ -187,7 +190,7 @@ contains
          rise = merge(direction*(self%pressure(well) - head), huge(1.0_rk), &
                       control == control_pressure .or. control == control_limited)
          if (control /= control_pressure .and. self%storage(well) > 0.0_rk) then
-            rise = min(rise, abs(rate)*dt/self%storage(well))
+            rise = min(rise, max(other, abs(rate)*dt/self%storage(well)))
          end if
          if (.not. rise < huge(1.0_rk)) return
          rise = max(0.0_rk, rise)
