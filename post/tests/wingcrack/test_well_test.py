@@ -64,7 +64,9 @@ def test_a_rate_in_the_first_row_is_of_no_time() -> None:
     time = np.arange(9.0)
     rate = np.where(time == 0.0, 1.0, 0.0)
     with np.errstate(all="raise"):
-        assert not list(fall_offs(Record("w", time, 9.0 - time, rate, 0.0 * time, has_losses=False)))
+        assert not list(
+            fall_offs(Record("w", time, 9.0 - time, rate, 0.0 * time, has_losses=False))
+        )
 
 
 @pytest.mark.parametrize(

@@ -278,7 +278,9 @@ class Content:
         for kind, table, k, when, size, words in found:
             x, y, time_s = (float(table.number(name)[k]) for name in ("x_m", "y_m", when))
             if np.isfinite([x, y, time_s]).all():
-                shown.append([kind, *(np.array([x, y]) - self._origin).tolist(), time_s, size, words])
+                shown.append(
+                    [kind, *(np.array([x, y]) - self._origin).tolist(), time_s, size, words]
+                )
         return shown
 
 
