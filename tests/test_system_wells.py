@@ -329,3 +329,65 @@ def test_a_limited_well_with_storage_far_below_its_limit_takes_few_iterations(
 """,
     )
     assert max(int(row["newton_iterations"]) for row in rows(out / "history.csv")) <= 8
+
+
+LOSSES = """\
+&domain x_min = -50, x_max = 50, y_min = -50, y_max = 50 /
+&material young = 1e10, poisson = 0.25, biot = 0.5, porosity = 0.02, permeability = 1e-18 /
+&fluid compressibility = 4e-10, viscosity = 1e-3 /
+&in_situ sxx = -20e6, syy = -20e6 /
+&initial pressure = 10e6 /
+&side name = 'left', x_displacement = 0 /
+&side name = 'bottom', y_displacement = 0 /
+&fracture name = 'f', x = -10, 10, y = 0, 0, friction = 0.6, aperture = 1e-4 /
+&fracture name = 'g', x = -10, 10, y = 20, 20, friction = 0.6, aperture = 1e-4 /
+&coarse size_boundary = 20 /
+&output vtu = .false. /
+"""
+
+
+@pytest.mark.parametrize("end", ["1e3", "1e-3"])
+@pytest.mark.parametrize("storage", ["0", "1e-12"])
+@pytest.mark.parametrize(("rate", "limit"), [(1e-4, 11e6), (-1e-4, 9e6)])
+def test_a_limit_that_the_losses_exceed_at_once(
+    tmp_path: Path, rate: float, limit: float, storage: str, end: str
+) -> None:
+    """R Q^2 is a hundred times the distance of the limit: at most a tenth of the rate flows.
+
+    Such wells were found shut far beyond their limit, in ever shorter steps (random scene 204), or
+    not solved at all (scene 1). The loss is the difference of
+    the pressures at the head and in the fracture.
+    """
+    for entries, loss in (
+        ("fracture = 'f', x = 0.3, y = 0, turbulence = 1e16", 1e16),
+        ("fracture = 'f', 'g', entry_loss = 4e16", 0.0),
+    ):
+        out = run(
+            tmp_path,
+            f"{LOSSES}&injection name = 'w', {entries}, rate = {rate}, pressure = {limit},"
+            f" storage = {storage} /\n&time end = {end} /\n",
+        )
+        assert max(int(row["newton_iterations"]) for row in rows(out / "history.csv")) <= 12
+        for row in of_well(out, "w")[2:]:
+            head, flow = float(row["head_pressure_pa"]), float(row["flow_m2_s"])
+            assert abs(head - 10e6) <= abs(limit - 10e6) * (1 + 1e-6)
+            lost = head - float(row["pressure_pa"])
+            assert loss * abs(flow) * flow == pytest.approx(lost, rel=1e-6, abs=1e-3)
+            if storage == "0":
+                assert row["control"] == "limit"
+                assert head == pytest.approx(limit)
+
+
+def test_pressures_that_differ_in_one_cell(tmp_path: Path) -> None:
+    """At rest losses by the square of the flow have no slope: the equations were singular."""
+    out = run(
+        tmp_path,
+        f"{LOSSES}&injection name = 'a', fracture = 'f', x = 0.3, y = 0, pressure = 12e6,"
+        " turbulence = 1e14 /\n&injection name = 'b', fracture = 'f', x = 0.3, y = 0,"
+        " pressure = 9e6, turbulence = 1e14 /\n&time end = 100 /\n",
+    )
+    for name, head in (("a", 12e6), ("b", 9e6)):
+        for row in of_well(out, name)[2:]:
+            loss = head - float(row["pressure_pa"])
+            flow = float(row["flow_m2_s"])
+            assert 1e14 * abs(flow) * flow == pytest.approx(loss, rel=1e-6)

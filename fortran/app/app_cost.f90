@@ -68,6 +68,10 @@ contains
                               /scene%increment_of(1_ik)
          end if
       end associate
+      ! Imposed slip loads the tips of its fractures alone.
+      associate (slips => scene%fractures%law == "slip")
+         if (any(slips)) tips = 2.0_rk*real(count(slips), rk)
+      end associate
       cost%steps = cost%steps + cost%increments
       cells = size_of%cells + cells_per_increment*cost%increments
       factor = contact_factor(scene)

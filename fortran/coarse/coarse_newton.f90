@@ -151,7 +151,7 @@ contains
          x(eq%layout%at_pressure(i)) = eq%unknown_of_fluid(i, state%pressure(i), state%void(i))
       end do
       if (eq%layout%n_wells > 0) x(eq%layout%at_well(1_ik):eq%layout%at_well(eq%layout%n_wells)) &
-         & = eq%paths%wells%first_flows(state%well_flow)*eq%dt/eq%unit
+         & = eq%paths%wells%first_flows(state%well_flow, state%well_head, eq%dt)*eq%dt/eq%unit
       do i = 1, eq%layout%n_joints
          x(eq%layout%at_joint(i)) = eq%paths%joints%mean_pressure(i, state%pressure)
       end do

@@ -24,7 +24,8 @@
 module coarse_well_flow
    use base_kinds, only: ik, rk
    use coarse_fractures, only: conducting_aperture, fracture_system_t
-   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
+   use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, &
+                           slope_of_square
    implicit none(type, external)
    private
 
@@ -130,7 +131,8 @@ contains
    end subroutine add_place
 
    !> The active condition: control_rate, control_pressure, or control_shut without flow into the
-   !! well.
+   !! well. Without storage the head follows from that of another flow by the losses: at the rate it
+   !! would be beyond the limit, and without flow it would not.
    pure integer(ik) function condition_of(w, eq, flow, head) result(condition)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
@@ -138,23 +140,29 @@ contains
       real(rk), intent(in) :: head  !< [Pa]
       real(rk), parameter :: weight = 0.1_rk  ! of the pressure's share, which is 2 at most
       real(rk), parameter :: within = 1.0e3_rk  ! of it below the limit, where the rate is held
-      real(rk) :: beyond, share
+      real(rk) :: beyond(2), heads(2), share
 
       associate (wells => eq%paths%wells)
          condition = wells%control(w)
          if (condition /= control_limited) return
          share = (flow + wells%storage(w)*(head - eq%before%well_head(w))/eq%dt)/wells%rate(w)
-         beyond = weight*sign(1.0_rk, wells%rate(w))*(head - wells%pressure(w)) &
-                  /max(abs(head), abs(wells%pressure(w)), tiny(1.0_rk))
-         if (beyond < 0.0_rk) beyond = within*beyond
+         heads = head
+         if (.not. wells%storage(w) > 0.0_rk) then
+            heads = head - wells%resistance(w, flow)*flow
+            heads(1) = heads(1) + wells%resistance(w, wells%rate(w))*wells%rate(w)
+         end if
+         beyond = weight*sign(1.0_rk, wells%rate(w))*(heads - wells%pressure(w)) &
+                  /max(abs(heads), abs(wells%pressure(w)), tiny(1.0_rk))
+         where (beyond < 0.0_rk) beyond = within*beyond
          condition = control_rate
-         if (share - 1.0_rk < min(beyond, share)) then
-            condition = merge(control_pressure, control_shut, beyond < share)
+         if (share - 1.0_rk < min(beyond(1), share)) then
+            condition = merge(control_pressure, control_shut, beyond(2) < share)
          end if
       end associate
    end function condition_of
 
-   !> Residual of the active condition, and its derivatives.
+   !> Residual of the active condition, and its derivatives. In short steps the volume that flows in
+   !! excess is negligible long before the loss of pressure that goes with it, hence the factor.
    pure subroutine find_residual(w, eq, flow, head, residual, per_flow, per_head)
       integer(ik), intent(in) :: w
       class(fracture_system_t), intent(in) :: eq
@@ -163,11 +171,16 @@ contains
       real(rk), intent(out) :: residual  !< [Pa]
       real(rk), intent(out) :: per_flow  !< [Pa s/m2]
       real(rk), intent(out) :: per_head  !< [-]
+      real(rk) :: factor, resistance, scale
 
-      associate (wells => eq%paths%wells, scale => eq%dt/eq%unit, &
-                 condition => condition_of(w, eq, flow, head))
-         per_flow = merge(0.0_rk, scale, condition == control_pressure)
+      scale = eq%dt/eq%unit
+      associate (wells => eq%paths%wells, condition => condition_of(w, eq, flow, head))
          per_head = wells%storage(w)/eq%unit
+         resistance = wells%resistance(w, wells%rate(w))
+         factor = 1.0_rk + resistance/(scale + per_head*resistance)
+         scale = factor*scale
+         per_head = factor*per_head
+         per_flow = merge(0.0_rk, scale, condition == control_pressure)
          if (condition == control_pressure) per_head = 1.0_rk
          if (wells%control(w) == control_shut) per_head = 0.0_rk
          residual = per_flow*flow + per_head*(head - eq%before%well_head(w))
@@ -262,7 +275,7 @@ contains
       associate (flow => x(eq%layout%at_well(entry))*eq%unit/eq%dt, &
                  loss => eq%paths%wells%entry_loss(entry - eq%paths%wells%n))
          pressure = loss*abs(flow)*flow
-         by_flow = 2.0_rk*loss*abs(flow)
+         by_flow = slope_of_square(loss, flow)
          call add_pressure(entry, flow, x, eq, pressure, by_flow)
       end associate
       by_flow = by_flow*eq%unit/eq%dt

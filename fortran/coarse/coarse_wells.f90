@@ -23,7 +23,7 @@ module coarse_wells
    private
 
    public :: control_limited, control_pressure, control_rate, control_shut, rock_wells_t
-   public :: well_index, wells_t
+   public :: slope_of_square, well_index, wells_t
 
    integer(ik), parameter :: control_shut = 0  !< nothing flows
    integer(ik), parameter :: control_rate = 1  !< into the well at its head
@@ -56,10 +56,12 @@ module coarse_wells
       procedure :: lost
       procedure :: at_places
       procedure :: first_flows
+      procedure :: allowed_flow
       procedure :: flow_number
       procedure :: first_entry
       procedure :: last_entry
       procedure :: entries_loss
+      procedure :: resistance
       procedure :: is_at_limit
    end type wells_t
 
@@ -93,7 +95,7 @@ module coarse_wells
 
 contains
 
-   !> Pressure loss in the well at a flow, and its derivative.
+   !> Pressure loss in the well at a flow, and its derivative, for Newton's method.
    pure subroutine lost(self, well, flow, pressure, slope)
       class(wells_t), intent(in) :: self
       integer(ik), intent(in) :: well
@@ -102,8 +104,28 @@ contains
       real(rk), intent(out) :: slope  !< [Pa s/m2]
 
       pressure = (self%friction(well) + self%turbulence(well)*abs(flow))*flow
-      slope = self%friction(well) + 2.0_rk*self%turbulence(well)*abs(flow)
+      slope = self%friction(well) + slope_of_square(self%turbulence(well), flow)
    end subroutine lost
+
+   !> Resistance to a flow, losses of the well and of its entries over the flow [Pa s/m2].
+   pure real(rk) function resistance(self, well, flow)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well
+      real(rk), intent(in) :: flow  !< into the fractures [m2/s]
+
+      resistance = self%friction(well) + self%turbulence(well)*abs(flow)
+      if (well <= self%n) resistance = resistance + self%entries_loss(well)*abs(flow)
+   end function resistance
+
+   !> Derivative of a loss R |q| q. As flows round a loop of wells and fractures depend on losses
+   !! alone, it is not less than that where the loss is negligible.
+   elemental real(rk) function slope_of_square(loss, flow) result(slope)
+      real(rk), intent(in) :: loss  !< R [Pa s2/m4]
+      real(rk), intent(in) :: flow  !< q [m2/s]
+      real(rk), parameter :: negligible = 1.0e-6_rk  ! [Pa]
+
+      slope = 2.0_rk*max(loss*abs(flow), sqrt(loss*negligible))
+   end function slope_of_square
 
    !> The flows of the places among those of a state, whose wells in the rock stand before the
    !! entries.
@@ -116,12 +138,14 @@ contains
    end function at_places
 
    !> The flows of the places from which the iteration of a step begins: those before it, and a
-   !! change of the rate distributed by the losses of the entries. Where nothing flows losses by
-   !! the square of the flow have no derivative, and Newton's method would begin as if there were
-   !! none.
-   pure function first_flows(self, well_flow) result(flow)
+   !! change of the rate distributed by the losses of the entries; where nothing flows yet, the rate
+   !! that is prescribed or that the losses allow at a prescribed pressure. Losses by the square of
+   !! the flow have no derivative there, and Newton's method would begin as if there were none.
+   pure function first_flows(self, well_flow, well_head, dt) result(flow)
       class(wells_t), intent(in) :: self
       real(rk), intent(in) :: well_flow(:)  !< of state_t [m2/s]
+      real(rk), intent(in) :: well_head(:)  !< of state_t [Pa]
+      real(rk), intent(in) :: dt  !< [s]
       real(rk) :: flow(self%n + self%n_entries)  !< [m2/s]
       real(rk) :: loss, rate
       logical :: follows
@@ -131,7 +155,7 @@ contains
       do w = 1, self%n
          loss = self%entries_loss(w)
          if (.not. (loss > 0.0_rk .or. self%turbulence(w) > 0.0_rk)) cycle
-         rate = merge(0.0_rk, self%rate(w), self%control(w) == control_shut)
+         rate = self%allowed_flow(w, well_head(w), dt)
          follows = self%control(w) == control_shut .or. (self%control(w) == control_rate &
                                                          .and. .not. self%storage(w) > 0.0_rk)
          associate (of_entries => flow(self%first_entry(w):self%last_entry(w)))
@@ -144,6 +168,37 @@ contains
          end associate
       end do
    end function first_flows
+
+   !> The prescribed rate of a well, or the flow that loses the rise of the head to the prescribed
+   !! pressure, as far as the storage of the well lets the head rise in a step of length dt [m2/s].
+   pure real(rk) function allowed_flow(self, well, head, dt) result(flow)
+      class(wells_t), intent(in) :: self
+      integer(ik), intent(in) :: well  !< among the n in fractures, with a loss by squares
+      real(rk), intent(in) :: head  !< before the step [Pa]
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), parameter :: small = 1.0e-6_rk  ! rise that other wells may cause, over the pressure
+      real(rk) :: change, direction, other, rise
+
+      other = small*abs(head)
+      if (allocated(self%pressure_in_situ)) other = small*abs(head + self%pressure_in_situ(well))
+      associate (rate => self%rate(well), control => self%control(well), linear => &
+                 self%friction(well), square => self%resistance(well, 1.0_rk) - self%friction(well))
+         flow = merge(0.0_rk, rate, control == control_shut)
+         change = rate
+         if (control == control_pressure) change = self%pressure(well) - head
+         direction = sign(1.0_rk, change)
+         rise = merge(direction*(self%pressure(well) - head), huge(1.0_rk), &
+                      control == control_pressure .or. control == control_limited)
+         if (control /= control_pressure .and. self%storage(well) > 0.0_rk) then
+            rise = min(rise, max(other, abs(rate)*dt/self%storage(well)))
+         end if
+         if (.not. rise < huge(1.0_rk)) return
+         rise = max(0.0_rk, rise)
+         flow = 2.0_rk*rise/max(tiny(1.0_rk), linear + sqrt(linear**2 + 4.0_rk*square*rise))
+         if (control /= control_pressure) flow = min(abs(rate), flow)
+         flow = direction*flow
+      end associate
+   end function allowed_flow
 
    !> The well of each flow of a state, among all wells of the scene.
    pure function flow_number(self) result(number)

@@ -192,14 +192,11 @@ contains
       type(wells_t), intent(in) :: wells
       type(state_t), intent(in) :: before
       integer(ik), intent(in) :: w  !< controlled well
-      real(rk) :: lost_now, lost_then, slope
 
       head = before%well_head(w)
       if (wells%storage(w) > 0.0_rk) return
-      call wells%lost(w, before%well_flow(w), lost_then, slope)
-      call wells%lost(w, wells%rate(w), lost_now, slope)
-      head = head - lost_then + lost_now + wells%entries_loss(w) &
-             *(abs(wells%rate(w))*wells%rate(w) - abs(before%well_flow(w))*before%well_flow(w))
+      head = head - wells%resistance(w, before%well_flow(w))*before%well_flow(w) &
+             + wells%resistance(w, wells%rate(w))*wells%rate(w)
    end function head_at_rate
 
    !> Share of a change from one value to another at which a bound is passed [-].

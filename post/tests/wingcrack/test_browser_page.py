@@ -182,6 +182,22 @@ def test_views_and_playing(browser: Any, wet_run: Path) -> None:
         assert window.complaints() == []
 
 
+def test_events_appear_when_they_have_happened(browser: Any, own_run: Path) -> None:
+    middle = 0.5 * (times()[2] + times()[3])
+    (own_run / "events.csv").write_text(
+        f"time_s,kind,fracture,x_m,y_m,detail\n{middle},arrest,1,1.0,1.0,far\n", encoding="utf-8"
+    )
+    with served(own_run) as page:
+        window = Window(browser, page.port)
+        for place, shows in ((2, False), (3, True)):
+            window.choose("slider", place)
+            window.wait_for(place)
+            assert ("arrest" in window.text("legend")) == shows
+        window.choose("events", "none")
+        window.wait(lambda: "arrest" not in window.text("legend"))
+        assert window.complaints() == []
+
+
 def test_a_narrow_screen_needs_no_scrolling_sideways(browser: Any, wet_run: Path) -> None:
     with served(wet_run) as page:
         window = Window(browser, page.port, 390, 844)

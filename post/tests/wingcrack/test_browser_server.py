@@ -121,6 +121,23 @@ def test_overview_says_what_there_is(page: Page) -> None:
     assert len(set(run["stamps"])) == len(run["moments"])
 
 
+def test_events_of_growth_and_slip(own_run: Path) -> None:
+    events = own_run / "events.csv"
+    events.write_text(events.read_text() + f"{HOUR},arrest,1,1.5,0.5,far\n")
+    (own_run / "slip_events.csv").write_text(
+        "time_s,end_s,kind,fracture,x_m,y_m,moment_nm,magnitude\n"
+        f"0,{HOUR},aseismic,1,1,1,1e9,-0.07\n0,{2 * HOUR},seismic,1,1,0.75,1e12,1.93\n"
+    )
+    with served(own_run) as page:
+        found = page.json("/overview")["events"]
+    assert [row[:5] for row in found] == [
+        ["aseismic slip", 0.0, 0.0, HOUR, 0.0],
+        ["seismic event", 0.0, -0.25, 2 * HOUR, 1.0],
+        ["arrest", 0.5, -0.5, HOUR, 0.0],
+    ]
+    assert found[1][5] == "seismic slip, moment 1e+12 N m, magnitude 1.93"
+
+
 def test_a_run_without_fluid_has_no_pressure(dry_run: Path) -> None:
     with served(dry_run) as page:
         run = page.json("/overview")

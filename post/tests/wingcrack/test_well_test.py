@@ -59,6 +59,16 @@ def test_shut_in_is_found_with_volume_and_time_of_injection() -> None:
     assert fall.volume == pytest.approx(_RATE * _PUMPED)
 
 
+def test_a_rate_in_the_first_row_is_of_no_time() -> None:
+    """0/0 in random scene 1006."""
+    time = np.arange(9.0)
+    rate = np.where(time == 0.0, 1.0, 0.0)
+    with np.errstate(all="raise"):
+        assert not list(
+            fall_offs(Record("w", time, 9.0 - time, rate, 0.0 * time, has_losses=False))
+        )
+
+
 @pytest.mark.parametrize(
     ("storage", "ratio", "bourdet", "g_slope"),
     [

@@ -145,6 +145,7 @@ _EVENTS: dict[bool, dict[str, Any]] = {  # by whether they are seismic
     True: {"mfc": "none", "mec": SEISMIC_COLOUR, "mew": 1.2},
     False: {"mfc": "none", "mec": "#CC79A7", "mew": 0.8},
 }
+EVENT_WORDS = {True: "seismic event", False: "aseismic slip"}
 _EVENT_SIZES = (6.0, 20.0)  # [points] of the smallest and the largest event
 _EVENT_RANGE = 3.0  # powers of ten of the moment between these, at least
 
@@ -312,16 +313,22 @@ def _draw_events(axes: Axes, run: Run, unit: Unit) -> list[Artist]:
     table = run.slip_events
     if table is None or table.rows == 0:
         return []
-    size, fast = np.log10(table.number("moment_nm")), seismic(table)
-    largest = float(size.max())
-    lowest = min(float(size.min()), largest - _EVENT_RANGE)
-    share = (size - lowest) / (largest - lowest)
+    share, fast = event_shares(table.number("moment_nm")), seismic(table)
     width = _EVENT_SIZES[0] + share * (_EVENT_SIZES[1] - _EVENT_SIZES[0])
-    for k in np.argsort(-size):
+    for k in np.argsort(-share):
         place = unit.of(np.array([table.number("x_m")[k], table.number("y_m")[k]]))
         axes.plot(*place, "o", zorder=5, ms=float(width[k]), **_EVENTS[bool(fast[k])])
     return [
         style.handle(ls="none", marker="o", ms=7, label=label, **_EVENTS[kind])
-        for kind, label in ((True, "seismic event"), (False, "aseismic slip"))
+        for kind, label in EVENT_WORDS.items()
         if np.any(fast == kind)
     ]
+
+
+def event_shares(moment: FloatArray) -> FloatArray:
+    """Sizes of events from 0 to 1, by the logarithm of the moment."""
+    size = np.log10(moment)
+    largest = float(size.max(initial=-np.inf))
+    lowest = min(float(size.min(initial=np.inf)), largest - _EVENT_RANGE)
+    share: FloatArray = (size - lowest) / (largest - lowest)
+    return share

@@ -21,7 +21,8 @@ from wingcrack.errors import AbsentError
 from wingcrack.figures import style
 from wingcrack.figures.fields import Snapshot, read_fractures, read_series
 from wingcrack.figures.scene import read_scene
-from wingcrack.figures.story_map import well_places
+from wingcrack.figures.slip import seismic
+from wingcrack.figures.story_map import EVENT_WORDS, event_shares, well_places
 from wingcrack.figures.table import FloatArray
 from wingcrack.figures.units import length_unit, time_unit
 from wingcrack.runs.colours import MEAN, colouring, default_field, values_of
@@ -50,6 +51,7 @@ _ON_FRACTURES = (
     ("shear traction", "traction", 1),
     ("aperture", "aperture", None),
 )
+_GROWTH = ("growth_onset", "growth_jump", "joint", "arrest")  # rows of events.csv that are shown
 _COLOURED = ("slip", "opening", "aperture")  # by which fractures can be coloured
 _UNITS = {"aperture": "m", "jump": "m", "pressure": "Pa", "traction": "Pa"}
 _KEPT = 4  # states in memory: the one shown, the one before, and both ends of the run
@@ -210,6 +212,7 @@ class Content:
             "states": [[state, to_hex(style.STATE_COLOURS[state])] for state in style.STATES],
             "fractures": self._names(run),
             "wells": self._wells(run),
+            "events": self._events(run),
         }
 
     def _state(self, place: int, stamp: str | None = None) -> Fields:
@@ -252,6 +255,33 @@ class Content:
     def _wells(self, run: wingcrack.Run) -> list[list[float]]:
         places = well_places(read_scene(self._directory / "scene.nml"), _network(run))
         return [(np.array(place) - self._origin).tolist() for place in places]
+
+    def _events(self, run: wingcrack.Run) -> list[list[Any]]:
+        """Slip and growth of a run with time: kind, place, time [s], size from 0 to 1, words."""
+        found: list[list[Any]] = []
+        with suppress(AbsentError):
+            slip = run.table("slip_events")
+            moment = slip.number("moment_nm")
+            share = event_shares(moment)
+            for k, fast in enumerate(seismic(slip)):
+                words = f"{'seismic' if fast else 'aseismic'} slip, moment {moment[k]:.3g} N m"
+                if fast:
+                    words += f", magnitude {slip.number('magnitude')[k]:.2f}"
+                found.append([EVENT_WORDS[bool(fast)], slip, k, "end_s", float(share[k]), words])
+        with suppress(AbsentError):
+            events = run.table("events")
+            for k, kind in enumerate(events.text("kind") if events.has("time_s") else ()):
+                if kind in _GROWTH:
+                    words = f"{kind.replace('_', ' ')}: {events.text('detail')[k]}"
+                    found.append([kind.replace("_", " "), events, k, "time_s", 0.0, words])
+        shown = []
+        for kind, table, k, when, size, words in found:
+            x, y, time_s = (float(table.number(name)[k]) for name in ("x_m", "y_m", when))
+            if np.isfinite([x, y, time_s]).all():
+                shown.append(
+                    [kind, *(np.array([x, y]) - self._origin).tolist(), time_s, size, words]
+                )
+        return shown
 
 
 def _colours(name: Colormap | str) -> list[int]:

@@ -92,7 +92,8 @@ def fall_offs(record: Record) -> Iterator[FallOff]:
     volumes = np.append(0.0, np.cumsum(steps * record.rate[1:]))
     kept = np.flatnonzero(np.diff(record.rate[1:], prepend=0.0) != 0.0)
     earlier, number = 0, 0
-    for last in np.flatnonzero(flows[:-1] & shut[1:]).tolist():
+    # A rate is that of the time before its row: that of the first row is of no time.
+    for last in (1 + np.flatnonzero(flows[1:-1] & shut[2:])).tolist():
         behind, start = last + 1, float(record.time[last])
         open_again = np.flatnonzero(~shut[behind:])
         end = behind + int(open_again[0]) if open_again.size else shut.size

@@ -1,6 +1,6 @@
 // The page: what is chosen, what is fetched for it, and a run that goes on.
 import { getArrays, getJson, spell, spellWithUnit, ticksBetween } from "./data.js";
-import { FieldMap } from "./map.js";
+import { FieldMap, eventColour } from "./map.js";
 import { Chart } from "./chart.js";
 
 const SOON = 2000, LATER = 10000; // [ms] between looks at a run that goes on, that has ended
@@ -46,6 +46,9 @@ async function take(found, followed) {
   ].filter(Boolean).join("; ");
   fill(part("field"), run.fields, run.field);
   fill(part("column"), run.columns, run.column);
+  const kinds = [...new Set(run.events.map(([kind]) => kind))];
+  fill(part("events"), ["all", ...kinds, "none"].map((kind) => [kind, kind]), "all");
+  part("events").parentElement.hidden = !kinds.length;
   const slider = part("slider");
   slider.max = run.moments.length - 1;
   if (followed && !playing) slider.value = slider.max;
@@ -74,6 +77,12 @@ function legend() {
     sign.className = "well";
     entries.push([sign, "well"]);
   }
+  for (const kind of new Set(events().map(([kind]) => kind))) {
+    const sign = document.createElement("i");
+    sign.className = "event";
+    sign.style.borderColor = eventColour(kind);
+    entries.push([sign, kind]);
+  }
   return entries.map(([sign, words]) => {
     const entry = document.createElement("span");
     entry.append(sign, words);
@@ -82,6 +91,11 @@ function legend() {
 }
 
 // A state
+
+function events() { // those of the kinds wanted that have happened by the state shown
+  const wanted = part("events").value, until = run.moments[Number(part("slider").value)];
+  return run.events.filter(([kind, , , time]) => time <= until * (1 + 1e-12) && [kind, "all"].includes(wanted));
+}
 
 async function showState() {
   const mine = ++asked;
@@ -103,7 +117,7 @@ async function showState() {
       option.hidden = option.value !== "state" && !(option.value in scale.jumps);
     }
     const by = part("by").value;
-    map.show({ mesh, state, scale, run, by, close: part("range").value === "view" });
+    map.show({ mesh, state, scale, run, by, events: events(), close: part("range").value === "view" });
     part("legend").replaceChildren(...legend());
     document.body.dataset.place = place; // what the map shows by now
     document.body.dataset.field = field;
@@ -208,6 +222,7 @@ part("slider").addEventListener("input", showState);
 part("field").addEventListener("change", showState);
 part("range").addEventListener("change", showState);
 part("by").addEventListener("change", showState);
+part("events").addEventListener("change", showState);
 part("column").addEventListener("change", showHistory);
 part("play").addEventListener("click", play);
 part("closer").addEventListener("click", () => map.zoom(1.5));

@@ -13,7 +13,7 @@ export class FieldMap {
     this.canvas = canvas;
     this.say = say;
     this.tell = tell;
-    this.shown = null; // { mesh, state, scale, run, close: whether colours are for what is in view }
+    this.shown = null; // { mesh, state, scale, run, events, close: whether colours are for what is in view }
     this.middle = [0, 0];
     this.span = null; // [m] across the shorter side
     this.pixels = null;
@@ -103,6 +103,7 @@ export class FieldMap {
       y: (y) => height / 2 - (y - this.middle[1]) * size,
     };
     this.drawFractures(pen, view);
+    this.drawEvents(pen, view);
     this.drawWells(pen, view);
     pen.restore();
     this.drawAxes(pen, view, width, height);
@@ -193,6 +194,16 @@ export class FieldMap {
       pen.lineTo(across + 6, up - 5);
       pen.closePath();
       pen.fill();
+      pen.stroke();
+    }
+  }
+
+  drawEvents(pen, view) { // the largest below
+    for (const [kind, x, y, , share] of [...this.shown.events].sort((a, b) => b[4] - a[4])) {
+      pen.beginPath();
+      pen.arc(view.x(x), view.y(y), 4 + 8 * share, 0, 2 * Math.PI);
+      pen.lineWidth = 2;
+      pen.strokeStyle = eventColour(kind);
       pen.stroke();
     }
   }
@@ -291,7 +302,15 @@ export class FieldMap {
     if (cell) words += `: ${scale.label.replace(/ \[.*/, "")} ${spell(state.values[cell - 1] / scale.size)} ${scale.unit}`;
     const found = inside ? this.nearest(place) : -1;
     if (found >= 0) words += ` · ${this.fracture(found)}`;
+    const event = inside ? this.event(place) : undefined;
+    if (event) words += ` · ${event[5]}`;
     this.say(words);
+  }
+
+  event(place) { // the nearest one that is pointed at
+    const away = ([, x, y]) => Math.hypot(x - place[0], y - place[1]);
+    const [found] = [...this.shown.events].sort((a, b) => away(a) - away(b));
+    return found && away(found) < REACH / this.perMetre() ? found : undefined;
   }
 
   nearest(place) { // number of the fracture cell that is pointed at, or -1
@@ -316,6 +335,11 @@ export class FieldMap {
       `${words} ${spellWithUnit(state.on_fractures[k * count + cell], unit)}`);
     return [name, run.states[state.states[cell]]?.[0], ...values].join(", ");
   }
+}
+
+export function eventColour(kind) {
+  const colours = { "seismic event": "#D55E00", "aseismic slip": "#CC79A7", arrest: "#555" };
+  return colours[kind] ?? "#0a0";
 }
 
 function boxOf(places) {
