@@ -39,7 +39,11 @@ contains
       if (self%mesh%n_cells > 0) call visit_model(self, archive, scene, tips, error)
       call archive%leave()
       if (.not. (archive%is_loading .and. allocated(self%made)) .or. allocated(error)) return
-      if (.not. self%made%is_projected) return
+      if (allocated(archive%fault) .or. .not. self%made%is_projected) return
+      if (.not. (allocated(values%of) .and. allocated(values%is_grown))) then
+         call archive%set_fault("values")
+         return
+      end if
       call self%project(mesher, coarse, values, error)
       if (allocated(error)) return
       if (any(self%faces%coarse_cell < 1)) call archive%set_fault("cell_fracture")
