@@ -116,7 +116,9 @@ contains
             call problem%feed_wells(self%scene, error)
             if (.not. allocated(error)) call set_heat(self%scene, problem, error)
             if (allocated(error)) return
-            if (allocated(self%heat)) call archive%compare_extent("heat", self%heat%n)
+            if (allocated(self%problem%heat)) then
+               call archive%compare_extent("heat", self%problem%heat%n)
+            end if
             call archive%compare_extent("blocks", model%regions%n_blocks)
             call archive%compare_extent("corners", model%regions%traction_count())
             call archive%compare_extent("pairs", size(model%connections, 2, kind=ik))
