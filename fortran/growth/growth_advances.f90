@@ -142,16 +142,11 @@ contains
       class(advances_t), intent(in) :: self
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
       integer, parameter :: stalled = 2  ! rejected proposals
-      real(rk), parameter :: before = 0.2_rk  ! share of the slack
       real(rk) :: lack(size(self%place))
 
       lack = tolerance
       if (.not. allocated(self%slack)) return
-      if (self%is_monotone .or. self%rejected_in_all >= stalled) then
-         lack = max(tolerance, self%slack)
-      else
-         lack = max(tolerance, before*self%slack)
-      end if
+      if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
    end function allowed
 
    !> Whether a tip satisfies its complementarity condition within the tolerance.

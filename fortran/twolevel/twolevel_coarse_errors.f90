@@ -273,8 +273,7 @@ contains
       real(rk) :: lack  ! of toughness, error included [-]
 
       lack = -tip%excess(toughness) - tip%relative_error(toughness)
-      change = merge(1.0_rk, max(like_before, lack, 0.5_rk*tip%relative_error(toughness)), &
-                     lack >= far)*norm2(seen%compared)
+      change = merge(1.0_rk, max(like_before, lack), lack >= far)*norm2(seen%compared)
    end function admissible_change
 
    !> Errors of a tip from its K in the whole body.

@@ -55,9 +55,7 @@ contains
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
 
       first_onset = onset(before%excess(toughness), tips%excess(toughness), &
-                          .not. (tips%arrested .or. segments%gain > 0.0_rk) .and. &
-                          tips%excess(toughness) > min(slack_max, &
-                                               share_of_error*tips%relative_error(toughness)))
+                          .not. (tips%arrested .or. segments%gain > 0.0_rk))
    end function first_onset
 
    !> Share of the step after which the first of the tips that count reaches the toughness; 1 where
