@@ -122,7 +122,9 @@ contains
       call note_well_rows(self)
       call watch_errors(self)
       self%summary%heat = row%heat
-      if (allocated(self%problem%heat)) call warn_of_heat(self%now%heat, self%summary)
+      if (allocated(self%problem%heat)) then
+         call warn_of_heat(self%scene, self%now%coarse%time, self%now%heat, self%summary)
+      end if
       call note_state(self, row%mass_error_relative)
    end subroutine commit_step
 
