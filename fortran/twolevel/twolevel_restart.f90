@@ -6,9 +6,13 @@
 !! windows, from the same meshes in the same order.
 submodule(twolevel_state) twolevel_restart
    use base_kinds, only: lk
+   use base_plane, only: norm2
    use base_tolerances, only: same_time
    use coarse_archive, only: visit_cells, visit_factors, visit_report, &
                              visit_step_values
+   use growth_front, only: front_state_t
+   use growth_network, only: end_place
+   use growth_segment, only: segment_t
    use mesh_archive, only: visit_mesher_and_mesh
    use report_restart, only: visit_simulation
    use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
@@ -65,6 +69,7 @@ contains
          call archive%set_extent("mesh_tips", mesh%fracture%n_tips)
       end associate
       call visit_levels(archive, "now", self%now)
+      if (archive%is_loading) call check_places(archive, self%front_state_t, self%now%segment)
       ! The next step begins with the present state: of the one before only its time is needed.
       call archive%item("before_time", self%before%time)
       if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
@@ -81,6 +86,29 @@ contains
       if (allocated(self%problem%heat)) self%summary%heat = heat_row(self%now%heat)
       if (archive%is_loading) call go_beyond_end(self)
    end subroutine visit
+
+   !> The tips are at the ends of the network, and where their segments say.
+   subroutine check_places(archive, front, segment)
+      type(archive_t), intent(inout) :: archive
+      type(front_state_t), intent(in) :: front
+      type(segment_t), allocatable, intent(in) :: segment(:)
+      real(rk), parameter :: rounding = 1.0e-9_rk
+      real(rk) :: place(2), scale
+      integer(ik) :: i
+
+      if (allocated(archive%fault) .or. .not. allocated(front%tip)) return
+      do i = 1, size(front%tip, kind=ik)
+         associate (tip => front%tip(i))
+            if (.not. tip%is_free) cycle
+            place = end_place(front%network, tip%fracture, tip%end)
+            scale = rounding*maxval(abs(place))
+            if (allocated(segment)) then
+               if (segment(i)%is_open) place = segment(i)%place()
+            end if
+            if (.not. norm2(place - tip%xy) <= scale) call archive%set_fault("tip")
+         end associate
+      end do
+   end subroutine check_places
 
    !> A run that has ended at the end of its scene goes on if the scene ends later now; unless a
    !! stage ends there too, its last step does not count as one before a switch.
