@@ -22,9 +22,9 @@ module twolevel_setup
    !! intensities differ by about as much [-].
    real(rk), parameter :: together = 0.01_rk
 
-   !> Shortest path segment, over the increment and over a coarse cell: the mesh library does not
-   !! resolve a tip at its beginning otherwise [-].
-   real(rk), parameter :: shortest_segment = 1.0_rk/16.0_rk, shortest_in_mesh = 0.025_rk
+   !> Shortest path segment, over the increment and over a coarse cell: beside shorter ones coarse
+   !! meshes have angles below 10 degrees [-].
+   real(rk), parameter :: shortest_segment = 1.0_rk/16.0_rk, shortest_in_mesh = 0.1_rk
 
    !> Distance from the path within which ends and kinks of fractures lie on the path, in increments
    !! and in cells: no mesh of good quality fits between [-].
