@@ -324,20 +324,19 @@ contains
       end do
    end subroutine turn_tips
 
-   !> Whether a new segment that turns is too long: K_eq at its end is far below the toughness, so
-   !! that the tip will reach this end under other loads, for which the direction found now is not
-   !! right. So is the first segment of a fracture's end, whose direction is not corrected, where the
-   !! path turns away from it.
+   !> Whether the first segment of a fracture's end is too long: the path turns, and at the end of
+   !! the segment it should turn farther, or K_eq is far below the toughness, so that the tip will
+   !! reach this end under other loads. The direction of this segment is not corrected.
    pure logical function is_too_long(tip, rules)
       type(tip_t), intent(in) :: tip
       type(growth_rules_t), intent(in) :: rules
-      real(rk), parameter :: far = -0.5_rk  ! excess at the end [-]
       real(rk), parameter :: turns = 0.1_rk  ! kink at the start [rad]
-      real(rk), parameter :: turns_away = 0.8_rk  ! kink angle at the end [rad]
+      real(rk), parameter :: turns_farther = 0.8_rk  ! kink angle at the end [rad]
+      real(rk), parameter :: far = -0.5_rk  ! excess at the end [-]
 
-      is_too_long = tip%advance > 0.0_rk .and. abs(tip%kink) > turns .and. &
+      is_too_long = tip%advance > 0.0_rk .and. .not. tip%has_wing .and. abs(tip%kink) > turns .and. &
                     (tip%excess(rules%toughness) < far .or. &
-                     (abs(tip%drive%angle) > turns_away .and. .not. tip%has_wing)) .and. &
+                     abs(tip%drive%angle) > turns_farther) .and. &
                     0.5_rk*tip%advance > (1.0_rk - same_value) &
                     *max(rules%shortest_length, rules%shortest*rules%increment_of(tip%fracture))
    end function is_too_long

@@ -277,12 +277,11 @@ contains
       type(two_levels_t) :: simulation
       type(error_t), allocatable :: error
       real(rk) :: gain(2), ratio(2)
-      integer :: above, grown, step
+      integer :: grown, step
       logical :: begins
 
       call simulation%begin(symmetric_scene("conserved"), timers, error)
       call checks%no_error(error, "equilibrium")
-      above = 0
       grown = 0
       do step = 1, 12
          call simulation%next_state(timers, error)
@@ -292,9 +291,7 @@ contains
          call checks%no_error(error, "growth in equilibrium")
          ratio = simulation%tip%drive%intensity/simulation%scene%material%toughness
          if (simulation%is_initial) cycle
-         ! By the tolerance, or by three times as much where the search for positions has stalled.
-         if (maxval(ratio) > 1.006_rk) above = above + 1
-         call checks%is_true(maxval(ratio) < 1.0151_rk, "at most the toughness")
+         call checks%is_true(maxval(ratio) < 1.006_rk, "at most the toughness")
          call check_probe(simulation)
          if (any(simulation%tip%advance > 0.1_rk*increment)) then
             grown = grown + 1
@@ -305,7 +302,6 @@ contains
          end if
       end do
       call checks%is_true(grown >= 3, "there is growth")
-      call checks%is_true(above <= 1, "nearly all states are within the tolerance")
       gain = [end_gain(simulation%network, simulation%start, 1_ik, 1_ik), &
               end_gain(simulation%network, simulation%start, 1_ik, 2_ik)]
       ! The growth at the start is unstable: windows that differ only by their meshes do not
