@@ -334,8 +334,9 @@ contains
       real(rk), parameter :: turns_farther = 0.8_rk  ! kink angle at the end [rad]
       real(rk), parameter :: far = -0.5_rk  ! excess at the end [-]
 
-      is_too_long = tip%advance > 0.0_rk .and. .not. tip%has_wing .and. abs(tip%kink) > turns .and. &
-                    (tip%excess(rules%toughness) < far .or. &
+      is_too_long = .false.
+      if (tip%has_wing .or. .not. (tip%advance > 0.0_rk .and. abs(tip%kink) > turns)) return
+      is_too_long = (tip%excess(rules%toughness) < far .or. &
                      abs(tip%drive%angle) > turns_farther) .and. &
                     0.5_rk*tip%advance > (1.0_rk - same_value) &
                     *max(rules%shortest_length, rules%shortest*rules%increment_of(tip%fracture))

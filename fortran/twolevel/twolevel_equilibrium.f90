@@ -430,10 +430,10 @@ contains
       call evaluate_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
       search%is_over = .true.
-      associate (segment => self%now%segment, increment => self%increments())
-         trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, segment, increment) &
-                                 /merge(min(segment%length, increment), increment, &
-                                        segment%length > 0.0_rk)])
+      associate (length => self%now%segment%length, increment => self%increments())
+         trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, &
+                                                  self%now%segment, increment) &
+                                 /merge(min(length, increment), increment, length > 0.0_rk)])
       end associate
       call self%pace%see_end(self%tape, self%tip%excess(self%rules%toughness), &
                              self%last%front%tip%excess(self%rules%toughness), &

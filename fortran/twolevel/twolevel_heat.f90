@@ -192,8 +192,8 @@ contains
    end function temperature_of
 
    !> Warn where temperatures leave their range, as with multi-point fluxes on obtuse cells, and
-   !! where intensities are stated while heat has not passed a coarse cell: their errors contain none
-   !! of the temperature.
+   !! where intensities are stated while heat has not passed a coarse cell: their errors do not
+   !! contain that of the temperature.
    subroutine warn_of_heat(scene, time, state, summary)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: time  !< [s]
@@ -211,10 +211,10 @@ contains
          if (scene%growth%intensities .and. material%heat_expansion*range > 0.0_rk .and. &
              material%heat_conductivity*time < passed*material%heat_capacity &
              *scene%discretization%size_fracture**2) then
-            call summary%warn("heat has not passed a coarse cell in the first states: the stated "// &
-                              "errors of stress intensity factors contain no error of the "// &
-                              "temperature, and are too small there (docs/theory.md); use smaller "// &
-                              "cells at fractures")
+            call summary%warn("heat has not passed a coarse cell in the first states: the "// &
+                              "stated errors of stress intensity factors contain no error of "// &
+                              "the temperature, and are too small there (docs/theory.md); use "// &
+                              "smaller cells at fractures")
          end if
       end associate
    end subroutine warn_of_heat
