@@ -96,7 +96,7 @@ def test_none_goes_along_below_its_toughness(tmp_path: Path) -> None:
     """At the start all four tips grow alike; after that the well drives those of its fracture.
 
     The others had gone along with them once, at less than half of their toughness. They may take
-    what is left of a short segment and the shortest advance of the next, a twentieth of the
+    the rest of a short segment and the shortest advance of the next, a twentieth of the
     increment of 0.025 m.
     """
     out = run(tmp_path, FED_AND_NOT)

@@ -23,7 +23,7 @@ readonly linters=(
 lint() {
     local linter name words asked types_log=$root/build/mypy.log types=''
     if (($# == 0)); then
-        # it takes one processor only: beside the others
+        # it takes one processor only, so it runs while the others do
         mkdir -p "$root/build"
         check_python_types >"$types_log" 2>&1 &
         types=$!

@@ -71,8 +71,8 @@ module growth_front
       procedure :: strides
    end type front_t
 
-   !> Distance to which targets ahead of a tip are found, in increments: the last path segment is up
-   !! to 1.5 increments long, and no shorter than the remaining half [-].
+   !> Distance to which targets ahead of a tip are found, in lengths of a new segment: the last path
+   !! segment is up to 1.5 of these long, and no shorter than the remaining half [-].
    real(rk), parameter :: foresight = 1.5_rk
 
    !> Share of the distance to the target at which the direction of the last path segment is

@@ -22,8 +22,8 @@ module twolevel_setup
    !! intensities differ by about as much [-].
    real(rk), parameter :: together = 0.01_rk
 
-   !> Shortest path segment, over the increment and over a coarse cell: beside shorter ones coarse
-   !! meshes have angles below 10 degrees [-].
+   !> Shortest path segment, over the increment and over a coarse cell: coarse meshes with shorter
+   !! ones have angles below 10 degrees [-].
    real(rk), parameter :: shortest_segment = 1.0_rk/16.0_rk, shortest_in_mesh = 0.1_rk
 
    !> Distance from the path within which ends and kinks of fractures lie on the path, in increments

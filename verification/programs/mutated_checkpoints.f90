@@ -4,8 +4,8 @@
 !!
 !! Each number from FIRST to LAST stands for one mutated state of the run in one of the folders,
 !! which have scene.nml and checkpoint.bin. Every STEPS-th that can be loaded goes on by a state.
-!! Each is loaded by a process of its own: one that a signal or the run time ends is told with its
-!! number, and with what was changed.
+!! Each is loaded by a separate process: one that a signal or the run time ends is printed with its
+!! number and the change.
 program mutated_checkpoints
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: iso_fortran_env, only: error_unit, int8, output_unit
@@ -145,7 +145,7 @@ contains
       end select
    end function bytes_of
 
-   !> Load one in a process of its own.
+   !> Load one in a separate process.
    subroutine try_one(number, may_go_on)
       integer(lk), intent(in) :: number
       logical, intent(in) :: may_go_on

@@ -96,7 +96,7 @@ def story(run: Run) -> Figure:
     facts = _facts(run, marks)[: style.chosen(page=_MOST_FACTS, column=_MOST_FACTS, slide=8)]
     columns = style.chosen(page=2, column=1, slide=3)
     rows = -(-len(shown) // columns)
-    # beside a flat map there is no room for the facts: they stand below
+    # a flat map leaves no space at its side: the facts stand below
     beside = style.chosen(page=map_ratio(run) > _FLAT, column=False, slide=True)
     width = style.whole_width()
     stacked = style.chosen(page=beside, column=True, slide=True)

@@ -51,7 +51,7 @@ def summary(run: Run) -> Figure:
     if len(maps) == 1 or style.chosen(page=False, column=False, slide=True):
         maps.append(texts.pop(0))
     if style.chosen(page=False, column=False, slide=True):
-        texts.clear()  # there is no room
+        texts.clear()  # they do not fit
     columns = style.chosen(page=2, column=1, slide=3)
     side = style.whole_width() / columns - 0.7
     words = style.text_height(2.0 + max(map(len, map(_wrapped, (facts.left(), facts.right([]))))))
