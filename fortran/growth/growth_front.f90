@@ -324,20 +324,22 @@ contains
       end do
    end subroutine turn_tips
 
-   !> Whether the first segment of a fracture's end is too long: the path turns, and at the end of
-   !! the segment it should turn farther, or K_eq is far below the toughness, so that the tip will
-   !! reach this end under other loads. The direction of this segment is not corrected.
+   !> Whether a new segment is too long where the path turns: K_eq at its end is far below the
+   !! toughness, so that the tip will reach this end under other loads, or the end is shut, and any
+   !! direction satisfies the criterion there. So is the first segment of a fracture's end, whose
+   !! direction is not corrected, if it should turn farther at its end.
    pure logical function is_too_long(tip, rules)
       type(tip_t), intent(in) :: tip
       type(growth_rules_t), intent(in) :: rules
-      real(rk), parameter :: turns = 0.1_rk  ! kink at the start [rad]
+      real(rk), parameter :: turns = 0.3_rk  ! kink angle at the start [rad]
       real(rk), parameter :: turns_farther = 0.8_rk  ! kink angle at the end [rad]
-      real(rk), parameter :: far = -0.5_rk  ! excess at the end [-]
+      real(rk), parameter :: far = 0.5_rk  ! K_eq at the end, over that of growth [-]
 
-      is_too_long = .false.
-      if (tip%has_wing .or. .not. (tip%advance > 0.0_rk .and. abs(tip%kink) > turns)) return
-      is_too_long = (tip%excess(rules%toughness) < far .or. &
-                     abs(tip%drive%angle) > turns_farther) .and. &
+      is_too_long = tip%drive%intensity <= far*min(rules%toughness, tip%drive_before%intensity)
+      if (.not. tip%has_wing) is_too_long = is_too_long .or. &
+                                            abs(tip%drive%angle) > turns_farther
+      is_too_long = is_too_long .and. tip%advance > 0.0_rk .and. &
+                    abs(tip%drive_before%angle) > turns .and. &
                     0.5_rk*tip%advance > (1.0_rk - same_value) &
                     *max(rules%shortest_length, rules%shortest*rules%increment_of(tip%fracture))
    end function is_too_long

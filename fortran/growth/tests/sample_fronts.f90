@@ -10,9 +10,12 @@ module sample_fronts
 
    public :: sample_t
 
-   !> Tips in a field: none, so that the drives stay as they were set, or circles around the origin.
+   !> Tips in a field: none, so that the drives stay as they were set, circles around the origin, or
+   !! straight on.
    type, extends(front_t) :: sample_t
       logical :: turns = .false.  !< the criterion follows circles around the origin
+      !> straight on up to this advance, shut beyond it; huge: not so [m]
+      real(rk) :: open_to = huge(1.0_rk)
       integer :: evaluations = 0
    contains
       procedure :: evaluate
@@ -38,6 +41,15 @@ contains
                off = asin(tip%direction(1)*along(2) - tip%direction(2)*along(1))
                tip%intensity%k1 = 2.0e6_rk
                tip%intensity%k2 = -0.5_rk*off*tip%intensity%k1
+               tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, 1.0e9_rk)
+            end associate
+         end do
+      end if
+      if (self%open_to < huge(1.0_rk)) then
+         do i = 1, size(self%tip)
+            associate (tip => self%tip(i))
+               tip%intensity%k1 = merge(1.0e6_rk, 0.0_rk, tip%advance <= self%open_to)
+               tip%intensity%k2 = 0.0_rk
                tip%drive = growth_drive(tip%intensity%k1, tip%intensity%k2, 1.0e9_rk)
             end associate
          end do

@@ -31,9 +31,44 @@ program test_growth_front
    call test_half_way()
    call test_last_increments()
    call test_joins_ahead()
+   call test_shut_ends()
    call checks%finish()
 
 contains
+
+   !> A segment that turns and is shut at its end is halved until it is not, or as short as it may
+   !! be; the next one is at most twice as long. One that goes straight on keeps its length.
+   subroutine test_shut_ends()
+      call check_shut_end(0.5_rk, 0.3_rk, 0.0_rk, 0.25_rk, "until it is open at its end")
+      call check_shut_end(0.5_rk, 0.3_rk, 0.5_rk, 0.5_rk, "to the shortest length")
+      call check_shut_end(0.1_rk, 0.3_rk, 0.0_rk, 1.0_rk, "a path that hardly turns")
+      call check_shut_end(0.5_rk, 1.1_rk, 0.0_rk, 1.0_rk, "open at its end")
+   end subroutine test_shut_ends
+
+   subroutine check_shut_end(angle, open_to, shortest, wanted, what)
+      real(rk), intent(in) :: angle  !< of the criterion at the start [rad]
+      real(rk), intent(in) :: open_to, shortest, wanted  !< over the increment [-]
+      character(*), intent(in) :: what
+      type(sample_t) :: front
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      logical :: any_grew
+      real(rk) :: strides(2)
+
+      call start(front, .false.)
+      front%rules%shortest = 1.0_rk/16.0_rk
+      front%rules%shortest_length = shortest*increment
+      front%open_to = open_to*increment
+      front%tip(2)%has_wing = .true.
+      front%tip(2)%drive = growth_drive_t(intensity=1.0e6_rk, energy=1.0_rk, angle=angle)
+      call timers%begin()
+      call front%grow_by([0.0_rk, increment], any_grew, timers, error)
+      call checks%no_error(error, what)
+      call checks%is_close(front%tip(2)%advance, wanted*increment, 1.0e-12_rk, what)
+      strides = front%strides()
+      call checks%is_close(strides(2), min(1.0_rk, 2.0_rk*wanted)*increment, 1.0e-12_rk, &
+                           what//": the next one")
+   end subroutine check_shut_end
 
    !> Two fractures in a square of 2 m; the tips of the first.
    subroutine start(front, joins)
