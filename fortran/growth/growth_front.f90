@@ -331,15 +331,18 @@ contains
    pure logical function is_too_long(tip, rules)
       type(tip_t), intent(in) :: tip
       type(growth_rules_t), intent(in) :: rules
-      real(rk), parameter :: turns = 0.3_rk  ! kink angle at the start [rad]
-      real(rk), parameter :: turns_farther = 0.8_rk  ! kink angle at the end [rad]
+      real(rk), parameter :: turns = 0.1_rk  ! first kink [rad]
+      real(rk), parameter :: turns_farther = 0.8_rk  ! kink angle of the criterion [rad]
       real(rk), parameter :: far = 0.5_rk  ! K_eq at the end, over that of growth [-]
 
       is_too_long = tip%drive%intensity <= far*min(rules%toughness, tip%drive_before%intensity)
-      if (.not. tip%has_wing) is_too_long = is_too_long .or. &
-                                            abs(tip%drive%angle) > turns_farther
+      if (tip%has_wing) then
+         is_too_long = is_too_long .and. abs(tip%drive_before%angle) > turns_farther
+      else
+         is_too_long = abs(tip%kink) > turns .and. &
+                       (is_too_long .or. abs(tip%drive%angle) > turns_farther)
+      end if
       is_too_long = is_too_long .and. tip%advance > 0.0_rk .and. &
-                    abs(tip%drive_before%angle) > turns .and. &
                     0.5_rk*tip%advance > (1.0_rk - same_value) &
                     *max(rules%shortest_length, rules%shortest*rules%increment_of(tip%fracture))
    end function is_too_long

@@ -39,10 +39,10 @@ contains
    !> A segment that turns and is shut at its end is halved until it is not, or as short as it may
    !! be; the next one is at most twice as long. One that goes straight on keeps its length.
    subroutine test_shut_ends()
-      call check_shut_end(0.5_rk, 0.3_rk, 0.0_rk, 0.25_rk, "until it is open at its end")
-      call check_shut_end(0.5_rk, 0.3_rk, 0.5_rk, 0.5_rk, "to the shortest length")
-      call check_shut_end(0.1_rk, 0.3_rk, 0.0_rk, 1.0_rk, "a path that hardly turns")
-      call check_shut_end(0.5_rk, 1.1_rk, 0.0_rk, 1.0_rk, "open at its end")
+      call check_shut_end(1.0_rk, 0.3_rk, 0.0_rk, 0.25_rk, "until it is open at its end")
+      call check_shut_end(1.0_rk, 0.3_rk, 0.5_rk, 0.5_rk, "to the shortest length")
+      call check_shut_end(0.5_rk, 0.3_rk, 0.0_rk, 1.0_rk, "a path that turns less")
+      call check_shut_end(1.0_rk, 1.1_rk, 0.0_rk, 1.0_rk, "open at its end")
    end subroutine test_shut_ends
 
    subroutine check_shut_end(angle, open_to, shortest, wanted, what)
