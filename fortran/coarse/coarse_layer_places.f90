@@ -3,6 +3,7 @@
 module coarse_layer_places
    use base_kinds, only: ik, rk
    use base_lists, only: inverted
+   use base_plane, only: norm2
    use coarse_chain, only: new_chain
    use coarse_layers, only: layers_t
    use coarse_layout, only: at_component, end_block, layer_block

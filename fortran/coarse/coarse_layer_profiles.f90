@@ -2,6 +2,7 @@
 module coarse_layer_profiles
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
+   use base_plane, only: norm2
    use coarse_layers, only: layers_t
    use coarse_layout, only: layer_block
    use mesh_geometry, only: cell_centre
