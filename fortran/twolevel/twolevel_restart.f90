@@ -17,6 +17,7 @@ submodule(twolevel_state) twolevel_restart
    use report_restart, only: visit_simulation
    use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
    use twolevel_heat, only: heat_row, set_heat
+   use twolevel_places, only: place_tips
    use twolevel_schedule, only: next_switch
    use twolevel_setup, only: keep_above_zero, rules_of_scene
    implicit none(type, external)
@@ -53,6 +54,7 @@ contains
          end if
       end if
       call visit_simulation(archive, self)
+      call archive%item("growth_was_enabled", self%scene%growth%was_enabled)
       call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
       associate (mesh => self%problem%mesh)
          if (archive%is_loading .and. .not. allocated(archive%fault)) then
@@ -144,6 +146,12 @@ contains
             call problem%feed_wells(self%scene, error)
             if (.not. allocated(error)) call set_heat(self%scene, problem, error)
             if (allocated(error)) return
+            associate (growth => self%scene%growth)
+               if (growth%was_enabled .and. growth%leaves_partial_cells() .and. &
+                   allocated(self%now%segment)) then
+                  call place_tips(self%front_state_t, self%now%segment, problem)
+               end if
+            end associate
             if (allocated(self%problem%heat)) then
                call archive%compare_extent("heat", self%problem%heat%n)
             end if
