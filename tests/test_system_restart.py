@@ -285,7 +285,7 @@ def columns_apart(first: Path, second: Path, table: str, after: float, rounding:
     return apart
 
 
-def done(folder: Path, name: str, text: str, *words: str | Path) -> Path:
+def finished(folder: Path, name: str, text: str, *words: str | Path) -> Path:
     """Run a scene in a folder, and give the folder of its files."""
     (folder / f"{name}.nml").write_text(text + EVERY_STATE)
     run = solver("run", folder / f"{name}.nml", *words, "--out", folder / name, "--quiet")
@@ -306,9 +306,9 @@ def test_a_well_added_at_a_restart_is_as_if_it_had_been_there_from_the_start(
 ) -> None:
     """Apart from what counts from its first state: injectivity and stated errors."""
     added = f"&injection name = 'second', {WELLS[kind]}, start = 9000.0, end = 12000.0 /\n"
-    whole = done(tmp_path, "whole", FINE + added)
-    base = done(tmp_path, "base", FINE.replace("end = 18000.0", "end = 7200.0"))
-    later = done(tmp_path, "later", FINE + added, "--restart", base)
+    whole = finished(tmp_path, "whole", FINE + added)
+    base = finished(tmp_path, "base", FINE.replace("end = 18000.0", "end = 7200.0"))
+    later = finished(tmp_path, "later", FINE + added, "--restart", base)
     assert "well second added" in (later / "run.log").read_text()
     for table in ("history.csv", "wells.csv", "fractures.csv", "probes.csv"):
         # The columns of a single well are kept, and are empty from here on.
@@ -320,15 +320,17 @@ def test_a_well_added_at_a_restart_is_as_if_it_had_been_there_from_the_start(
     assert rows["second_well_pressure_pa"].notna().sum() == (rows["time_s"] > 7200.0).sum()
     again = solver("run", "--restart", later, "--end", "18600.0", "--out", tmp_path / "again")
     assert again.returncode == 0, again.stderr
-    assert (tmp_path / "again" / "history.csv").read_text().startswith(
-        (later / "history.csv").read_text()
+    assert (
+        (tmp_path / "again" / "history.csv")
+        .read_text()
+        .startswith((later / "history.csv").read_text())
     )
 
 
 def test_a_well_left_out_at_a_restart_is_closed(ended: Path, tmp_path: Path) -> None:
-    base = done(tmp_path, "base", FINE.replace("end = 18000.0", "end = 7200.0"))
-    whole = done(tmp_path, "whole", FINE.replace("end = 14400.0", "end = 7200.0"))
-    later = done(tmp_path, "later", re.sub(r"&injection.*?/\n", "", FINE), "--restart", base)
+    base = finished(tmp_path, "base", FINE.replace("end = 18000.0", "end = 7200.0"))
+    whole = finished(tmp_path, "whole", FINE.replace("end = 14400.0", "end = 7200.0"))
+    later = finished(tmp_path, "later", re.sub(r"&injection.*?/\n", "", FINE), "--restart", base)
     assert "well well_1 closed" in (later / "run.log").read_text()
     for table in ("history.csv", "wells.csv", "fractures.csv", "probes.csv"):
         assert (later / table).read_bytes() == (whole / table).read_bytes(), table
@@ -346,11 +348,11 @@ SWITCHED = TOUGH.replace("intensities = .true.", "enabled = .true.")
 def test_growth_switched_at_a_restart_is_as_if_it_had_been_so_from_the_start(
     before: str, after: str, tmp_path: Path
 ) -> None:
-    whole = done(tmp_path, "whole", after)
-    base = done(tmp_path, "base", before.replace("end = 18000.0", "end = 7200.0"))
+    whole = finished(tmp_path, "whole", after)
+    base = finished(tmp_path, "base", before.replace("end = 18000.0", "end = 7200.0"))
     # The last step was shortened to reach the end.
     (base / "checkpoint_old.bin").rename(base / "checkpoint.bin")
-    later = done(tmp_path, "later", after, "--restart", base)
+    later = finished(tmp_path, "later", after, "--restart", base)
     since = pd.read_csv(base / "history.csv")["time_s"].iloc[-2]
     only_with_growth = {"dimensionless_toughness", "dimensionless_leakoff"}
     only_with_growth |= {"apparent_toughness_pa_sqrtm"}
@@ -358,14 +360,16 @@ def test_growth_switched_at_a_restart_is_as_if_it_had_been_so_from_the_start(
         assert columns_apart(whole, later, table, since, 1e-10) <= only_with_growth, table
 
 
-def test_growth_begins_at_a_restart_without_intensities_so_far(tmp_path: Path) -> None:
+def test_growth_begins_at_a_restart_without_intensities_so_far(
+    unbroken: Callable[[str], Path], tmp_path: Path
+) -> None:
     """Windows begin there, and know slip on their faces from there on."""
     off = "enabled = .true., stop_gain = 0.015"
-    whole = done(tmp_path, "whole", GROWING)
-    base = done(
+    whole = unbroken("growth")
+    base = finished(
         tmp_path, "base", GROWING.replace(off, "").replace("end = 7200.0", "end = 3600.0")
     )
-    later = done(tmp_path, "later", GROWING, "--restart", base)
+    later = finished(tmp_path, "later", GROWING, "--restart", base)
     ends = [pd.read_csv(folder / "history.csv").iloc[-1] for folder in (whole, later)]
     assert ends[0]["fracture_length_m"] == pytest.approx(ends[1]["fracture_length_m"], rel=1e-6)
     assert ends[0]["time_s"] == pytest.approx(ends[1]["time_s"], rel=0.02)
@@ -373,9 +377,9 @@ def test_growth_begins_at_a_restart_without_intensities_so_far(tmp_path: Path) -
 
 def test_growth_ends_at_a_restart_and_begins_again(tmp_path: Path) -> None:
     growing = GROWING.replace("stop_gain = 0.015", "stop_gain = 0.5")
-    base = done(tmp_path, "base", growing.replace("end = 7200.0", "end = 5400.0"))
-    held = growing.replace("enabled = .true.", "enabled = .false.")
-    held = done(tmp_path, "held", held, "--restart", base)
+    base = finished(tmp_path, "base", growing.replace("end = 7200.0", "end = 5400.0"))
+    off = growing.replace("enabled = .true.", "enabled = .false.")
+    held = finished(tmp_path, "held", off, "--restart", base)
     rows = pd.read_csv(held / "history.csv")
     rows = rows[rows["time_s"] >= 5400.0]
     assert len(rows) > 2
@@ -389,7 +393,7 @@ def test_growth_ends_at_a_restart_and_begins_again(tmp_path: Path) -> None:
     run = solver("run", "--restart", tmp_path / "again", "--quiet")
     assert run.returncode == 0, run.stderr
     assert_same(tmp_path / "again", held)
-    again = done(
+    again = finished(
         tmp_path, "on", growing.replace("end = 7200.0", "end = 7500.0"), "--restart", held
     )
     assert pd.read_csv(again / "history.csv")["fracture_length_m"].iloc[-1] > 0.14
@@ -398,8 +402,8 @@ def test_growth_ends_at_a_restart_and_begins_again(tmp_path: Path) -> None:
 def test_a_change_of_wells_ended_before_its_first_checkpoint_goes_on(tmp_path: Path) -> None:
     """The folder then has the new scene.nml, and the checkpoint of the scene before."""
     added = f"&injection name = 'second', {WELLS['rock']}, start = 9000.0, end = 12000.0 /\n"
-    base = done(tmp_path, "base", FINE.replace("end = 18000.0", "end = 7200.0"))
-    later = done(tmp_path, "later", FINE + added, "--restart", base)
+    base = finished(tmp_path, "base", FINE.replace("end = 18000.0", "end = 7200.0"))
+    later = finished(tmp_path, "later", FINE + added, "--restart", base)
     (base / "scene.nml").write_text((later / "scene.nml").read_text())
     assert solver("run", "--restart", base, "--quiet").returncode == 0
     assert_same(base, later)

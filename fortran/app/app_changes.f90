@@ -96,8 +96,8 @@ contains
       end if
    end subroutine switch_growth
 
-   !> Give the stored scene the wells of the one before, with the stages of the scene. Those that the
-   !! scene leaves out are closed, and added ones stand behind them and begin now or later.
+   !> Give the stored scene the wells of the one before, with the stages of the scene. Those that
+   !! the scene leaves out are closed, and added ones stand behind them and begin now or later.
    subroutine change_wells(before, time, scene, stored, switched)
       type(scene_t), intent(in) :: before
       real(rk), intent(in) :: time  !< [s]

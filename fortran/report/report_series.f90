@@ -182,8 +182,8 @@ contains
       line = line(:max(1, index(line, newline)) - 1)
    end function first_line
 
-   !> Begin with the rows of another table. Its columns are kept, and in those that it lacks its rows
-   !! have no values. Texts with commas are in tables that always have the same columns.
+   !> Begin with the rows of another table. Its columns are kept, and in those that it lacks its
+   !! rows have no values. Texts with commas are in tables that always have the same columns.
    subroutine take_over(self, other)
       class(series_t), intent(inout) :: self
       type(series_t), intent(in) :: other

@@ -26,7 +26,7 @@ module twolevel_value_errors
                                        of_first_pressure, of_layers, of_steps, of_well_in_rock, &
                                        undrained_share
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_well_rows, only: entry_rows, well_pressures
+   use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
 
@@ -81,7 +81,6 @@ module twolevel_value_errors
       type(followed_t) :: probes  !< pressure, displacement, stress of each
    contains
       procedure :: begin
-      procedure :: add_wells
       procedure :: note_state
       procedure :: note_wells
       procedure :: note_entries
@@ -122,33 +121,6 @@ contains
       call self%wells%begin(state%time, [well_pressures(scene, problem, state%time, state), &
                                          spread(0.0_rk, 1, 2*size(scene%injections))])
    end subroutine begin
-
-   !> Add wells at rest after those so far.
-   subroutine add_wells(self, scene, problem, state, entry_is_old)
-      class(value_errors_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      logical, intent(in) :: entry_is_old(:)  !< (entries of all wells)
-      type(entry_row_t), allocatable :: rows(:)
-      logical :: is_old(size(scene%injections))
-      integer :: n_new
-
-      is_old = .true.
-      is_old(size(self%wells%value)/3 + 1:) = .false.
-      n_new = count(.not. is_old)
-      call self%wells%add([is_old, is_old, is_old], &
-                          [well_pressures(scene, problem, state%time, state), &
-                           spread(0.0_rk, 1, 2*size(is_old))])
-      if (allocated(self%of_wells)) then
-         self%of_wells = [self%of_wells, spread(0.0_rk, 1, n_new)]
-         self%flows = [self%flows, spread(.false., 1, n_new)]
-         self%risen = [self%risen, spread(0.0_rk, 1, n_new)]
-      end if
-      if (.not. allocated(self%entries%value)) return
-      rows = entry_rows(problem, state)
-      call self%entries%add([entry_is_old, entry_is_old], [rows%pressure, rows%flow])
-   end subroutine add_wells
 
    !> Errors of the row of an accepted state.
    subroutine note_state(self, scene, problem, state, row, stated, facts)
