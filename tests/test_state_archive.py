@@ -156,7 +156,8 @@ MADE_AGAIN = {
     | {"flush_cost": _FILES, "writes_vtu": _RULE, "interval": _RULE},
     "tables_t": {"probe_names": _RULE, "pressure_names": _RULE},
     "series_t": _each("path written", _FILES)
-    | {"names": _RULE, "is_written": _RULE, "column": _EMPTY, "fault": "the run fails with it"},
+    | {"names": _RULE, "column": _EMPTY, "fault": "the run fails with it"}
+    | _each("is_written is_past", "those of the first line of the text"),
     "snapshots_t": {"directory": _FILES, "material": _RULE, "counts": _RULE},
     "snapshot_t": {"windows": "of scenes with a fluid, whose fields are made again"},
     "collection_t": {"path": _FILES, "is_falling": _RULE},

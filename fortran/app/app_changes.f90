@@ -2,10 +2,12 @@
 !! scene.nml, which have every name of every group.
 module app_changes
    use base_errors, only: error_t, raise_error
-   use base_kinds, only: rk
+   use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use base_texts, only: add_text, text_t
-   use scene_types, only: scene_t
+   use report_files, only: remove_file, write_text_file
+   use scene_namelist, only: read_scene
+   use scene_types, only: injection_t, scene_t
    use scene_write, only: scene_text
    implicit none(type, external)
    private
@@ -30,9 +32,133 @@ module app_changes
 
 contains
 
-   !> An error that names the first difference that is not allowed. The scene takes over the first
-   !! step of the checkpoint: by default it is a share of the end, which may differ.
-   subroutine check_changes(before, scene, time, error)
+   !> An error that names the first difference that is not allowed. The scene takes over wells that
+   !! it leaves out, closed, and the first step of the checkpoint, by default a share of the end.
+   subroutine check_changes(text, directory, time, scene, stored, switched, error)
+      character(len=*), intent(in) :: text  !< of the scene of the checkpoint
+      character(len=*), intent(in) :: directory  !< of the run
+      real(rk), intent(in) :: time  !< of the checkpoint [s]
+      type(scene_t), intent(inout) :: scene
+      type(scene_t), intent(out) :: stored  !< the same with the wells and growth of the checkpoint
+      character(len=:), allocatable, intent(out) :: switched  !< these differences in words, or ""
+      type(error_t), allocatable, intent(out) :: error
+      type(scene_t) :: before
+
+      switched = ""
+      stored = scene
+      if (scene_text(scene) /= text) then
+         call read_text(text, directory//"/scene_before.part", before, error)
+         if (allocated(error)) return
+         if (before%has_fluid() .eqv. scene%has_fluid()) then
+            call switch_growth(before, scene, stored, switched)
+            if (scene%has_fluid()) call change_wells(before, time, scene, stored, switched)
+         end if
+      end if
+      call compare(text, stored, time, error)
+      scene%time%first = stored%time%first
+   end subroutine check_changes
+
+   !> Read a scene from its text, by way of a file.
+   subroutine read_text(text, path, scene, error)
+      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: path
+      type(scene_t), intent(out) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      logical :: was_there
+
+      call write_text_file(path, text, error)
+      if (.not. allocated(error)) call read_scene(path, scene, error)
+      call remove_file(path, was_there)
+   end subroutine read_text
+
+   !> Give the stored scene the growth of the one before, if growth is switched.
+   subroutine switch_growth(before, scene, stored, switched)
+      type(scene_t), intent(in) :: before
+      type(scene_t), intent(inout) :: scene, stored
+      character(len=:), allocatable, intent(inout) :: switched
+
+      if (before%growth%enabled .eqv. scene%growth%enabled) return
+      stored%growth = before%growth
+      if (scene%growth%enabled) then
+         switched = ", growth on"
+         if (.not. before%material%toughness > 0.0_rk) then
+            stored%material%toughness = before%material%toughness
+         end if
+         if (before%growth%intensities) return
+         ! Windows did not exist.
+         stored%discretization%window = before%discretization%window
+         stored%discretization%window_is_body = before%discretization%window_is_body
+         stored%discretization%fine_ratio = before%discretization%fine_ratio
+      else
+         switched = ", growth off"
+         scene%growth = before%growth
+         scene%growth%enabled = .false.
+      end if
+   end subroutine switch_growth
+
+   !> Give the stored scene the wells of the one before, with the stages of the scene. Those that
+   !! the scene leaves out are closed, and added ones stand behind them and begin now or later.
+   subroutine change_wells(before, time, scene, stored, switched)
+      type(scene_t), intent(in) :: before
+      real(rk), intent(in) :: time  !< [s]
+      type(scene_t), intent(inout) :: scene, stored
+      character(len=:), allocatable, intent(inout) :: switched
+      type(injection_t), allocatable :: wells(:)
+      integer :: k, n, w
+
+      if (.not. before%has_wells() .and. .not. scene%has_wells()) return
+      allocate (wells(0))
+      if (before%has_wells()) wells = before%injections
+      n = size(wells)
+      if (.not. allocated(scene%injections)) allocate (scene%injections(0))
+      do w = 1, n
+         k = findloc(scene%injections%name, wells(w)%name, dim=1)
+         if (k > 0) wells(w) = scene%injections(k)
+         if (k > 0) cycle
+         switched = switched//", well "//trim(wells(w)%name)//" closed"
+         call close_well(time, wells(w))
+      end do
+      do w = 1, size(scene%injections)
+         if (any(wells(:n)%name == scene%injections(w)%name)) cycle
+         switched = switched//", well "//trim(scene%injections(w)%name)//" added"
+         wells = [wells, scene%injections(w)]
+         associate (well => wells(size(wells)))
+            well%start = max(well%start, time)
+            if (allocated(well%time)) well%time = max(well%time, time)
+         end associate
+      end do
+      stored%injections = wells(:n)
+      scene%injections = wells
+   end subroutine change_wells
+
+   !> End a well, or if it has not begun keep it shut.
+   pure subroutine close_well(time, well)
+      real(rk), intent(in) :: time  !< [s]
+      type(injection_t), intent(inout) :: well
+      real(rk), parameter :: never = 1.0e30_rk  ! [s]
+      integer :: n
+
+      n = 1
+      if (allocated(well%time)) then
+         n = max(1, count(well%time < time))
+         well%time = well%time(:n)
+         if (allocated(well%rate)) well%rate = well%rate(:n)
+         if (allocated(well%pressure)) well%pressure = well%pressure(:n)
+         if (allocated(well%temperature)) then
+            well%temperature = well%temperature(:min(n, size(well%temperature)))
+         end if
+      end if
+      if (well%stage_start(1_ik) < time) then
+         well%end = min(well%end, time)
+      else
+         well%start = never
+         if (allocated(well%time)) well%time = [never]
+         well%end = huge(1.0_rk)
+      end if
+   end subroutine close_well
+
+   !> Compare the scene of a checkpoint with the one to go on with, which takes over its first step.
+   subroutine compare(before, scene, time, error)
       character(len=*), intent(in) :: before  !< text of the scene of the checkpoint
       type(scene_t), intent(inout) :: scene
       real(rk), intent(in) :: time  !< of the checkpoint [s]
@@ -53,38 +179,25 @@ contains
             if (may_change(group//" "//name, old%value(i)%text, new%value(i)%text)) cycle
             call refuse(name//" of &"//group//" from "//old%value(i)%text//" to "// &
                         new%value(i)%text, error)
-            if (group//" "//name == "growth enabled") error%message = "a restart cannot switch "// &
-               & "growth on or off: with it the last cells of fractures end at their tips; "// &
-               & "enable it from the start, which changes little until a tip reaches its toughness"
             return
          end associate
       end do
       if (i <= max(size(old%name), size(new%name))) then
          call refuse("number of groups", error)
-         if (well_count(new) /= well_count(old)) error%message = "a restart cannot change the "// &
-            & "number of wells, for which tables have columns: give a well that comes later "// &
-            & "from the start, with its start after the end; stages may change"
       end if
       if (allocated(error) .or. .not. scene%has_fluid()) return
       if (.not. scene%time%end < time) return
       call raise_error(error, "", "the checkpoint is of "//brief_text(time, 6)//" s, after the "// &
                        "end at "//brief_text(scene%time%end, 6)//" s")
-   end subroutine check_changes
-
-   pure integer function well_count(names)
-      type(names_t), intent(in) :: names
-      integer :: i
-
-      well_count = count([(names%group(i)%text == "injection" .and. &
-                           names%name(i)%text == "group", i=1, size(names%name))])
-   end function well_count
+   end subroutine compare
 
    subroutine refuse(what, error)
       character(len=*), intent(in) :: what
       type(error_t), allocatable, intent(out) :: error
 
      call raise_error(error, "", "a restart cannot change the "//what//": it may change &time, "// &
-                       "&output, stages of wells, values of sides in time, and stop_gain")
+                       "&output, wells and their stages, values of sides in time, and of "// &
+                       "&growth enabled and stop_gain")
    end subroutine refuse
 
    pure logical function may_change(name, old, new)

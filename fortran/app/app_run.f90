@@ -295,36 +295,43 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(archive_t) :: archive
       type(about_t) :: about
-      character(len=:), allocatable :: remark
+      type(scene_t) :: stored  ! with the wells and growth of the checkpoint
+      character(len=:), allocatable :: remark, switched
 
       refused = .true.
       call read_checkpoint(origin, version, about, archive, remark, error)
       if (allocated(error)) return
-      call check_changes(about%scene, scene, about%time, error)
+      call check_changes(about%scene, journal%files%place%directory, about%time, scene, stored, &
+                         switched, error)
       if (allocated(error)) return
-      call journal%files%prepare(scene)
+      call journal%files%prepare(stored)
       call journal%files%visit_text(archive)
       call journal%visit(archive)
       select type (simulation)
       class is (restartable_t)
-         call simulation%prepare(scene)
+         call simulation%prepare(stored)
          call simulation%visit(archive, timers, error)
+         if (allocated(error)) return
+         if (.not. allocated(archive%fault) .and. archive%place /= archive%length) then
+            archive%fault = "more than this program knows"
+         end if
+         if (allocated(archive%fault)) then
+            call raise_error(error, "", "the checkpoint in "//origin//" has "//archive%fault// &
+                             ": it was written by another program")
+            return
+         end if
+         if (len(switched) > 0) then
+            call journal%files%take_over(scene)
+            call simulation%take_over(scene, error)
+            if (allocated(error)) return
+         end if
       end select
-      if (allocated(error)) return
-      if (.not. allocated(archive%fault) .and. archive%place /= archive%length) then
-         archive%fault = "more than this program knows"
-      end if
-      if (allocated(archive%fault)) then
-         call raise_error(error, "", "the checkpoint in "//origin//" has "//archive%fault// &
-                          ": it was written by another program")
-         return
-      end if
       refused = .false.
       call timers%start(phase_output)
       call journal%files%continue(scene, origin, error)
       call timers%stop(phase_output)
       if (len(remark) > 0) call journal%files%log("warning: "//remark)
-      call journal%files%log("restart from the state at "//about%state)
+      call journal%files%log("restart from the state at "//about%state//switched)
    end subroutine restart
 
    !> Store or load what decides about the next files.

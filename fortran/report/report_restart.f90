@@ -5,7 +5,7 @@
 !! the scene (rules, laws, step settings) is made again from it, so that it may differ at a restart.
 module report_restart
    use base_archive, only: archive_t
-   use base_errors, only: error_t
+   use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk
    use base_texts, only: add_text, text_t
    use base_timers, only: timers_t
@@ -27,6 +27,7 @@ module report_restart
    contains
       procedure(prepare_scene), deferred :: prepare
       procedure(visit_state), deferred :: visit
+      procedure :: take_over
    end type restartable_t
 
    abstract interface
@@ -50,6 +51,17 @@ module report_restart
    end interface
 
 contains
+
+   !> Go on from the loaded state with growth switched, or with more wells, which stand after those
+   !! of the scene so far.
+   subroutine take_over(self, scene, error)
+      class(restartable_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+
+      call raise_error(error, "", "a restart of "//trim(scene%name)//" at "//self%last_state()// &
+                       " cannot switch growth on or off: the scene has no fluid")
+   end subroutine take_over
 
    !> What all simulations have.
    subroutine visit_simulation(archive, simulation)

@@ -52,6 +52,7 @@ module report_run
       procedure :: begin => begin_run
       procedure :: prepare => prepare_tables
       procedure :: continue => continue_run
+      procedure :: take_over
       procedure :: visit
       procedure :: visit_text
       procedure :: network_step
@@ -111,6 +112,17 @@ contains
          call self%snapshots%open(folder, scene)
       end associate
    end subroutine prepare_tables
+
+   !> Go on with the tables of a scene with other wells or growth.
+   subroutine take_over(self, scene)
+      class(run_output_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(tables_t) :: before
+
+      before = self%tables
+      call self%tables%open(self%place%directory, scene)
+      call self%tables%take_over(before)
+   end subroutine take_over
 
    !> Go on with files that were loaded: write scene.nml, take over the VTU files that belong to the
    !! loaded state, and remove later ones.

@@ -19,11 +19,14 @@ module report_series
       type(text_buffer_t), private :: buffer
       type(text_t), allocatable, private :: names(:)  !< names of the columns
       logical, allocatable, private :: is_written(:)  !< (columns)
+      !> (columns) written of rows before a restart that left it out, and empty in other rows
+      logical, allocatable, private :: is_past(:)
       integer, private :: column = 0  !< number of values in the row so far
       character(len=:), allocatable, private :: fault  !< message about the first wrong row
       integer(lk), private :: written = -1_lk  !< length of the file
    contains
       procedure :: open => open_series
+      procedure :: take_over
       procedure, private :: put_real
       procedure, private :: put_integer
       procedure, private :: put_text
@@ -49,6 +52,7 @@ contains
       self%path = path
       allocate (self%names(size(names)))
       self%is_written = is_written
+      allocate (self%is_past(size(names)), source=.false.)
       do i = 1, size(names)
          self%names(i)%text = trim(names(i))
          call self%put(trim(names(i)), trim(names(i)))
@@ -136,15 +140,21 @@ contains
       call self%buffer%replace_last(newline)  ! the comma behind the last value
    end subroutine end_row
 
-   !> Store or load the rows; the table is open.
+   !> Store or load the rows; the table is open. It goes on with the columns that it has.
    subroutine visit(self, archive)
       class(series_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
+      integer :: i
 
       if (.not. self%is_open()) return
       call archive%item("n_rows", self%n_rows)
       call self%buffer%visit(archive)
-      if (archive%is_loading) self%written = -1_lk
+      if (.not. archive%is_loading .or. allocated(archive%fault)) return
+      self%written = -1_lk
+      associate (head => ","//first_line(self)//",")
+         call keep_columns(self, [(index(head, ","//self%names(i)%text//",") > 0, &
+                                   i=1, size(self%names))])
+      end associate
    end subroutine visit
 
    subroutine visit_text(self, archive)
@@ -153,6 +163,63 @@ contains
 
       if (self%is_open()) call self%buffer%visit_text(archive)
    end subroutine visit_text
+
+   !> Write these columns; in those that do not apply any more, values are omitted.
+   pure subroutine keep_columns(self, is_written)
+      class(series_t), intent(inout) :: self
+      logical, intent(in) :: is_written(:)  !< (columns)
+
+      self%is_past = is_written .and. .not. self%is_written
+      self%is_written = is_written
+   end subroutine keep_columns
+
+   !> The names of the columns that are written.
+   function first_line(self) result(line)
+      class(series_t), intent(in) :: self
+      character(len=:), allocatable :: line
+
+      line = self%buffer%text()
+      line = line(:max(1, index(line, newline)) - 1)
+   end function first_line
+
+   !> Begin with the rows of another table. Its columns are kept, and in those that it lacks its
+   !! rows have no values. Texts with commas are in tables that always have the same columns.
+   subroutine take_over(self, other)
+      class(series_t), intent(inout) :: self
+      type(series_t), intent(in) :: other
+      type(text_t), allocatable :: names(:)
+      character(len=:), allocatable :: text
+      logical, allocatable :: was_written(:)
+      integer :: first, last, column
+
+      if (.not. (self%is_open() .and. other%is_open())) return
+      names = pack(other%names, other%is_written)
+      was_written = [(any([(names(first)%text == self%names(column)%text, &
+                            first=1, size(names))]), column=1, size(self%names))]
+      call keep_columns(self, was_written .or. self%is_written)
+      self%buffer = other%buffer
+      self%n_rows = other%n_rows
+      if (all(was_written .eqv. self%is_written)) return
+      self%buffer%length = 0_lk
+      do column = 1, size(self%names)
+         if (self%is_written(column)) call self%buffer%append(self%names(column)%text//",")
+      end do
+      call self%buffer%replace_last(newline)
+      text = other%buffer%text()
+      first = index(text, newline) + 1
+      do while (first <= len(text))
+         do column = 1, size(self%names)
+            if (.not. self%is_written(column)) cycle
+            if (was_written(column)) then
+               last = first + scan(text(first:), ","//newline) - 2
+               call self%buffer%append(text(first:last))
+               first = last + 2
+            end if
+            call self%buffer%append(",")
+         end do
+         call self%buffer%replace_last(newline)
+      end do
+   end subroutine take_over
 
    !> Write the whole table if it has changed since it was last written. A row with a value that is
    !! missing, too much or under a wrong name is an error.
@@ -183,6 +250,9 @@ contains
       else
          self%column = self%column + 1
          is_wanted = self%is_written(self%column)
+         if (.not. self%is_past(self%column)) return
+         is_wanted = .false.
+         call self%buffer%append(",")
       end if
    end subroutine next_column
 

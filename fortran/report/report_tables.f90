@@ -44,6 +44,7 @@ module report_tables
       procedure :: well_row
       procedure :: entry_row
       procedure :: flush => flush_tables
+      procedure :: take_over
       procedure :: visit
       procedure :: visit_text
    end type tables_t
@@ -494,6 +495,21 @@ contains
          call table%put_nothing(name)
       end if
    end subroutine put_if_there
+
+   !> Go on with the rows of the tables of a scene with other wells or growth.
+   subroutine take_over(self, other)
+      class(tables_t), intent(inout) :: self
+      type(tables_t), intent(in) :: other
+
+      call self%history%take_over(other%history)
+      call self%tips%take_over(other%tips)
+      call self%fractures%take_over(other%fractures)
+      call self%probes%take_over(other%probes)
+      call self%events%take_over(other%events)
+      call self%slip_events%take_over(other%slip_events)
+      call self%wells%take_over(other%wells)
+      call self%entries%take_over(other%entries)
+   end subroutine take_over
 
    !> Store or load the tables.
    subroutine visit(self, archive)

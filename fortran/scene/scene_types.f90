@@ -241,6 +241,7 @@ module scene_types
    type :: growth_t
       logical :: enabled = .false.
       logical :: enabled_assumed = .false.  !< the default, where other names of growth are given
+      logical :: was_enabled = .false.  !< growth was switched off at a restart; not in the file
       !> stress intensity factors are computed (always with growth)
       logical :: intensities = .false.
       character(len=name_length) :: law = "equilibrium"  !< "equilibrium" or "paris"
@@ -253,6 +254,7 @@ module scene_types
       real(rk) :: stop_gain = huge(1.0_rk)  !< growth of an end at which the run ends [m]
    contains
       procedure :: in_equilibrium
+      procedure :: leaves_partial_cells
    end type growth_t
 
    !> A point where the matrix state is recorded.
@@ -328,6 +330,13 @@ contains
 
       in_equilibrium = self%enabled .and. self%law == "equilibrium"
    end function in_equilibrium
+
+   !> Tips are, or were, in equilibrium: the last cells of the coarse mesh extend beyond them.
+   pure logical function leaves_partial_cells(self)
+      class(growth_t), intent(in) :: self
+
+      leaves_partial_cells = (self%enabled .or. self%was_enabled) .and. self%law == "equilibrium"
+   end function leaves_partial_cells
 
    !> The scene has a fluid; otherwise it is mechanics only.
    pure logical function has_fluid(self)

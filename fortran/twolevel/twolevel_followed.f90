@@ -51,6 +51,7 @@ module twolevel_followed
       real(rk), allocatable :: error(:)  !< the larger of them
    contains
       procedure :: begin
+      procedure :: add
       procedure :: follow
       procedure :: changes
    end type followed_t
@@ -73,6 +74,26 @@ contains
          allocate (self%sum(n), self%linear(n), self%error(n), source=0.0_rk)
       end associate
    end subroutine begin
+
+   !> Go on with more quantities, which begin now.
+   subroutine add(self, is_old, values)
+      class(followed_t), intent(inout) :: self
+      logical, intent(in) :: is_old(:)  !< (quantities from now on) followed so far
+      real(rk), intent(in) :: values(:)  !< of the others now
+      type(followed_t) :: new
+
+      call new%begin(self%time, values)
+      self%first = unpack(self%first, is_old, new%first)
+      self%turn = unpack(self%turn, is_old, new%turn)
+      self%varied = unpack(self%varied, is_old, new%varied)
+      self%value = unpack(self%value, is_old, new%value)
+      self%rate = unpack(self%rate, is_old, new%rate)
+      self%largest = unpack(self%largest, is_old, new%largest)
+      self%of_step = unpack(self%of_step, is_old, new%of_step)
+      self%sum = unpack(self%sum, is_old, new%sum)
+      self%linear = unpack(self%linear, is_old, new%linear)
+      self%error = unpack(self%error, is_old, new%error)
+   end subroutine add
 
    !> Add the error of a step to the given values.
    subroutine follow(self, step, values)

@@ -126,7 +126,7 @@ contains
       real(rk) :: first, last
       integer(ik) :: cell, end, i
 
-      if (.not. scene%growth%in_equilibrium()) return
+      if (.not. scene%growth%leaves_partial_cells()) return
       do i = 1, size(front%tip, kind=ik)
          if (front%tip(i)%is_free) call detach_tip(front%tip(i), fracture)
       end do

@@ -12,11 +12,11 @@ submodule(twolevel_state) twolevel_restart
                              visit_step_values
    use growth_front, only: front_state_t
    use growth_network, only: end_place
-   use growth_segment, only: segment_t
    use mesh_archive, only: visit_mesher_and_mesh
    use report_restart, only: visit_simulation
    use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
    use twolevel_heat, only: heat_row, set_heat
+   use twolevel_places, only: place_tips
    use twolevel_schedule, only: next_switch
    use twolevel_setup, only: keep_above_zero, rules_of_scene
    implicit none(type, external)
@@ -53,6 +53,7 @@ contains
          end if
       end if
       call visit_simulation(archive, self)
+      call archive%item("growth_was_enabled", self%scene%growth%was_enabled)
       call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
       associate (mesh => self%problem%mesh)
          if (archive%is_loading .and. .not. allocated(archive%fault)) then
@@ -69,7 +70,7 @@ contains
          call archive%set_extent("mesh_tips", mesh%fracture%n_tips)
       end associate
       call visit_levels(archive, "now", self%now)
-      if (archive%is_loading) call check_places(archive, self%front_state_t, self%now%segment)
+      if (archive%is_loading) call check_places(archive, self%front_state_t, self%now)
       ! The next step begins with the present state: of the one before only its time is needed.
       call archive%item("before_time", self%before%time)
       if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
@@ -87,23 +88,38 @@ contains
       if (archive%is_loading) call go_beyond_end(self)
    end subroutine visit
 
-   !> The tips are at the ends of the network, and where their segments say.
-   subroutine check_places(archive, front, segment)
+   !> The tips are at the ends of the network, and where their segments say, which end in the last
+   !! coarse cells.
+   subroutine check_places(archive, front, now)
       type(archive_t), intent(inout) :: archive
       type(front_state_t), intent(in) :: front
-      type(segment_t), allocatable, intent(in) :: segment(:)
+      type(levels_state_t), intent(in) :: now
       real(rk), parameter :: rounding = 1.0e-9_rk
-      real(rk) :: place(2), scale
+      real(rk) :: longest, place(2), scale
+      logical :: fits
       integer(ik) :: i
 
       if (allocated(archive%fault) .or. .not. allocated(front%tip)) return
+      fits = allocated(now%coarse_network%first)
+      if (fits) fits = size(now%coarse_network%first) == size(front%network%first)
+      if (.not. fits) then
+         call archive%set_fault("coarse_network")
+         return
+      end if
       do i = 1, size(front%tip, kind=ik)
-         associate (tip => front%tip(i))
+         associate (tip => front%tip(i), coarse => now%coarse_network)
             if (.not. tip%is_free) cycle
             place = end_place(front%network, tip%fracture, tip%end)
             scale = rounding*maxval(abs(place))
-            if (allocated(segment)) then
-               if (segment(i)%is_open) place = segment(i)%place()
+            if (allocated(now%segment)) then
+               associate (segment => now%segment(i))
+                  longest = norm2(end_place(coarse, tip%fracture, tip%end) - segment%start)
+                  if (segment%is_open) place = segment%place()
+                  if (segment%is_open .and. .not. (segment%length > 0.0_rk .and. segment%length &
+                                                   <= (1.0_rk + rounding)*longest)) then
+                     call archive%set_fault("segment")
+                  end if
+               end associate
             end if
             if (.not. norm2(place - tip%xy) <= scale) call archive%set_fault("tip")
          end associate
@@ -144,6 +160,12 @@ contains
             call problem%feed_wells(self%scene, error)
             if (.not. allocated(error)) call set_heat(self%scene, problem, error)
             if (allocated(error)) return
+            associate (growth => self%scene%growth)
+               if (growth%was_enabled .and. growth%leaves_partial_cells() .and. &
+                   allocated(self%now%segment)) then
+                  call place_tips(self%front_state_t, self%now%segment, problem)
+               end if
+            end associate
             if (allocated(self%problem%heat)) then
                call archive%compare_extent("heat", self%problem%heat%n)
             end if

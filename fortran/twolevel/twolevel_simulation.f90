@@ -2,13 +2,15 @@
 submodule(twolevel_state) twolevel_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
+   use base_texts, only: text_t
    use base_timers, only: phase_mesh, phase_remesh, timers_t
    use base_tolerances, only: same_time
    use coarse_model, only: new_state
    use growth_network, only: fracture_length, network_of_scene
    use mesh_builder, only: build_mesh, build_mesh_sized
    use scene_sizes, only: sizes_text
-   use scene_types, only: scene_t
+   use scene_plausible, only: doubts_of_scene
+   use scene_types, only: growth_t, scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_field_errors, only: load_errors
    use twolevel_heat, only: set_heat
@@ -22,6 +24,10 @@ submodule(twolevel_state) twolevel_simulation
                              pressure_scale, rest_joints, rules_of_scene
    use twolevel_wells, only: entries_of, share_wells
    implicit none(type, external)
+
+   ! Names of features that are not used, in the log.
+   character(len=*), parameter :: no_growth = "remeshing and transfer: growth off"
+   character(len=*), parameter :: no_wells = "no injection"
 
 contains
 
@@ -61,22 +67,26 @@ contains
       call mesh_coarse(self, timers, error)
       if (allocated(error)) return
       call set_scales(self)
-      if (scene%growth%intensities) then
-         ! The body as reference has elements as large as the coarse cells; at the tips, where this
-         ! matters, they are those of the windows.
-         associate (coarser => 1.0_rk/scene%discretization%fine_ratio, &
-                    is_body => scene%discretization%window_is_body)
-            call self%windows%begin(self%tip, is_body, merge(1.0_rk, coarser, is_body), &
-                                    self%now%windows)
-            if (.not. is_body) call self%reference%begin(self%tip, .true., coarser, &
-                                                         self%now%reference)
-         end associate
-      end if
+      if (scene%growth%intensities) call begin_windows(self)
       allocate (self%now%grown(0), self%now%segment(size(self%tip)))
       call self%now%interaction%begin(size(self%tip))
       call self%follow_trend(at_rest=.false.)
       call set_heat(self%scene, self%problem, error)
    end subroutine mesh_levels
+
+   !> Begin the windows of the tips, and the body as reference. It has elements as large as the
+   !! coarse cells; at the tips, where this matters, they are those of the windows.
+   subroutine begin_windows(self)
+      class(two_levels_t), intent(inout) :: self
+
+      associate (coarser => 1.0_rk/self%scene%discretization%fine_ratio, &
+                 is_body => self%scene%discretization%window_is_body)
+         call self%windows%begin(self%tip, is_body, merge(1.0_rk, coarser, is_body), &
+                                 self%now%windows)
+         if (.not. is_body) call self%reference%begin(self%tip, .true., coarser, &
+                                                      self%now%reference)
+      end associate
+   end subroutine begin_windows
 
    !> Mesh the coarse level, with &adaptive again until the estimated error is small enough.
    subroutine mesh_coarse(self, timers, error)
@@ -162,10 +172,10 @@ contains
                            "fractures: contact, friction, flow", "no fractures")
          call summary%note(any(scene%fractures%dilation > 0.0_rk), "shear dilation", &
                            "dilation: psi = 0 everywhere")
-         call summary%note(size(scene%injections) > 0, "injection", "no injection")
+         call summary%note(size(scene%injections) > 0, "injection", no_wells)
          call summary%note(scene%growth%intensities, "stress intensity factors", &
                            "no windows: intensities off")
-         call summary%note(scene%growth%enabled, "growth", "remeshing and transfer: growth off")
+         call summary%note(scene%growth%enabled, "growth", no_growth)
          if (scene%adaptive%enabled) call summary%use_feature("adaptive coarse mesh")
          call summary%note(scene%output%vtu, "VTU files", "VTU files: off")
          call summary%note(self%problem%model%drained, "flow across the outer boundary", &

@@ -116,11 +116,12 @@ module twolevel_state
       procedure :: remesh_coarse
       procedure :: prepare
       procedure :: visit
+      procedure :: take_over
       procedure :: judge_mesh
    end type two_levels_t
 
-   ! In the submodules twolevel_adaption, twolevel_remeshing, twolevel_restart, twolevel_steps and
-   ! twolevel_simulation
+   ! In the submodules twolevel_adaption, twolevel_remeshing, twolevel_restart, twolevel_steps,
+   ! twolevel_simulation and twolevel_switch
    interface
       module subroutine prepare(self, scene)
          implicit none(type, external)
@@ -135,6 +136,13 @@ module twolevel_state
          type(timers_t), intent(inout) :: timers
          type(error_t), allocatable, intent(out) :: error
       end subroutine visit
+
+      module subroutine take_over(self, scene, error)
+         implicit none(type, external)
+         class(two_levels_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine take_over
 
       !> Extend the coarse network by the growth of the tips, if it has reached the threshold, or if
       !! no growth follows.
@@ -444,7 +452,7 @@ contains
 
       network = self%now%coarse_network
       mesh = self%problem%mesh
-      if (.not. self%scene%growth%in_equilibrium()) return
+      if (.not. self%scene%growth%leaves_partial_cells()) return
       network = self%network
       call end_at_tips(self%scene, self%front_state_t, mesh%fracture)
    end subroutine present_network

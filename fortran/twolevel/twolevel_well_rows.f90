@@ -18,6 +18,7 @@ module twolevel_well_rows
       real(rk), allocatable, private :: first_pressure(:)  !< pressure before the first step [Pa]
    contains
       procedure :: begin
+      procedure :: add
       procedure :: book
       procedure :: visit
    end type well_results_t
@@ -37,6 +38,21 @@ contains
          self%first_pressure = [(pressure_at(problem, state, w, 0.0_rk), w=1, n)]
       end associate
    end subroutine begin
+
+   !> Add wells at rest after those so far.
+   subroutine add(self, scene, problem, state)
+      class(well_results_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer(ik) :: w
+
+      associate (first => size(self%injected, kind=ik) + 1, last => size(scene%injections, kind=ik))
+         self%first_pressure = [self%first_pressure, &
+                                (pressure_at(problem, state, w, 0.0_rk), w=first, last)]
+         self%injected = [self%injected, (0.0_rk, w=first, last)]
+      end associate
+   end subroutine add
 
    !> Rows of the state after a step of length dt; dt = 0: before the first step.
    subroutine book(self, scene, problem, state, at_limit, dt, rows)
