@@ -16,7 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, call, numbers, record, rows, run
+from system_scene import TOP, bare, numbers, record, rows, run
 
 from wingcrack.figures import read_run
 
@@ -373,7 +373,7 @@ def test_wrong_tables_are_refused(tmp_path: Path, given: str, words: str) -> Non
     scene.write_text(changed(LOOP, ("factors = " + TABLE, given)))
     line = scene.read_text()[: scene.read_text().index("&load")].count("\n") + 1
     for command in (("check", scene), ("run", scene, "--out", "out")):
-        done = call(tmp_path, *command)
+        done = bare(tmp_path, *command)
         assert done.returncode == 2
         assert done.stderr.count("\n") == 1
         assert f"wrong.nml:{line}: &load: {words}" in done.stderr
@@ -383,7 +383,7 @@ def test_wrong_tables_are_refused(tmp_path: Path, given: str, words: str) -> Non
 def test_no_table_with_a_fluid(tmp_path: Path) -> None:
     scene = tmp_path / "wet.nml"
     scene.write_text(LOOP + "&fluid compressibility = 4.0e-10, viscosity = 1.0e-4 /\n")
-    done = call(tmp_path, "check", scene)
+    done = bare(tmp_path, "check", scene)
     assert done.returncode == 2
     assert "&load: is for mechanics-only scenes, but this one has the group &fluid" in done.stderr
 

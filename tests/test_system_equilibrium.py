@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import TOP, numbers, record, rows, run
+from system_scene import TOP, changed, numbers, record, rows, run
 
 from wingcrack.figures import read_run
 from wingcrack.figures.equilibrium import equilibrium_path
@@ -22,14 +22,6 @@ DISC = (TOP / "inputs/paper_b/disc_path_45.nml").read_text().replace("'paris'", 
 
 # K_I of the beam at f = 1 and a/W from 0.1 to 0.6 (Kaya and Erdogan 1987) [MPa m^1/2].
 BENDING = (3.521728, 5.018999, 6.547745, 8.478782, 11.258772, 15.766807)
-
-
-def changed(text: str, *changes: tuple[str, str]) -> str:
-    """Give a text with pieces replaced, each of which must stand in it."""
-    for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
 
 
 def check_complementarity(out: Path, toughness: float) -> None:

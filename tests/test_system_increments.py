@@ -9,21 +9,16 @@ from pathlib import Path
 
 import pytest
 import pyvista
-from system_scene import GROWING_BY_PARIS, TOP, call, numbers, record, rows, run
+from system_scene import GROWING_BY_PARIS, TOP, call, changed, numbers, record, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
 INCREMENTS = 5
-EDGE_CRACK = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
-for old, new in (
+EDGE_CRACK = changed(
+    (TOP / "inputs/paper_b/edge_mode1.nml").read_text(),
     ("poisson = 0.3", "poisson = 0.3, toughness = 1.0e6"),
-    (
-        "intensities = .true.",
-        "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.1",
-    ),
-):
-    assert old in EDGE_CRACK
-    EDGE_CRACK = EDGE_CRACK.replace(old, new, 1)
+    ("intensities = .true.", "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.1"),
+)
 
 
 def files(collection: Path) -> list[tuple[float, Path]]:
@@ -109,14 +104,12 @@ def test_a_falling_load_has_all_its_states(tmp_path: Path) -> None:
 
 def test_tips_keep_their_numbers(tmp_path: Path) -> None:
     """A tip that has joined leaves a gap in network.json as it does in tips.csv."""
-    scene = (TOP / "inputs/paper_a/imposed_slip.nml").read_text()
-    for old, new in (
+    scene = changed(
+        (TOP / "inputs/paper_a/imposed_slip.nml").read_text(),
         ("size_fracture = 0.0125", "size_fracture = 0.02"),
         ("increment = 0.02", "increment = 0.05"),
         ("to = 0.26, steps = 13", "to = 0.22"),
-    ):
-        assert old in scene, old
-        scene = scene.replace(old, new, 1)
+    )
     out = run(tmp_path, scene)
     network = json.loads((out / "network.json").read_text())
     last = max(int(row["history_row"]) for row in rows(out / "tips.csv"))

@@ -9,7 +9,7 @@ import struct
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, call, numbers, record, rows
+from system_scene import TOP, bare, changed, numbers, record, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -18,15 +18,7 @@ FLUID_COLUMNS = ("pressure", "injected", "leakoff", "prefilled", "mass_error", "
 
 def run_input(place: Path, name: str, *changes: tuple[str, str]) -> Path:
     """Run a scene of inputs/, changed in places, and give the directory of its files."""
-    text = (TOP / "inputs" / name).read_text()
-    for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    scene = place / Path(name).name
-    scene.write_text(text)
-    done = call(place, "run", scene.name, "--out", "out", "--quiet", "--no-plot")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    return place / "out"
+    return run(place, changed((TOP / "inputs" / name).read_text(), *changes))
 
 
 def test_edge_crack_in_tension(tmp_path: Path) -> None:
@@ -139,7 +131,7 @@ def test_no_trace_of_fluid(tmp_path: Path) -> None:
         assert not any(word in header for word in FLUID_COLUMNS), table.name
     assert "&fluid" not in (out / "scene.nml").read_text()
     assert record(out)["status"] == "finished"
-    again = call(tmp_path, "run", "out/scene.nml", "--out", "again", "--quiet", "--no-plot")
+    again = bare(tmp_path, "run", "out/scene.nml", "--out", "again", "--quiet")
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
     for name in ("tips.csv", "history.csv", "fractures.csv"):
         assert (tmp_path / "again" / name).read_bytes() == (out / name).read_bytes()
@@ -235,17 +227,9 @@ CLOSED = """\
 """
 
 
-def run_text(place: Path, text: str) -> Path:
-    """Run a scene."""
-    (place / "scene.nml").write_text(text)
-    done = call(place, "run", "scene.nml", "--out", "out", "--quiet", "--no-plot")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    return place / "out"
-
-
 def test_closed_frictional_crack(tmp_path: Path) -> None:
     """K_I = 0 and K_II = (tau - mu sigma_n) sqrt(pi a); slip is an ellipse (closed form)."""
-    out = run_text(tmp_path, CLOSED)
+    out = run(tmp_path, CLOSED)
     shear = 5.0e6 - 0.3 * 5.0e6
     exact = shear * math.sqrt(math.pi * 0.1)
     for tip in rows(out / "tips.csv"):
@@ -267,9 +251,7 @@ def test_frictional_crack_grows(tmp_path: Path) -> None:
     """Onset at 1.1547 K_II = K_IC; its slip is an ellipse, and so is its seismic moment."""
     text = CLOSED.replace("poisson = 0.2", "poisson = 0.2, toughness = 1.0e6")
     text = text.replace("&growth intensities = .true. /", "&load to = 2.0, steps = 4 /")
-    out = run_text(
-        tmp_path, text + "&growth enabled = .true., increment = 0.01, stop_gain = 0.04 /"
-    )
+    out = run(tmp_path, text + "&growth enabled = .true., increment = 0.01, stop_gain = 0.04 /")
     history = rows(out / "history.csv")
     exact = 1.0e6 / (1.1547005 * 3.5e6 * math.sqrt(math.pi * 0.1))
     assert float(history[0]["load_factor"]) == pytest.approx(exact, rel=5e-3)
@@ -287,7 +269,7 @@ def test_frictional_crack_grows(tmp_path: Path) -> None:
 
 def test_crack_below_its_friction_sticks(tmp_path: Path) -> None:
     """With mu above tan(45 degrees) nothing moves, to round-off."""
-    out = run_text(tmp_path, CLOSED.replace("friction = 0.3", "friction = 1.01"))
+    out = run(tmp_path, CLOSED.replace("friction = 0.3", "friction = 1.01"))
     assert {cell["state"] for cell in rows(out / "fractures.csv")} == {"stick"}
     assert numbers(out / "history.csv", "max_slip_m")[0] < 1e-18
     for tip in rows(out / "tips.csv"):
@@ -300,7 +282,7 @@ def test_stress_in_situ_is_in_equilibrium(tmp_path: Path) -> None:
     text = text.replace("y_traction = -10.0e6", "y_traction = 0.0")
     text = text.replace("y_traction = 10.0e6", "y_traction = 0.0")
     text += "&in_situ sxx = -7.0e6, syy = -7.0e6 /\n&probe name = 'p', x = 2.0, y = 1.0 /\n"
-    out = run_text(tmp_path, text)
+    out = run(tmp_path, text)
     assert numbers(out / "history.csv", "strain_energy_j")[0] < 1e-12
     for traction in numbers(out / "fractures.csv", "traction_n_pa"):
         assert traction == pytest.approx(-7.0e6, rel=1e-9)
@@ -312,7 +294,7 @@ def test_stress_in_situ_is_in_equilibrium(tmp_path: Path) -> None:
 def test_given_slip(tmp_path: Path) -> None:
     """An elliptical slip d is that of a uniform stress drop: K_II = E' d sqrt(pi a)/(4 a)."""
     text = CLOSED.replace("friction = 0.3", "law = 'slip', slip = 1.0e-5")
-    out = run_text(tmp_path, text)
+    out = run(tmp_path, text)
     exact = 40.0e9 / (1 - 0.2**2) * 1.0e-5 * math.sqrt(math.pi * 0.1) / 0.4
     for tip in rows(out / "tips.csv"):
         assert abs(float(tip["k2_pa_sqrtm"])) == pytest.approx(exact, rel=5e-3)
@@ -354,8 +336,8 @@ def test_a_traction_of_minus_zero_reads_back(tmp_path: Path) -> None:
     text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
     side = "&side name = 'left', normal_traction = -0.0, shear_traction = 0.0 /\n&fe"
     assert "'left'" not in text
-    out = run_text(tmp_path, text.replace("&fe", side, 1))
-    done = call(tmp_path, "check", out / "scene.nml")
+    out = run(tmp_path, text.replace("&fe", side, 1))
+    done = bare(tmp_path, "check", out / "scene.nml")
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -372,7 +354,7 @@ def test_refusals(tmp_path: Path, old: str, new: str, words: str) -> None:
     text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
     assert old in text
     (tmp_path / "bad.nml").write_text(text.replace(old, new, 1))
-    done = call(tmp_path, "run", "bad.nml", "--out", "out")
+    done = bare(tmp_path, "run", "bad.nml", "--out", "out")
     assert done.returncode == 2
     assert words in done.stderr.splitlines()[-1]
     assert not (tmp_path / "out").exists()
@@ -416,11 +398,11 @@ def test_nearly_incompressible_rock_with_friction(tmp_path: Path, size: float, m
     """Friction follows wrong normal tractions: warned of, and the stated errors cover it."""
     scene = SLIDING.replace("SIZE", str(size)) + mesh
     exact = (10e6 - 0.6 * 5e6) * math.sqrt(math.pi * 0.1)
-    usual = rows(run_text(tmp_path, scene.replace("NU", "0.3")) / "tips.csv")[-1]
+    usual = rows(run(tmp_path, scene.replace("NU", "0.3")) / "tips.csv")[-1]
     in_body = abs(float(usual["k2_pa_sqrtm"]))  # plane strain: the same for all ratios of Poisson
     assert in_body == pytest.approx(exact, rel=5e-3)
     assert float(usual["k2_error_pa_sqrtm"]) < 1e-3 * exact
-    out = run_text(tmp_path, scene.replace("NU", "0.4999"))
+    out = run(tmp_path, scene.replace("NU", "0.4999"))
     assert "several per cent" in str(record(out)["warnings"])
     for tip in rows(out / "tips.csv"):
         error = abs(abs(float(tip["k2_pa_sqrtm"])) - in_body)
@@ -448,7 +430,7 @@ def test_point_load_on_a_fracture(tmp_path: Path) -> None:
     text = (TOP / "inputs" / "paper_b" / "disc_sif.nml").read_text()
     scene = tmp_path / "scene.nml"
     scene.write_text(text + "&point_load x = 0.0, y = 0.0, x_force = 1.0 /\n")
-    done = call(tmp_path, "run", scene.name, "--out", "out", "--quiet", "--no-plot")
+    done = bare(tmp_path, "run", scene.name, "--out", "out")
     assert done.returncode == 2
     assert "where it would act on one of its two faces only" in done.stderr
     assert not (tmp_path / "out").exists()

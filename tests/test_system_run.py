@@ -409,7 +409,7 @@ def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
         assert "1.0306923793741721e-4" in scene
         text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
         (tmp_path / f"{name}.nml").write_text(text)
-        told[name] = call(tmp_path, "check", f"{name}.nml").stdout
+        told[name] = bare(tmp_path, "check", f"{name}.nml").stdout
     assert "toughness-dominated growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
     assert "growth depends on toughness and viscosity, K_m = 2.000E+00" in told["between"]
     assert "viscosity-dominated growth, K_m = 1.600E-01" in told["viscous"]
@@ -433,7 +433,7 @@ def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> Non
     command = [sys.executable, str(tool), "--rows", str(rows_of_fractures), "--cells", "8"]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     (tmp_path / "many.nml").write_text(text)
-    told = call(tmp_path, "check", "many.nml").stdout
+    told = bare(tmp_path, "check", "many.nml").stdout
     foreseen = re.search(r"about: +(\d+) cells", told)
     assert foreseen, told
     cells = record(run(tmp_path, text))["cells"]
