@@ -102,8 +102,8 @@ def test_a_falling_load_has_all_its_states(tmp_path: Path) -> None:
     assert history_rows(out / "matrix.pvd") == [4, 3, 2, 1]
 
 
-def test_tips_keep_their_numbers(tmp_path: Path) -> None:
-    """A tip that has joined leaves a gap in network.json as it does in tips.csv."""
+def test_tips_that_join_keep_their_numbers(tmp_path: Path) -> None:
+    """Wings of a slipping fracture end on its neighbours: gaps in network.json as in tips.csv."""
     scene = changed(
         (TOP / "inputs/paper_a/imposed_slip.nml").read_text(),
         ("size_fracture = 0.0125", "size_fracture = 0.02"),
@@ -123,6 +123,17 @@ def test_tips_keep_their_numbers(tmp_path: Path) -> None:
     first = {tip["tip"] for tip in network["steps"][0]["tips"]}
     assert set(told) < first
     assert set(told) != set(range(1, len(told) + 1))
+    assert [joint["kind"] for joint in network["joints"]] == ["T", "T"]
+    joints = {
+        event["detail"]: (float(event["x_m"]), float(event["y_m"]))
+        for event in rows(out / "events.csv")
+        if event["kind"] == "joint"
+    }
+    above, below = joints["joins fracture above"], joints["joins fracture below"]
+    assert (above[1], below[1]) == pytest.approx((0.4, -0.4), abs=1e-12)
+    assert above[0] == pytest.approx(-below[0], abs=5e-3)
+    assert numbers(out / "history.csv", "n_intersections")[-1] == 2
+    assert numbers(out / "history.csv", "n_tips")[-1] == 4
 
 
 def test_warnings_stand_once_on_the_terminal(tmp_path: Path) -> None:

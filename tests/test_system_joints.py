@@ -167,24 +167,6 @@ def test_cracks_meet(tmp_path: Path) -> None:
     assert sorted(tip["tip"] for tip in network["tips"]) == [1, 4]
 
 
-@pytest.mark.parametrize("pressure", ["", ", pressure = 0.0"])
-def test_a_side_is_joined(tmp_path: Path, pressure: str) -> None:
-    """A sealed side ends the fracture; at one with a pressure the fluid leaves the body."""
-    out = run(
-        tmp_path,
-        tee(
-            (BAR, ""),
-            ("x_max = 12.0", "x_max = 0.8"),
-            ("end = 80.0", "end = 56.0"),
-            ("x_traction = -4.0e6", "x_traction = -4.0e6" + pressure),
-        ),
-    )
-    (joint,) = joints(out)
-    assert joint["detail"] == "joins the outer boundary"
-    assert float(joint["x_m"]) == pytest.approx(0.8, abs=1e-12)
-    assert (numbers(out / "history.csv", "outflow_m2")[-1] > 0.0) == bool(pressure)
-
-
 def test_a_crossing_grows(tmp_path: Path) -> None:
     """Fractures that meet at the start may grow: the one that crosses the stem stays as it is."""
     upright = BAR.replace("'bar'", "'upright'").replace("x = 0.8, 0.8", "x = 0.0, 0.0")
