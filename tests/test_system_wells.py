@@ -25,7 +25,7 @@ BODY = """\
 &side name = 'left', x_displacement = 0, pressure = 20e6 /
 &side name = 'right', pressure = 20e6 /
 &side name = 'bottom', y_displacement = 0 /
-&coarse size_fracture = 0.1, size_boundary = 1.5 /
+&coarse size_fracture = 0.2, size_boundary = 3 /
 &output vtu = .false. /
 """
 
@@ -341,7 +341,7 @@ LOSSES = """\
 &side name = 'bottom', y_displacement = 0 /
 &fracture name = 'f', x = -10, 10, y = 0, 0, friction = 0.6, aperture = 1e-4 /
 &fracture name = 'g', x = -10, 10, y = 20, 20, friction = 0.6, aperture = 1e-4 /
-&coarse size_boundary = 20 /
+&coarse size_fracture = 2.5, size_boundary = 20 /
 &output vtu = .false. /
 """
 
