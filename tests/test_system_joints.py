@@ -25,9 +25,15 @@ def joints(out: Path) -> list[dict[str, str]]:
     return [row for row in rows(out / "events.csv") if row["kind"] == "joint"]
 
 
-def test_a_joint_lets_the_pressure_fall(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def joined(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the run of the scene as it is."""
+    return run(tmp_path_factory.mktemp("joined"), tee())
+
+
+def test_a_joint_lets_the_pressure_fall(joined: Path) -> None:
     """In the step of the joint; the tip that has joined is none any more, and no fluid is lost."""
-    out = run(tmp_path, tee())
+    out = joined
     (joint,) = joints(out)
     assert (joint["fracture"], joint["detail"]) == ("1", "joins fracture bar")
     history = rows(out / "history.csv")
@@ -116,22 +122,18 @@ def test_a_stub_is_a_tip_of_its_own(tmp_path: Path) -> None:
     assert rows(out / "history.csv")[-1]["n_intersections"] == "1"
 
 
-def test_many_cells_make_no_difference(tmp_path: Path) -> None:
+def test_many_cells_make_no_difference(joined: Path, tmp_path: Path) -> None:
     """Growth and a joint on the sparse equations of many fracture cells, beside the full ones.
 
     States agree to 1e-9; where the tries of a step end, within 0.5 % of K_IC, is not as certain.
     """
-    ways = []
-    for way in ("full", "sparse"):
-        folder = tmp_path / way
-        folder.mkdir()
-        given = ("size_fracture = 0.05", f"condensation = '{way}', size_fracture = 0.05")
-        ways.append(run(folder, tee(given)))
+    sparse = ("size_fracture = 0.05", "condensation = 'sparse', size_fracture = 0.05")
+    ways = (joined, run(tmp_path, tee(sparse)))
     times = [joints(out)[0]["time_s"] for out in ways]
     assert float(times[0]) == pytest.approx(float(times[1]), rel=1.0e-3)
     for column in ("well_pressure_pa", "fracture_length_m"):
-        full, sparse = (numbers(out / "history.csv", column)[-1] for out in ways)
-        assert full == pytest.approx(sparse, rel=1.0e-3)
+        full, other = (numbers(out / "history.csv", column)[-1] for out in ways)
+        assert full == pytest.approx(other, rel=1.0e-3)
 
 
 def test_nothing_is_joined_from_afar(tmp_path: Path) -> None:
