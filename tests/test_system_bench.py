@@ -87,13 +87,6 @@ def test_a_loss_against_another_program_is_found(tmp_path: Path) -> None:
     assert "times the CPU time of the other program" in done.stderr.splitlines()[-1]
 
 
-def test_a_wrong_number_of_runs_is_refused(tmp_path: Path) -> None:
-    done = call(tmp_path, "bench", "b1", "--repeat", "0")
-    assert done.returncode == 2
-    assert "'0' is no whole number from 1" in done.stderr.splitlines()[-1]
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_run_that_fails_is_told(tmp_path: Path) -> None:
     broken = tmp_path / "broken"
     broken.write_text("#!/bin/sh\necho 'wingcrack: it broke' >&2\nexit 1\n")

@@ -16,7 +16,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, bare, numbers, record, rows, run
+from system_scene import TOP, numbers, record, rows, run
 
 from wingcrack.figures import read_run
 
@@ -320,40 +320,6 @@ def test_a_mesh_that_follows_the_error_keeps_the_slip(tmp_path: Path) -> None:
         exact = relief * math.sqrt(math.pi * HALF_LENGTH)
         assert [abs(k) for k in pair] == pytest.approx([exact] * 2, rel=0.01, abs=1.0)
     assert states(out)[0][0]["jump_t_m"] == "0.0"
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        ("factors = 1.0, 0.5, control = 'length'", "control is 'length' but must be 'dead' with"),
-        ("factors = 1.0, 0.5, to = 2.0", "to is given with factors, which determine it"),
-        ("factors = 1.0, 1.0", "factors has 1.0 twice in a row"),
-        ("factors = 0.0", "factors is 0.0 but must differ from from"),
-        ("factors = ", "factors"),
-        ("factors = 1.0, NaN", "factors"),
-        ("factors = 1.0, Inf", "factors"),
-        ("factors = 1.0, 'up'", "factors"),
-        ("factors = 1.0, steps = 0", "steps"),
-    ],
-)
-def test_wrong_tables_are_refused(tmp_path: Path, given: str, words: str) -> None:
-    scene = tmp_path / "wrong.nml"
-    scene.write_text(changed(LOOP, ("factors = " + TABLE, given)))
-    line = scene.read_text()[: scene.read_text().index("&load")].count("\n") + 1
-    for command in (("check", scene), ("run", scene, "--out", "out")):
-        done = bare(tmp_path, *command)
-        assert done.returncode == 2
-        assert done.stderr.count("\n") == 1
-        assert f"wrong.nml:{line}: &load: {words}" in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
-def test_no_table_with_a_fluid(tmp_path: Path) -> None:
-    scene = tmp_path / "wet.nml"
-    scene.write_text(LOOP + "&fluid compressibility = 4.0e-10, viscosity = 1.0e-4 /\n")
-    done = bare(tmp_path, "check", scene)
-    assert done.returncode == 2
-    assert "&load: is for mechanics-only scenes, but this one has the group &fluid" in done.stderr
 
 
 def test_collections_count_states(cycle: Path) -> None:

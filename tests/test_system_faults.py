@@ -6,7 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from system_scene import SCENE, TOP, bare, call, varied
+from system_scene import SCENE, TOP, bare, varied
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -61,17 +61,6 @@ POLYGON_FAULTS = {
         "corner 2 and corner 3 lie at one place",
     ),
     "edges cross": ("y = 0.0, 0.0, 1.0", "y = 0.0, 3.0, 1.0", "faulty.nml:1: &domain", "meet"),
-    "too few": ("y = 0.0, 0.0", "y = 0.0", "faulty.nml:3: &domain", "as many as x, 6"),
-    "no such edge": ("edges = 2", "edges = 7", "faulty.nml:9: &side", "must be at most 6"),
-    "edge twice": ("edges = 2", "edges = 2, 1", "faulty.nml:9: &side", "must not overlap"),
-    "through the notch": (
-        "x = 0.4, 0.6, y = 0.5, 0.5",
-        "x = 0.9, 1.9, y = 1.9, 0.9",
-        "faulty.nml:7: &fracture",
-        "leaves the domain on the way to its vertex at (1.9, 0.9)",
-    ),
-    "no density": (", density = 2500.0", "", "faulty.nml:6: &gravity", "has no density"),
-    "no number": ("y = -9.81", "y = -inf", "faulty.nml:6: &gravity", "y is -inf"),
 }
 
 
@@ -185,43 +174,6 @@ def test_a_rosette_that_rounding_blurs_is_refused_with_the_number(
     (tmp_path / "small.nml").write_text(least)
     done = bare(tmp_path, "run", "small.nml", "--out", "out", "--quiet")
     assert (done.returncode, done.stderr) == (0, "")
-
-
-def test_growth_needs_the_toughness(tmp_path: Path) -> None:
-    scene = varied(("toughness = 0.3e6", ""), ("intensities = .true.", "enabled = .true."))
-    (tmp_path / "faulty.nml").write_text(scene)
-    done = bare(tmp_path, "run", "faulty.nml")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "faulty.nml:2: &material: toughness" in done.stderr
-    assert [path.name for path in tmp_path.iterdir()] == ["faulty.nml"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["run", "nowhere.nml"], "nowhere.nml"),
-        (["run"], "needs a scene file"),
-        (["run", "small.nml", "--fast"], "--fast"),
-        (["run", "small.nml", "--threads", "0"], "--threads"),
-        (["check", "small.nml", "other.nml"], "other.nml"),
-        (["plot", "nowhere"], "nowhere"),
-    ],
-)
-def test_a_wrong_call_is_refused(arguments: list[str], words: str, tmp_path: Path) -> None:
-    (tmp_path / "small.nml").write_text(SCENE)
-    done = call(tmp_path, *arguments)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert words in done.stderr.splitlines()[-1]
-    assert [path.name for path in tmp_path.iterdir()] == ["small.nml"]
-
-
-def test_a_file_is_no_place_for_results(tmp_path: Path) -> None:
-    (tmp_path / "out").write_text("somebody's file\n")
-    (tmp_path / "small.nml").write_text(SCENE)
-    done = call(tmp_path, "run", "small.nml", "--out", "out")
-    assert done.returncode == 2
-    assert "out" in done.stderr.splitlines()[-1]
-    assert (tmp_path / "out").read_text() == "somebody's file\n"
 
 
 @pytest.mark.parametrize("out", ["file", "file/deeper"])

@@ -176,25 +176,6 @@ def test_a_traction_of_minus_zero_reads_back(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("&fe", "&coarse size_boundary = 1.0 /\n&fe", "&coarse: needs a fluid"),
-        ("law = 'open'", "law = 'open', friction = 0.5", "only the law 'friction' has it"),
-        ("x_displacement = 0.0 /\n\n&fe", "y_displacement = 0.0 /\n\n&fe", "can rotate"),
-    ],
-)
-def test_refusals(tmp_path: Path, old: str, new: str, words: str) -> None:
-    """What makes no sense is refused with a sentence, and nothing is written."""
-    text = (TOP / "inputs" / "paper_b" / "edge_mode1.nml").read_text()
-    assert old in text
-    (tmp_path / "bad.nml").write_text(text.replace(old, new, 1))
-    done = bare(tmp_path, "run", "bad.nml", "--out", "out")
-    assert done.returncode == 2
-    assert words in done.stderr.splitlines()[-1]
-    assert not (tmp_path / "out").exists()
-
-
 def test_nearly_incompressible_rock_is_warned_of(tmp_path: Path) -> None:
     """The tips' elements are too stiff then; the estimated error says so too, and covers it."""
     changes = (("poisson = 0.3", "poisson = 0.4999"), ("plane = 'stress'", "plane = 'strain'"))

@@ -126,14 +126,6 @@ def test_the_body_as_window(tmp_path: Path) -> None:
     assert "window = 'body'" in (tmp_path / "out" / "scene.nml").read_text()
 
 
-@pytest.mark.parametrize("word", ["'rock'", "body", "'body', 0.3", "''"])
-def test_other_words_are_refused(tmp_path: Path, word: str) -> None:
-    status, reason = run(tmp_path, window=word)
-    assert status == 2
-    assert "&fine: window " in reason
-    assert not (tmp_path / "out").exists()
-
-
 def test_a_good_window_stays(tmp_path: Path) -> None:
     """Its elements are as many as if no tip could grow."""
     assert run(tmp_path) == (0, "")
