@@ -1,5 +1,5 @@
-!> Whatever a file holds, reading it ends with a scene or with a message, never in a crash. Scenes of
-!! inputs/ with changed bytes: the test mutated_scenes.
+!> Whatever a file holds, reading it ends with a scene or with a message, never in a crash. The test
+!! mutated_scenes reads the scenes of inputs/ with changed bytes.
 program test_scene_fuzz
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
