@@ -42,13 +42,17 @@ SCENE = """\
 """
 
 
-def varied(*changes: tuple[str, str]) -> str:
-    """Give the scene with pieces replaced, each of which must stand in it."""
-    text = SCENE
+def changed(text: str, *changes: tuple[str, str]) -> str:
+    """Give a text with pieces replaced, each of which must stand in it."""
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new, 1)
     return text
+
+
+def varied(*changes: tuple[str, str]) -> str:
+    """Give the scene with pieces replaced."""
+    return changed(SCENE, *changes)
 
 
 def with_heat(scene: str) -> str:
@@ -95,7 +99,7 @@ def call(place: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str
     return subprocess.CompletedProcess(process.args, process.returncode, out, error)
 
 
-def bare(place: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+def bare(place: Path, *arguments: str | Path, **variables: str) -> subprocess.CompletedProcess[str]:
     """Run the bare solver in a folder to its end, with more variables in its environment."""
     return subprocess.run(
         [SOLVER, *arguments],
@@ -104,16 +108,15 @@ def bare(place: Path, *arguments: str, **variables: str) -> subprocess.Completed
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=300,
         check=False,
     )
 
 
 def run(place: Path, text: str, out: str = "out") -> Path:
-    """Run a scene without drawing, and give the directory of its files."""
-    scene = place / "small.nml"
-    scene.write_text(text)
-    done = call(place, "run", scene.name, "--out", out, "--quiet", "--no-plot")
+    """Run a scene with the bare solver, and give the directory of its files."""
+    (place / "small.nml").write_text(text)
+    done = bare(place, "run", "small.nml", "--out", out, "--quiet")
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     return place / out
 

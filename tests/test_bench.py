@@ -76,11 +76,9 @@ def test_what_is_measured_without_names() -> None:
     ("arguments", "message"),
     [
         (["no_such"], "there is no measurement 'no_such' (there are: c1, "),
-        (["--repeat", "0"], "'0' is no whole number from 1"),
         (["--against", "/no/such/program"], "there is no program /no/such/program to compare"),
         (["--against", __file__, "--store"], "--store keeps counts, which --against does not make"),
         (["b1", "--quick"], "--quick has measurements of its own"),
-        (["--fast"], "no such option '--fast'"),
         (["--against"], "requires an argument"),
     ],
 )

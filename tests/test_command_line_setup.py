@@ -38,7 +38,6 @@ def test_forbidden_to_install_it_still_builds_and_runs(own_tree: Tree) -> None:
 def test_missing_packages_are_named_with_their_purpose_and_installed(
     lacking_tree: Tree, machine: Path
 ) -> None:
-    shutil.rmtree(lacking_tree.root / ".venv")  # a first call makes both
     done = lacking_tree.call("check", lacking_tree.scene())
     assert done.returncode == 0, done.stderr
     assert "solver check" in done.stdout

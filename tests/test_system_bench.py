@@ -17,16 +17,16 @@ needs_valgrind = pytest.mark.skipif(
 
 
 def test_a_measurement_as_table_and_json(tmp_path: Path) -> None:
-    done = call(tmp_path, "bench", "b1", "c1", "--repeat", "2", "--out", "here")
+    done = call(tmp_path, "bench", "b1", "quick_fluid", "--repeat", "2", "--out", "here")
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert lines[1].split()[0] == "b1"
-    assert lines[2].split()[0] == "c1"
-    assert any(line.startswith("  c1: ") for line in lines)
+    assert lines[2].split()[0] == "quick_fluid"
+    assert any(line.startswith("  quick_fluid: ") for line in lines)
     record = json.loads((tmp_path / "here" / "bench.json").read_text())
     assert set(record) == {"revision", "machine", "made_with", "measurements", "growth"}
     mechanics, fluid = record["measurements"]
-    assert (mechanics["name"], fluid["name"]) == ("b1", "c1")
+    assert (mechanics["name"], fluid["name"]) == ("b1", "quick_fluid")
     for measured in (mechanics, fluid):
         typical = measured["typical"]
         assert len(measured["cpu_s"]) == 2
@@ -36,9 +36,9 @@ def test_a_measurement_as_table_and_json(tmp_path: Path) -> None:
         assert measured["instructions"] is None
         assert typical["memory_mb"] > 1
     assert mechanics["typical"]["states"] == 1
-    assert fluid["typical"]["states"] == 21
+    assert fluid["typical"]["states"] == 2
     assert mechanics["typical"]["phases_s"]["discretize"] == 0.0  # finite volumes are left out
-    assert mechanics["typical"]["sizes"]["unknowns"] < fluid["typical"]["sizes"]["unknowns"]
+    assert min(measured["typical"]["sizes"]["unknowns"] for measured in (mechanics, fluid)) > 1000
     assert fluid["cpu_per_growth_s"] is None
 
 
@@ -60,19 +60,12 @@ def test_a_loss_of_instructions_is_found(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     stored = json.loads(baseline.read_text())
     assert stored["instructions"]["quick_fractures"] > 1e8
-    # the same program: the same count, within what the length of a path's name makes
-    stored["instructions"]["quick_fractures"] = int(
-        stored["instructions"]["quick_fractures"] / 1.05
-    )
-    baseline.write_text(json.dumps(stored))
-    done = call(tmp_path, "bench", *options, "--instructions")
-    assert done.returncode == 0, done.stderr
-    assert "instructions are judged for quick_fractures" in done.stdout
-    # a program that had taken a fifth less
+    # a program that had taken a fifth less; how much more is no loss: test_bench.py
     stored["instructions"]["quick_fractures"] = int(stored["instructions"]["quick_fractures"] / 1.2)
     baseline.write_text(json.dumps(stored))
     done = call(tmp_path, "bench", *options, "--instructions")
     assert done.returncode == 1
+    assert "instructions are judged for quick_fractures" in done.stdout
     assert "a loss: quick_fractures takes 1.2" in done.stderr.splitlines()[-1]
 
 
@@ -84,21 +77,14 @@ def test_a_loss_against_another_program_is_found(tmp_path: Path) -> None:
         wrapper.write_text(f'#!/bin/bash\n{work}exec "{SOLVER}" "$@"\n')
         wrapper.chmod(0o755)
         pair = ["--solver", str(wrapper), "--against", str(SOLVER)]
-        done = call(tmp_path, "bench", "b1", "--repeat", "5", *pair)
+        done = call(tmp_path, "bench", "b1", "--repeat", "3", *pair)
         assert done.returncode == status, done.stdout + done.stderr
         (measured,) = json.loads((tmp_path / "out" / "bench" / "bench.json").read_text())[
             "measurements"
         ]
-        assert len(measured["other_s"]) == 5
+        assert len(measured["other_s"]) == 3
         assert (measured["cpu_ratio"] > 1.25) == (status == 1)
     assert "times the CPU time of the other program" in done.stderr.splitlines()[-1]
-
-
-def test_a_wrong_number_of_runs_is_refused(tmp_path: Path) -> None:
-    done = call(tmp_path, "bench", "b1", "--repeat", "0")
-    assert done.returncode == 2
-    assert "'0' is no whole number from 1" in done.stderr.splitlines()[-1]
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_run_that_fails_is_told(tmp_path: Path) -> None:

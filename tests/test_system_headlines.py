@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import TOP, call, rows, run
+from system_scene import TOP, call, changed, rows, run
 
 import wingcrack
 from wingcrack.closing import closing_lines
@@ -26,10 +26,12 @@ from wingcrack.studies.quantities import Quantity, measure
 
 pytestmark = pytest.mark.usefixtures("program")
 
-FIELD = (TOP / "inputs" / "examples" / "field.nml").read_text()
-FIELD = FIELD.replace("end = 259200.0", "end = 50000.0").replace(
-    "schedule = 'field_injector.csv'",
-    f"schedule = '{TOP}/inputs/examples/field_injector.csv'",
+FIELD = changed(
+    (TOP / "inputs" / "examples" / "field.nml").read_text(),
+    ("end = 259200.0", "end = 50000.0"),
+    ("'field_injector.csv'", f"'{TOP}/inputs/examples/field_injector.csv'"),
+    ("size_fracture = 2.0", "size_fracture = 5.0"),
+    ("size_boundary = 16.0", "size_boundary = 40.0"),
 )
 BODY = """\
 &domain x_min = -50, x_max = 50, y_min = -50, y_max = 50 /
@@ -42,7 +44,7 @@ BODY = """\
 &side name = 'bottom', y_displacement = 0 /
 &fracture name = 'in', x = -12, 2, y = -6, 4, friction = 0.6, dilation_deg = 3, aperture = 2e-4 /
 &fracture name = 'out', x = 4, 16, y = 0, 9, friction = 0.6, dilation_deg = 3, aperture = 2e-4 /
-&coarse size_fracture = 1.0, size_boundary = 8 /
+&coarse size_fracture = 2.0, size_boundary = 16 /
 &output vtu = .false., seismic_slip_rate = 1e-8, stimulated_jump = 1e-7 /
 """
 # The producer comes first, a thickness, flow-back of the injector, whose peak is early.

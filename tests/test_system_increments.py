@@ -9,21 +9,16 @@ from pathlib import Path
 
 import pytest
 import pyvista
-from system_scene import GROWING_BY_PARIS, TOP, call, numbers, record, rows, run
+from system_scene import GROWING_BY_PARIS, TOP, call, changed, numbers, record, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
 INCREMENTS = 5
-EDGE_CRACK = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
-for old, new in (
+EDGE_CRACK = changed(
+    (TOP / "inputs/paper_b/edge_mode1.nml").read_text(),
     ("poisson = 0.3", "poisson = 0.3, toughness = 1.0e6"),
-    (
-        "intensities = .true.",
-        "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.1",
-    ),
-):
-    assert old in EDGE_CRACK
-    EDGE_CRACK = EDGE_CRACK.replace(old, new, 1)
+    ("intensities = .true.", "enabled = .true., law = 'paris', increment = 0.02, stop_gain = 0.1"),
+)
 
 
 def files(collection: Path) -> list[tuple[float, Path]]:
@@ -107,16 +102,14 @@ def test_a_falling_load_has_all_its_states(tmp_path: Path) -> None:
     assert history_rows(out / "matrix.pvd") == [4, 3, 2, 1]
 
 
-def test_tips_keep_their_numbers(tmp_path: Path) -> None:
-    """A tip that has joined leaves a gap in network.json as it does in tips.csv."""
-    scene = (TOP / "inputs/paper_a/imposed_slip.nml").read_text()
-    for old, new in (
+def test_tips_that_join_keep_their_numbers(tmp_path: Path) -> None:
+    """Wings of a slipping fracture end on its neighbours: gaps in network.json as in tips.csv."""
+    scene = changed(
+        (TOP / "inputs/paper_a/imposed_slip.nml").read_text(),
         ("size_fracture = 0.0125", "size_fracture = 0.02"),
         ("increment = 0.02", "increment = 0.05"),
         ("to = 0.26, steps = 13", "to = 0.22"),
-    ):
-        assert old in scene, old
-        scene = scene.replace(old, new, 1)
+    )
     out = run(tmp_path, scene)
     network = json.loads((out / "network.json").read_text())
     last = max(int(row["history_row"]) for row in rows(out / "tips.csv"))
@@ -130,6 +123,17 @@ def test_tips_keep_their_numbers(tmp_path: Path) -> None:
     first = {tip["tip"] for tip in network["steps"][0]["tips"]}
     assert set(told) < first
     assert set(told) != set(range(1, len(told) + 1))
+    assert [joint["kind"] for joint in network["joints"]] == ["T", "T"]
+    joints = {
+        event["detail"]: (float(event["x_m"]), float(event["y_m"]))
+        for event in rows(out / "events.csv")
+        if event["kind"] == "joint"
+    }
+    above, below = joints["joins fracture above"], joints["joins fracture below"]
+    assert (above[1], below[1]) == pytest.approx((0.4, -0.4), abs=1e-12)
+    assert above[0] == pytest.approx(-below[0], abs=5e-3)
+    assert numbers(out / "history.csv", "n_intersections")[-1] == 2
+    assert numbers(out / "history.csv", "n_tips")[-1] == 4
 
 
 def test_warnings_stand_once_on_the_terminal(tmp_path: Path) -> None:

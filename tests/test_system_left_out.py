@@ -55,25 +55,18 @@ COARSE = "&coarse size_fracture = 0.1, size_boundary = 0.5 /\n"
 
 SCENES = {
     "plate": PLATE + DRAWN + NO_FILES,
-    "open crack": PLATE + DRAWN + NO_FILES + CRACK.format(law="law = 'open'"),
     "its intensities": PLATE
     + DRAWN
     + NO_FILES
     + CRACK.format(law="law = 'open'")
     + "&growth intensities = .true. /\n",
-    "and VTU files": PLATE
-    + DRAWN
-    + CRACK.format(law="law = 'open'")
-    + "&growth intensities = .true. /\n",
-    "growing wings": PLATE
+    "growing wings, VTU files": PLATE
     + PRESSED
-    + NO_FILES
     + CRACK.format(law="friction = 0.1")
     + "&growth enabled = .true., increment = 0.1, stop_gain = 0.05 /\n",
     "porous body": POROUS + "&coarse size_boundary = 0.5 /\n",
     "with a well": POROUS + COARSE + WELL,
-    "with a joint": POROUS + COARSE + WELL + CROSSING,
-    "with a region": POROUS + COARSE + WELL + BAND,
+    "with a joint and a region": POROUS + COARSE + WELL + CROSSING + BAND,
     "two levels": POROUS
     + COARSE
     + WELL
@@ -98,10 +91,8 @@ REGIONS = (
 FILES = ("report_vtu",)
 ABSENT = {
     "plate": FLUID + TIPS + CONTACT + FILES,
-    "open crack": FLUID + TIPS + CONTACT + FILES,
     "its intensities": FLUID + CONTACT + FILES,
-    "and VTU files": FLUID + CONTACT,
-    "growing wings": FLUID + REGIONS + FILES,
+    "growing wings, VTU files": FLUID + REGIONS,
     "porous body": (
         "mechanics_",
         *WINDOWS,
@@ -113,21 +104,17 @@ ABSENT = {
         *FILES,
     ),
     "with a well": ("mechanics_", *WINDOWS, *TIPS, *JOINTS, *REGIONS, *FILES),
-    "with a joint": ("mechanics_", *WINDOWS, *TIPS, *REGIONS, *FILES),
-    "with a region": ("mechanics_", *WINDOWS, *TIPS, *JOINTS, *FILES),
+    "with a joint and a region": ("mechanics_", *WINDOWS, *TIPS, *FILES),
     "two levels": ("mechanics_", *JOINTS, *REGIONS, *FILES),
 }
 # The same instrument sees them where they are wanted.
 PRESENT = {
     "plate": ("mechanics_", "fine_"),
-    "open crack": ("mechanics_", "fine_"),
     "its intensities": TIPS,
-    "and VTU files": FILES,
-    "growing wings": (*TIPS, *CONTACT),
+    "growing wings, VTU files": (*TIPS, *CONTACT, *FILES),
     "porous body": ("coarse_",),
     "with a well": ("coarse_newton", *CONTACT),
-    "with a joint": ("coarse_newton", *CONTACT, *JOINTS),
-    "with a region": ("coarse_newton", *CONTACT, *REGIONS),
+    "with a joint and a region": ("coarse_newton", *CONTACT, *JOINTS, *REGIONS),
     "two levels": (*FLUID, *WINDOWS, *TIPS, *CONTACT),
 }
 
@@ -136,7 +123,7 @@ PRESENT = {
 def profiles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Profile]:
     """Profiles of all scenes."""
     top = tmp_path_factory.mktemp("profiles")
-    places = [top / name.replace(" ", "_") for name in SCENES]
+    places = [top / str(number) for number in range(len(SCENES))]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return dict(zip(SCENES, pool.map(profile, SCENES.values(), places), strict=True))
 
@@ -164,7 +151,7 @@ def test_what_is_left_out_saves(
             numbers = "".join(f"{by_component[component] / 1e3:>10.0f}" for component in components)
             print(f"{name:<25}{numbers}")
     chains = (
-        ("plate", "open crack", "its intensities", "and VTU files"),
+        ("plate", "its intensities", "growing wings, VTU files"),
         ("porous body", "with a well", "two levels"),
     )
     for chain in chains:
@@ -177,7 +164,7 @@ def test_what_is_left_out_saves(
 
 
 @pytest.mark.usefixtures("program")
-@pytest.mark.parametrize("scene", ["plate", "growing wings"])
+@pytest.mark.parametrize("scene", ["plate", "growing wings, VTU files"])
 def test_no_unknowns_of_a_fluid(scene: str, tmp_path: Path) -> None:
     solver = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
     (tmp_path / "scene.nml").write_text(SCENES[scene])

@@ -13,7 +13,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
-from system_scene import SCENE, TOP, rows, run, varied, with_heat
+from system_scene import SCENE, TOP, changed, rows, run, varied, with_heat
 from vtkmodules.vtkCommonCore import vtkDataArray
 
 from wingcrack.names import NAMES, columns
@@ -48,13 +48,11 @@ TABLES = ("history.csv", "tips.csv", "fractures.csv", "probes.csv", "events.csv"
 OF_ENTRIES = "entries.csv"
 
 # An edge crack that grows once on meshes that follow the error: all that mechanics can write.
-EDGE_CRACK = (TOP / "inputs/paper_b/edge_mode1.nml").read_text()
-for old, new in (
+EDGE_CRACK = changed(
+    (TOP / "inputs/paper_b/edge_mode1.nml").read_text(),
     ("poisson = 0.3", "poisson = 0.3, toughness = 1.0e6"),
     ("intensities = .true.", "enabled = .true., increment = 0.02, stop_gain = 0.01"),
-):
-    assert old in EDGE_CRACK
-    EDGE_CRACK = EDGE_CRACK.replace(old, new, 1)
+)
 EDGE_CRACK += """
 &adaptive enabled = .true., tolerance = 0.05 /
 &probe name = 'inside', x = 0.75, y = 0.5 /

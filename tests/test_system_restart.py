@@ -87,9 +87,13 @@ def unbroken(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     return folder
 
 
-@pytest.mark.parametrize("name", list(SCENES))
 @pytest.mark.parametrize(
-    ("share", "sent"), [(0.0, signal.SIGTERM), (0.5, signal.SIGTERM), (0.7, signal.SIGKILL)]
+    ("name", "share", "sent"),
+    [
+        *((name, 0.5, signal.SIGTERM) for name in SCENES),
+        *((name, 0.7, signal.SIGKILL) for name in SCENES),
+        *((name, 0.0, signal.SIGTERM) for name in ("steps", "growth", "mechanics")),
+    ],
 )
 def test_a_run_goes_on_as_if_it_had_not_been_ended(
     name: str, share: float, sent: signal.Signals, unbroken: Callable[[str], Path], tmp_path: Path

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, rows, run
+from system_scene import TOP, changed, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -45,18 +45,15 @@ PAIR = (TOP / "verification/competing_wells/pair.nml").read_text()
 
 def coarse_pair(*changes: tuple[str, str]) -> str:
     """Give two equal fractures, 0.6 m apart, in few cells."""
-    text = PAIR
-    for old, new in (
+    return changed(
+        PAIR,
         ("x = -0.525, 0.525", "x = -0.5, 0.5"),
         ("y = -0.1, -0.1", "y = -0.3, -0.3"),
         ("y = 0.1, 0.1", "y = 0.3, 0.3"),
         ("size_fracture = 0.05", "size_fracture = 0.1"),
         ("increment = 0.05", "increment = 0.1"),
         *changes,
-    ):
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
+    )
 
 
 def gains(out: Path) -> list[float]:

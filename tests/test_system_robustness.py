@@ -139,8 +139,13 @@ def test_a_run_with_a_table_that_is_not_whole_has_failed(tmp_path: Path) -> None
 
 
 # Two levels on some 450 cells need little; the body of 30,000 cells does not fit in any of these.
-@pytest.mark.parametrize("scene", ["small", "large"])
-@pytest.mark.parametrize("kilobytes", [150000, 200000, 250000, 300000, 360000, 400000, 450000])
+@pytest.mark.parametrize(
+    ("scene", "kilobytes"),
+    [
+        *(("small", size) for size in (150000, 250000, 360000)),
+        *(("large", size) for size in (150000, 250000, 360000, 450000)),
+    ],
+)
 def test_too_little_memory_is_told(scene: str, kilobytes: int, tmp_path: Path) -> None:
     text = SCENE if scene == "small" else SCENE.replace("boundary = 0.25", "boundary = 0.02")
     (tmp_path / "scene.nml").write_text(text)

@@ -35,67 +35,22 @@ from system_scene import (
 
 # The columns that users may rely on, in their order; docs/output.md may have more among them.
 HISTORY = [
-    "time_s",
-    "dt_s",
-    "newton_iterations",
-    "well_pressure_pa",
-    "injected_m2",
-    "leakoff_m2",
-    "prefilled_m2",
-    "outflow_m2",
-    "fracture_volume_m2",
-    "mass_error_relative",
-    "max_slip_m",
-    "max_opening_m",
-    "n_stick",
-    "n_slip",
-    "n_open",
-    "fracture_length_m",
-    "n_tips",
-    "n_intersections",
-    "seismic_moment_nm",
-]
+    "time_s", "dt_s", "newton_iterations", "well_pressure_pa", "injected_m2", "leakoff_m2",
+    "prefilled_m2", "outflow_m2", "fracture_volume_m2", "mass_error_relative", "max_slip_m",
+    "max_opening_m", "n_stick", "n_slip", "n_open", "fracture_length_m", "n_tips",
+    "n_intersections", "seismic_moment_nm",
+]  # fmt: skip
 TIPS = [
-    "time_s",
-    "tip",
-    "fracture",
-    "x_m",
-    "y_m",
-    "k1_pa_sqrtm",
-    "k2_pa_sqrtm",
-    "k1_dc_pa_sqrtm",
-    "k2_dc_pa_sqrtm",
-    "keq_pa_sqrtm",
-    "g_j_m2",
-    "angle_deg",
-    "advance_m",
-    "k1_error_pa_sqrtm",
-    "k2_error_pa_sqrtm",
-    "g_ahead_j_m2",
-    "g_ahead_error_j_m2",
-    "k1_dc_error_pa_sqrtm",
-    "k2_dc_error_pa_sqrtm",
-    "k1_corrected_pa_sqrtm",
-    "k2_corrected_pa_sqrtm",
-    "history_row",
-]
+    "time_s", "tip", "fracture", "x_m", "y_m", "k1_pa_sqrtm", "k2_pa_sqrtm", "k1_dc_pa_sqrtm",
+    "k2_dc_pa_sqrtm", "keq_pa_sqrtm", "g_j_m2", "angle_deg", "advance_m", "k1_error_pa_sqrtm",
+    "k2_error_pa_sqrtm", "g_ahead_j_m2", "g_ahead_error_j_m2", "k1_dc_error_pa_sqrtm",
+    "k2_dc_error_pa_sqrtm", "k1_corrected_pa_sqrtm", "k2_corrected_pa_sqrtm", "history_row",
+]  # fmt: skip
 FRACTURES = [
-    "time_s",
-    "fracture",
-    "s_m",
-    "x_m",
-    "y_m",
-    "aperture_m",
-    "jump_n_m",
-    "jump_t_m",
-    "traction_n_pa",
-    "traction_t_pa",
-    "pressure_pa",
-    "void_m",
-    "flow_m2_s",
-    "state",
+    "time_s", "fracture", "s_m", "x_m", "y_m", "aperture_m", "jump_n_m", "jump_t_m",
+    "traction_n_pa", "traction_t_pa", "pressure_pa", "void_m", "flow_m2_s", "state",
     "history_row",
-]
+]  # fmt: skip
 PROBES = [
     "time_s",
     *(
@@ -106,17 +61,9 @@ PROBES = [
 ]
 EVENTS = ["time_s", "kind", "fracture", "x_m", "y_m", "detail"]
 PHASES = [
-    "mesh",
-    "discretize",
-    "assemble",
-    "factorize",
-    "solve",
-    "contact",
-    "tips",
-    "remesh",
-    "transfer",
-    "output",
-]
+    "mesh", "discretize", "assemble", "factorize", "solve", "contact", "tips", "remesh",
+    "transfer", "output",
+]  # fmt: skip
 
 # The scene's rock and load, and what follows for a body without a fracture: stress is that of the
 # load; pressure from alpha eps + S p = 0, where nothing has flowed; plane strain.
@@ -409,7 +356,7 @@ def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
         assert "1.0306923793741721e-4" in scene
         text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
         (tmp_path / f"{name}.nml").write_text(text)
-        told[name] = call(tmp_path, "check", f"{name}.nml").stdout
+        told[name] = bare(tmp_path, "check", f"{name}.nml").stdout
     assert "toughness-dominated growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
     assert "growth depends on toughness and viscosity, K_m = 2.000E+00" in told["between"]
     assert "viscosity-dominated growth, K_m = 1.600E-01" in told["viscous"]
@@ -433,7 +380,7 @@ def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> Non
     command = [sys.executable, str(tool), "--rows", str(rows_of_fractures), "--cells", "8"]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     (tmp_path / "many.nml").write_text(text)
-    told = call(tmp_path, "check", "many.nml").stdout
+    told = bare(tmp_path, "check", "many.nml").stdout
     foreseen = re.search(r"about: +(\d+) cells", told)
     assert foreseen, told
     cells = record(run(tmp_path, text))["cells"]

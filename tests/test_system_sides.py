@@ -10,7 +10,7 @@ import math
 from pathlib import Path
 
 import pytest
-from system_scene import numbers, record, rows, run
+from system_scene import changed, numbers, record, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -35,14 +35,6 @@ BONDED = (
     "cohesion = 8.8e6, tensile_strength = 1e6, weakening_slip = 1e-3, friction_residual = 0.2, "
     "opening_weakening = 1e-3, friction = 0.2"
 )
-
-
-def replaced(text: str, *changes: tuple[str, str]) -> str:
-    """Give a text with pieces replaced, each of which must stand in it."""
-    for old, new in changes:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
 
 
 def strain(sxx: float, syy: float) -> tuple[float, float]:
@@ -77,7 +69,7 @@ def check_patch(out: Path, sxx: float, syy: float, joints: list[tuple[float, flo
 )
 def test_joint_on_rollers_sticks(tmp_path: Path, law: str) -> None:
     """Its end on a side with a given displacement bears as much as the rest."""
-    out = run(tmp_path, replaced(ROLLERS, ("friction = 0.65", law)))
+    out = run(tmp_path, changed(ROLLERS, ("friction = 0.65", law)))
     check_patch(out, 0.0, -30.0e6, [(2.0, 2.0 / math.sqrt(3.0))])
 
 
@@ -125,7 +117,7 @@ def test_patch(tmp_path: Path, name: str, hold: str) -> None:
 
 def test_joint_slides_on_clamps(tmp_path: Path) -> None:
     """A block that is pushed over another one along rollers: its slip is that of the side."""
-    scene = replaced(
+    scene = changed(
         ROLLERS,
         ("x = 0, 2, y = 1.4, 2.5547005383792515, friction = 0.65", "x = 0, 2, y = 2, 2, FRICTION"),
         ("FRICTION", "law = 'frictionless'"),
@@ -184,9 +176,7 @@ def test_restraints_bear_nothing(tmp_path: Path, body: str) -> None:
 
 def test_restraints_beyond_need(tmp_path: Path) -> None:
     """More of them than hold the body are loads, which is said."""
-    more = replaced(
-        POROUS, ("x = 0.5, y = 0, y_disp", "x = 0.5, y = 0, x_displacement = 0, y_disp")
-    )
+    more = changed(POROUS, ("x = 0.5, y = 0, y_disp", "x = 0.5, y = 0, x_displacement = 0, y_disp"))
     out = run(tmp_path, SQUARE + more)
     assert "&restraint: surplus is 1.0: they are then point loads" in str(record(out)["warnings"])
 
@@ -228,11 +218,11 @@ def springs_move(x: float, y: float) -> tuple[float, float]:
 @pytest.mark.parametrize("level", ["fine", "coarse", "window"])
 def test_body_on_springs(tmp_path: Path, level: str) -> None:
     """Springs alone hold it, in finite elements, finite volumes, and in a window of the body."""
-    scene = replaced(ON_SPRINGS, (" MORE", ""))
+    scene = changed(ON_SPRINGS, (" MORE", ""))
     if level == "fine":
         scene += "&fe size_boundary = 0.4 /\n"
     else:
-        scene = replaced(ON_SPRINGS, ("MORE", ", biot = 0.7, porosity = 0.1, permeability = 1e-18"))
+        scene = changed(ON_SPRINGS, ("MORE", ", biot = 0.7, porosity = 0.1, permeability = 1e-18"))
         scene += (
             "&fluid compressibility = 4e-10, viscosity = 1e-3 /\n&time end = 1, step = 1 /\n"
             "&coarse size_boundary = 0.2, size_fracture = 0.2 /\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from system_scene import call, numbers, rows
+from system_scene import numbers, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -79,15 +79,6 @@ RISING = """\
 &fe size_fracture = 0.4, size_boundary = 12 /
 &output vtu = .false. /
 """
-
-
-def run(place: Path, text: str) -> Path:
-    """Run a scene, and give the directory of its files."""
-    scene = place / "strength.nml"
-    scene.write_text(text)
-    done = call(place, "run", scene.name, "--out", "out", "--quiet", "--no-plot")
-    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
-    return place / "out"
 
 
 def first_slip(history: Path, column: str) -> float:

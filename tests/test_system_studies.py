@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import os
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from system_scene import SCENE, SOLVER, TOP
+
+from small_study import call_here
 
 STUDY = """\
 title = "Slip by the rate of injection"
@@ -36,15 +36,7 @@ take = "last"
 
 
 def study(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "wingcrack", "study", *arguments, "--build", SOLVER.parents[2]],
-        env=os.environ | {"PYTHONPATH": str(TOP / "post")},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=600,
-        check=False,
-    )
+    return call_here(["study", *map(str, arguments), "--build", str(SOLVER.parents[2])])
 
 
 def rows_of(file: Path) -> list[dict[str, str]]:

@@ -5,17 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, call
+from system_scene import TOP, call, changed
 
 pytestmark = pytest.mark.usefixtures("program")
 
 
 def test_threads_change_no_bit(tmp_path: Path) -> None:
     """Scene C2 with large windows: stencils, windows, and fronts of windows and of the body."""
-    text = (TOP / "inputs/paper_c/wing_crack.nml").read_text()
-    for old, new in (("window = 0.5", "window = 1.0"), ("stop_gain = 0.25", "stop_gain = 0.02")):
-        assert old in text, old
-        text = text.replace(old, new)
+    text = changed(
+        (TOP / "inputs/paper_c/wing_crack.nml").read_text(),
+        ("window = 0.5", "window = 1.0"),
+        ("stop_gain = 0.25", "stop_gain = 0.02"),
+    )
     (tmp_path / "scene.nml").write_text(text)
     for threads in ("1", "2", "3"):
         done = call(

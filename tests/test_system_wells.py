@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from system_scene import call, numbers, record, rows, run
+from system_scene import bare, numbers, record, rows, run
 
 from wingcrack.figures.facts import gather_facts
 from wingcrack.figures.read import read_run
@@ -25,7 +25,7 @@ BODY = """\
 &side name = 'left', x_displacement = 0, pressure = 20e6 /
 &side name = 'right', pressure = 20e6 /
 &side name = 'bottom', y_displacement = 0 /
-&coarse size_fracture = 0.1, size_boundary = 1.5 /
+&coarse size_fracture = 0.2, size_boundary = 3 /
 &output vtu = .false. /
 """
 
@@ -252,7 +252,7 @@ def test_a_run_without_headway_ends_with_the_reason(tmp_path: Path) -> None:
     time = "&time end = 36000, tolerance = 1e-14 /\n"
     text = f"{BODY}{time}&injection name = 'w', fracture = 'c', rate = 1e-6 /\n"
     (tmp_path / "small.nml").write_text(text)
-    done = call(tmp_path, "run", "small.nml", "--out", "out", "--quiet", "--no-plot")
+    done = bare(tmp_path, "run", "small.nml", "--out", "out", "--quiet")
     assert done.returncode == 1
     assert "no progress in time" in done.stderr
     assert "its time error is too large" in done.stderr
@@ -341,7 +341,7 @@ LOSSES = """\
 &side name = 'bottom', y_displacement = 0 /
 &fracture name = 'f', x = -10, 10, y = 0, 0, friction = 0.6, aperture = 1e-4 /
 &fracture name = 'g', x = -10, 10, y = 20, 20, friction = 0.6, aperture = 1e-4 /
-&coarse size_boundary = 20 /
+&coarse size_fracture = 2.5, size_boundary = 20 /
 &output vtu = .false. /
 """
 

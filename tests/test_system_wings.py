@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from system_scene import TOP, call, rows
+from system_scene import TOP, changed, rows, run
 
 pytestmark = pytest.mark.usefixtures("program")
 
@@ -19,16 +19,12 @@ def test_wings_of_a_fast_well_gain_alike(
     tmp_path: Path, rate: str, stop_gain: float, more: str
 ) -> None:
     """Scene C2 with faster wells: whether one wing runs ahead is neutral, and stays open."""
-    text = (TOP / "inputs/paper_c/wing_crack.nml").read_text()
-    for old, new in (
+    text = changed(
+        (TOP / "inputs/paper_c/wing_crack.nml").read_text(),
         ("rate = 5.0e-9", f"rate = {rate}"),
         ("stop_gain = 0.25", f"stop_gain = {stop_gain}{more}"),
-    ):
-        assert old in text, old
-        text = text.replace(old, new)
-    (tmp_path / "scene.nml").write_text(text)
-    done = call(tmp_path, "run", "scene.nml", "--out", "out", "--no-plot")
-    assert done.returncode == 0, done.stderr
+    )
+    run(tmp_path, text)
     gain = {"1": 0.0, "2": 0.0}
     for row in rows(tmp_path / "out/tips.csv"):
         gain[row["tip"]] += float(row["advance_m"])

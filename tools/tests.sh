@@ -6,8 +6,7 @@ run_all_tests() {
     begin_results
     lint
     # The builds end the run when they fail: there is nothing to test then.
-    with_lock build debug all
-    with_lock build release all
+    with_lock build_both
     step 'CTest, debug build' run_ctest debug
     step 'CTest, release build' run_ctest release
     step 'pytest' run_pytest --junitxml "$results/pytest.xml" --numprocesses "$processors" --dist loadfile --durations 25
@@ -15,6 +14,15 @@ run_all_tests() {
     step 'bench, the short form' run_quick_bench
     step 'skipped tests' tell_skipped
     end_steps
+}
+
+# Both builds at once: at its end each has parts that wait for one large file.
+build_both() {
+    local status=0
+    (build debug all) &
+    (build release all) || status=$?
+    wait "$!" || status=$?
+    if ((status != 0)); then exit "$status"; fi
 }
 
 # run_named_tests NAME...: the linters, CTests and pytests that one of the names is part of.

@@ -232,7 +232,7 @@ contains
       if (has_rows) then
          call self%tables%fracture_rows(fields%time, fields%mesh%fracture, fields%fracture)
       end if
-      if (has_vtu) call self%snapshots%write(fields, int(self%tables%history%n_rows, ik), error)
+      if (has_vtu) call self%snapshots%write(fields, self%tables%history_rows(), error)
       if (self%interval > 0.0_rk) then
          self%next_fields = self%interval &
                             *(aint(fields%time/self%interval + 1.0e-6_rk) + 1.0_rk)

@@ -10,8 +10,8 @@ module report_tables
    use report_column, only: applies, column_t, well_count
    use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
                              probe_columns, slip_event_columns, tip_columns, well_columns
-   use report_rows, only: entry_row_t, fracture_fields_t, history_errors_t, history_row_t, &
-                          probe_row_t, slip_event_t, tip_row_t, well_row_t
+   use report_rows, only: entry_row_t, fracture_fields_t, history_row_t, probe_row_t, &
+                          slip_event_t, tip_row_t, well_row_t
    use report_series, only: series_t
    use scene_types, only: name_length, scene_t
    implicit none(type, external)
@@ -20,21 +20,17 @@ module report_tables
    public :: tables_t
 
    integer, parameter :: column_length = name_length + 17
+   integer, parameter :: history = 1, tips = 2, fractures = 3, probes = 4, events = 5, &
+                         slip_events = 6, wells = 7, entries = 8
 
    !> The tables; those that do not apply to the scene remain closed.
    type :: tables_t
-      type(series_t) :: history
-      type(series_t) :: tips
-      type(series_t) :: fractures
-      type(series_t) :: probes
-      type(series_t) :: events
-      type(series_t) :: slip_events
-      type(series_t) :: wells
-      type(series_t) :: entries
+      type(series_t) :: all(entries)
       type(text_t), allocatable, private :: probe_names(:)
       type(text_t), allocatable, private :: pressure_names(:)  !< columns of the wells' pressures
    contains
       procedure :: open => open_tables
+      procedure :: history_rows
       procedure :: history_row
       procedure :: tip_row
       procedure :: fracture_rows
@@ -58,21 +54,30 @@ contains
       type(scene_t), intent(in) :: scene
 
       call open_history(self, directory//"/history.csv", scene)
-      call open_table(self%events, directory//"/events.csv", event_columns, scene)
-      if (scene%growth%enabled .or. scene%growth%intensities) then
-         call open_table(self%tips, directory//"/tips.csv", tip_columns, scene)
-      end if
+      call add(events, "events", event_columns)
+      if (scene%growth%enabled .or. scene%growth%intensities) call add(tips, "tips", tip_columns)
       if (scene%has_fractures()) then
-         call open_table(self%fractures, directory//"/fractures.csv", fracture_columns, scene)
-         if (scene%has_fluid()) call open_table(self%slip_events, &
-            & directory//"/slip_events.csv", slip_event_columns, scene)
+         call add(fractures, "fractures", fracture_columns)
+         if (scene%has_fluid()) call add(slip_events, "slip_events", slip_event_columns)
       end if
-    if (scene%has_wells()) call open_table(self%wells, directory//"/wells.csv", well_columns, scene)
-      if (scene%has_entries()) call open_table(self%entries, directory//"/entries.csv", &
-                                               entry_columns, scene)
+      if (scene%has_wells()) call add(wells, "wells", well_columns)
+      if (scene%has_entries()) call add(entries, "entries", entry_columns)
       if (allocated(scene%probes)) then
          if (size(scene%probes) > 0) call open_probes(self, directory//"/probes.csv", scene)
       end if
+
+   contains
+
+      !> Open a table with those of its columns that apply to the scene.
+      subroutine add(table, name, columns)
+         integer, intent(in) :: table
+         character(len=*), intent(in) :: name
+         type(column_t), intent(in) :: columns(:)
+
+         call self%all(table)%open(directory//"/"//name//".csv", columns%name, &
+                                   applies(columns, scene))
+      end subroutine add
+
    end subroutine open_tables
 
    !> Add an accepted step.
@@ -84,7 +89,7 @@ contains
 
       only = 0.0_rk
       if (size(self%pressure_names) == 1) only = row%well_pressure(1)
-      associate (table => self%history)
+      associate (table => self%all(history))
          call table%put("time_s", row%time)
          call table%put("load_factor", row%time)
          call table%put("dt_s", row%dt)
@@ -125,7 +130,26 @@ contains
          call table%put("connections_per_branch", row%connections_per_branch)
          call table%put("dimensionless_toughness", row%dimensionless_toughness)
          call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
-         call put_errors(table, row%error)
+         associate (error => row%error)
+            call table%put("injected_error_m2", error%injected)
+            call table%put("produced_error_m2", error%produced)
+            call table%put("leakoff_error_m2", error%leakoff)
+            call table%put("outflow_error_m2", error%outflow)
+            call table%put("fracture_fluid_error_m2", error%fracture_fluid)
+            call table%put("rock_fluid_error_m2", error%rock_fluid)
+            call table%put("rock_outflow_error_m2", error%rock_outflow)
+            call table%put("fracture_volume_error_m2", error%fracture_volume)
+            call table%put("max_slip_error_m", error%max_slip)
+            call table%put("max_opening_error_m", error%max_opening)
+            call table%put("seismic_moment_error_nm", error%seismic_moment)
+            call table%put("strain_energy_error_j", error%strain_energy)
+            call table%put("injection_rate_error_m2_s", error%injection_rate)
+            call table%put("injectivity_error_m2_s_pa", error%injectivity)
+            call table%put("stimulated_length_error_m", error%stimulated_length)
+            call table%put("connected_length_error_m", error%connected_length)
+            call table%put("connected_stimulated_error_m", error%connected_stimulated)
+            call table%put("max_slip_rate_error_m_s", error%max_slip_rate)
+         end associate
          call table%put("unknowns", row%n_unknowns)
          call table%put("heat_stored_j", row%heat%stored)
          call table%put("heat_by_wells_j", row%heat%by_wells)
@@ -135,38 +159,13 @@ contains
       end associate
    end subroutine history_row
 
-   !> Put the estimated errors of a step.
-   subroutine put_errors(table, error)
-      type(series_t), intent(inout) :: table
-      type(history_errors_t), intent(in) :: error
-
-      call table%put("injected_error_m2", error%injected)
-      call table%put("produced_error_m2", error%produced)
-      call table%put("leakoff_error_m2", error%leakoff)
-      call table%put("outflow_error_m2", error%outflow)
-      call table%put("fracture_fluid_error_m2", error%fracture_fluid)
-      call table%put("rock_fluid_error_m2", error%rock_fluid)
-      call table%put("rock_outflow_error_m2", error%rock_outflow)
-      call table%put("fracture_volume_error_m2", error%fracture_volume)
-      call table%put("max_slip_error_m", error%max_slip)
-      call table%put("max_opening_error_m", error%max_opening)
-      call table%put("seismic_moment_error_nm", error%seismic_moment)
-      call table%put("strain_energy_error_j", error%strain_energy)
-      call table%put("injection_rate_error_m2_s", error%injection_rate)
-      call table%put("injectivity_error_m2_s_pa", error%injectivity)
-      call table%put("stimulated_length_error_m", error%stimulated_length)
-      call table%put("connected_length_error_m", error%connected_length)
-      call table%put("connected_stimulated_error_m", error%connected_stimulated)
-      call table%put("max_slip_rate_error_m_s", error%max_slip_rate)
-   end subroutine put_errors
-
    !> Add a tip.
    subroutine tip_row(self, row)
       class(tables_t), intent(inout) :: self
       type(tip_row_t), intent(in) :: row
 
-      if (.not. self%tips%is_open()) return
-      associate (table => self%tips)
+      if (.not. self%all(tips)%is_open()) return
+      associate (table => self%all(tips))
          call table%put("time_s", row%time)
          call table%put("load_factor", row%time)
          call table%put("tip", row%tip)
@@ -190,7 +189,7 @@ contains
          call table%put("k1_corrected_pa_sqrtm", row%k1_corrected)
          call table%put("k2_corrected_pa_sqrtm", row%k2_corrected)
          call table%put("apparent_toughness_pa_sqrtm", row%apparent_toughness)
-         call table%put("history_row", int(self%history%n_rows, ik))
+         call table%put("history_row", self%history_rows())
          call table%put("keq_error_pa_sqrtm", row%error%keq)
          call table%put("g_error_j_m2", row%error%g)
          call table%put("angle_error_deg", row%error%angle*degrees)
@@ -208,8 +207,8 @@ contains
       real(rk) :: centre(2)
       integer(ik) :: cell
 
-      if (.not. self%fractures%is_open()) return
-      associate (table => self%fractures)
+      if (.not. self%all(fractures)%is_open()) return
+      associate (table => self%all(fractures))
          do cell = 1, mesh%n_cells
             centre = fracture_cell_centre(mesh, cell)
             call table%put("time_s", time)
@@ -231,7 +230,7 @@ contains
             else
                call table%put_nothing("state")
             end if
-            call table%put("history_row", int(self%history%n_rows, ik))
+            call table%put("history_row", self%history_rows())
             associate (error => fields%error)
                if (allocated(fields%aperture)) then
                   call put_if_there(table, "aperture_error_m", error%jump_n, cell)
@@ -258,8 +257,8 @@ contains
       type(probe_row_t), intent(in) :: row
       integer(ik) :: i
 
-      if (.not. self%probes%is_open()) return
-      associate (table => self%probes)
+      if (.not. self%all(probes)%is_open()) return
+      associate (table => self%all(probes))
          call table%put("time_s", time)
          call table%put("load_factor", time)
          do i = 1, size(row%displacement, 2, kind=ik)
@@ -287,8 +286,10 @@ contains
       character(len=*), intent(in) :: detail  !< a few words with numbers and units
       integer(ik), intent(in), optional :: fracture
       real(rk), intent(in), optional :: xy(2)  !< [m]
+      real(rk), allocatable :: place(:)
 
-      associate (table => self%events)
+      if (present(xy)) place = xy
+      associate (table => self%all(events))
          call table%put("time_s", time)
          call table%put("load_factor", time)
          call table%put("kind", kind)
@@ -297,13 +298,8 @@ contains
          else
             call table%put_nothing("fracture")
          end if
-         if (present(xy)) then
-            call table%put("x_m", xy(1))
-            call table%put("y_m", xy(2))
-         else
-            call table%put_nothing("x_m")
-            call table%put_nothing("y_m")
-         end if
+         call put_if_there(table, "x_m", place, 1_ik)
+         call put_if_there(table, "y_m", place, 2_ik)
          call table%put("detail", detail)
          call table%end_row()
       end associate
@@ -314,8 +310,8 @@ contains
       class(tables_t), intent(inout) :: self
       type(slip_event_t), intent(in) :: event
 
-      if (.not. self%slip_events%is_open()) return
-      associate (table => self%slip_events)
+      if (.not. self%all(slip_events)%is_open()) return
+      associate (table => self%all(slip_events))
          call table%put("event", event%number)
          call table%put("time_s", event%time)
          call table%put("end_s", event%end)
@@ -356,8 +352,8 @@ contains
       class(tables_t), intent(inout) :: self
       type(well_row_t), intent(in) :: row
 
-      if (.not. self%wells%is_open()) return
-      associate (table => self%wells)
+      if (.not. self%all(wells)%is_open()) return
+      associate (table => self%all(wells))
          call table%put("time_s", row%time)
          call table%put("well", row%name)
          call table%put("stage", row%stage)
@@ -385,7 +381,7 @@ contains
       class(tables_t), intent(inout) :: self
       type(entry_row_t), intent(in) :: row
 
-      associate (table => self%entries)
+      associate (table => self%all(entries))
          call table%put("time_s", row%time)
          call table%put("well", row%name)
          call table%put("entry", row%entry)
@@ -404,37 +400,14 @@ contains
    subroutine flush_tables(self, error)
       class(tables_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: trouble
+      integer :: i
 
-      call flush_one(self%history)
-      call flush_one(self%tips)
-      call flush_one(self%fractures)
-      call flush_one(self%probes)
-      call flush_one(self%events)
-      call flush_one(self%slip_events)
-      call flush_one(self%wells)
-      call flush_one(self%entries)
-
-   contains
-
-      subroutine flush_one(table)
-         type(series_t), intent(inout) :: table
-         type(error_t), allocatable :: trouble
-
-         call table%flush(trouble)
+      do i = 1, size(self%all)
+         call self%all(i)%flush(trouble)
          call keep_first(trouble, error)
-      end subroutine flush_one
-
+      end do
    end subroutine flush_tables
-
-   !> Open a table with those of its columns that apply to the scene.
-   subroutine open_table(table, path, columns, scene)
-      type(series_t), intent(out) :: table
-      character(len=*), intent(in) :: path
-      type(column_t), intent(in) :: columns(:)
-      type(scene_t), intent(in) :: scene
-
-      call table%open(path, columns%name, applies(columns, scene))
-   end subroutine open_table
 
    !> Open history.csv, with a column of the pressure for each of several wells.
    subroutine open_history(self, path, scene)
@@ -456,8 +429,8 @@ contains
       is_written = applies(history_columns, scene)
       is_written = [is_written(:at - 1), spread(is_written(at), 1, size(self%pressure_names)), &
                     is_written(at + 1:)]
-      call self%history%open(path, [character(len=column_length) :: names, &
-                                    history_columns(at + 1:)%name], is_written)
+      call self%all(history)%open(path, [character(len=column_length) :: names, &
+                                         history_columns(at + 1:)%name], is_written)
    end subroutine open_history
 
    !> Open probes.csv: the time or load factor, then the same columns for each probe.
@@ -478,7 +451,7 @@ contains
                & probe_columns(n_common + k)%name(len("NAME") + 1:)
          end do
       end do
-      call self%probes%open(path, names, [applies(probe_columns(:n_common), scene), &
+      call self%all(probes)%open(path, names, [applies(probe_columns(:n_common), scene), &
          & (applies(probe_columns(n_common + 1:), scene), i=1, size(scene%probes))])
    end subroutine open_probes
 
@@ -500,45 +473,40 @@ contains
    subroutine take_over(self, other)
       class(tables_t), intent(inout) :: self
       type(tables_t), intent(in) :: other
+      integer :: i
 
-      call self%history%take_over(other%history)
-      call self%tips%take_over(other%tips)
-      call self%fractures%take_over(other%fractures)
-      call self%probes%take_over(other%probes)
-      call self%events%take_over(other%events)
-      call self%slip_events%take_over(other%slip_events)
-      call self%wells%take_over(other%wells)
-      call self%entries%take_over(other%entries)
+      do i = 1, size(self%all)
+         call self%all(i)%take_over(other%all(i))
+      end do
    end subroutine take_over
+
+   !> Rows of history.csv so far.
+   pure integer(ik) function history_rows(self)
+      class(tables_t), intent(in) :: self
+
+      history_rows = int(self%all(history)%n_rows, ik)
+   end function history_rows
 
    !> Store or load the tables.
    subroutine visit(self, archive)
       class(tables_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
+      integer :: i
 
-      call self%history%visit(archive)
-      call self%tips%visit(archive)
-      call self%fractures%visit(archive)
-      call self%probes%visit(archive)
-      call self%events%visit(archive)
-      call self%slip_events%visit(archive)
-      call self%wells%visit(archive)
-      call self%entries%visit(archive)
+      do i = 1, size(self%all)
+         call self%all(i)%visit(archive)
+      end do
    end subroutine visit
 
    !> Store or load their texts.
    subroutine visit_text(self, archive)
       class(tables_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
+      integer :: i
 
-      call self%history%visit_text(archive)
-      call self%tips%visit_text(archive)
-      call self%fractures%visit_text(archive)
-      call self%probes%visit_text(archive)
-      call self%events%visit_text(archive)
-      call self%slip_events%visit_text(archive)
-      call self%wells%visit_text(archive)
-      call self%entries%visit_text(archive)
+      do i = 1, size(self%all)
+         call self%all(i)%visit_text(archive)
+      end do
    end subroutine visit_text
 
 end module report_tables

@@ -52,20 +52,18 @@ contains
       do i = 1, size(scene%injections)  ! fractures may follow the wells in the file
          value = sheet%records(sheet%find("injection", i))%value("fracture")
          if (.not. value%is_set) cycle
-         if (value%names(1) == nearest_fracture .and. scene%injections(i)%at_point) then
-            if (all(scene%fractures%name /= nearest_fracture)) then
-               call place_at_nearest(scene%fractures, scene%injections(i))
+         associate (well => scene%injections(i))
+            if (value%names(1) == nearest_fracture .and. well%at_point .and. &
+                all(scene%fractures%name /= nearest_fracture)) then
+               call place_at_nearest(scene%fractures, well)
             end if
-         end if
-         do e = size(value%names), 1, -1
-            do f = 1, size(scene%fractures)
-               if (scene%fractures(f)%name /= value%names(e)) cycle
-               scene%injections(i)%fracture = int(f, ik)
-               if (allocated(scene%injections(i)%entries)) then
-                  scene%injections(i)%entries(e)%fracture = int(f, ik)
-               end if
+            do e = size(value%names), 1, -1
+               f = findloc(scene%fractures%name == value%names(e), .true., dim=1, back=.true.)
+               if (f == 0) cycle
+               well%fracture = int(f, ik)
+               if (allocated(well%entries)) well%entries(e)%fracture = int(f, ik)
             end do
-         end do
+         end associate
       end do
       scene%growth%intensities = scene%growth%intensities .or. scene%growth%enabled
    end subroutine sheet_to_scene

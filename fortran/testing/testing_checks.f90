@@ -17,6 +17,7 @@ module testing_checks
       procedure :: is_close
       procedure :: no_error
       procedure :: fails_with
+      procedure :: fails_by
       procedure :: finish
    end type checks_t
 
@@ -78,6 +79,18 @@ contains
          call self%is_true(index(error%message, words) > 0, name//": "//error%message)
       end if
    end subroutine fails_with
+
+   !> It was refused with this message.
+   subroutine fails_by(self, error, message)
+      class(checks_t), intent(inout) :: self
+      type(error_t), allocatable, intent(in) :: error
+      character(len=*), intent(in) :: message
+      character(len=:), allocatable :: found
+
+      found = "no error"
+      if (allocated(error)) found = error%message
+      call self%is_true(found == message, "got:  "//found//new_line("a")//"FAILED: want: "//message)
+   end subroutine fails_by
 
    !> Print the count and stop with status 1 if a check failed.
    subroutine finish(self)

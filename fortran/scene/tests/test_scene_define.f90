@@ -140,12 +140,7 @@ contains
       lines(2:) = base
       call put_lines(path, lines)
       call read_scene(path, scene, error)
-      if (allocated(error)) then
-         call checks%is_true(error%message == path//message, "got:  "//error%message// &
-                             new_line("a")//"FAILED: want: "//path//message)
-      else
-         call checks%is_true(.false., "no error, but expected "//message)
-      end if
+      call checks%fails_by(error, path//message)
    end subroutine refuse
 
 end program test_scene_define

@@ -274,12 +274,7 @@ contains
 
       call put_changed(path, good, number_1, line_1, number_2, line_2)
       call read_scene(path, scene, error)
-      if (allocated(error)) then
-         call checks%is_true(error%message == path//message, "got:  "//error%message// &
-                             new_line("a")//"FAILED: want: "//path//message)
-      else
-         call checks%is_true(.false., "no error, but expected "//message)
-      end if
+      call checks%fails_by(error, path//message)
    end subroutine refuse_two
 
 end program test_scene_faults

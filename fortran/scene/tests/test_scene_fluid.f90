@@ -246,10 +246,7 @@ contains
       character(len=*), intent(in) :: message
 
       call read_scene(path, scene, error)
-      call checks%is_true(allocated(error), "refused: "//message)
-      if (.not. allocated(error)) return
-      call checks%is_true(error%message == path//message, &
-                          "'"//error%message//"' instead of '"//path//message//"'")
+      call checks%fails_by(error, path//message)
    end subroutine compare
 
 end program test_scene_fluid

@@ -1,10 +1,10 @@
-!> Whatever a file holds, reading it ends with a scene or with a message, never in a crash.
+!> Whatever a file holds, reading it ends with a scene or with a message, never in a crash. The test
+!! mutated_scenes reads the scenes of inputs/ with changed bytes.
 program test_scene_fuzz
    use base_errors, only: error_t
    use scene_namelist, only: read_scene
-   use scene_test_files, only: delete_file, put_bytes, same_scene, source_path
+   use scene_test_files, only: delete_file, put_bytes, source_path
    use scene_types, only: scene_t
-   use scene_write, only: scene_text
    use testing_checks, only: checks_t
    use testing_files, only: file_text
    use testing_random, only: random_t
@@ -16,7 +16,6 @@ program test_scene_fuzz
 
    good = file_text(source_path("inputs/paper_c/onset.nml"))
    call cut_everywhere()
-   call change_bytes()
    call random_bytes()
    call random_pieces()
    call large_files()
@@ -47,31 +46,6 @@ contains
       complete_at = length > last_group
       if (complete_at) complete_at = index(good(last_group:length), "/") > 0
    end function complete_at
-
-   subroutine change_bytes()
-      character(len=:), allocatable :: bytes
-      integer :: i, k, position, again, n_survived
-
-      n_survived = 0
-      do i = 1, 1500
-         bytes = good
-         do k = 1, 1 + random%below(4)
-            position = 1 + random%below(len(bytes) - 1)
-            select case (random%below(3))
-            case (0)  ! change
-               bytes(position:position) = char(random%below(256))
-            case (1)  ! lose
-               bytes = bytes(:position - 1)//bytes(position + 1:)
-            case default  ! repeat what stands elsewhere
-               again = 1 + random%below(len(bytes))
-               bytes = bytes(:position)//bytes(again:)
-            end select
-         end do
-         if (settled(bytes)) n_survived = n_survived + 1
-      end do
-      call checks%is_true(n_survived == 1500, "files with changed bytes are refused, or read "// &
-                          "and written to the same scene")
-   end subroutine change_bytes
 
    subroutine random_bytes()
       character(len=400) :: bytes
@@ -121,20 +95,6 @@ contains
       call checks%is_true(refused(repeat(" ", 4000001)), "too large a file")
       call checks%is_true(refused(repeat("/", 100000)), "slashes")
    end subroutine large_files
-
-   !> Refused with a message, or a scene that is written and read to the same.
-   logical function settled(bytes)
-      character(len=*), intent(in) :: bytes
-      type(scene_t) :: scene, again
-      type(error_t), allocatable :: error
-
-      settled = refused(bytes)
-      if (settled) return
-      call read_scene(path, scene, error)
-      if (.not. allocated(error)) call put_bytes(path, scene_text(scene))
-      if (.not. allocated(error)) call read_scene(path, again, error)
-      if (.not. allocated(error)) settled = same_scene(scene, again)
-   end function settled
 
    logical function refused(bytes)
       character(len=*), intent(in) :: bytes

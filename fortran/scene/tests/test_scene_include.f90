@@ -106,12 +106,7 @@ call put_lines(rock, [character(len=100) :: granite, "&injection fracture='f1' s
       character(len=*), intent(in) :: message
 
       call read_scene(path, scene, error)
-      if (allocated(error)) then
-         call checks%is_true(error%message == message, "got:  "//error%message// &
-                             new_line("a")//"FAILED: want: "//message)
-      else
-         call checks%is_true(.false., "no error, but expected "//message)
-      end if
+      call checks%fails_by(error, message)
    end subroutine expect
 
 end program test_scene_include

@@ -311,12 +311,7 @@ contains
    subroutine expect(message)
       character(len=*), intent(in) :: message
 
-      if (allocated(error)) then
-         call checks%is_true(error%message == message, "got:  "//error%message// &
-                             new_line("a")//"FAILED: want: "//message)
-      else
-         call checks%is_true(.false., "no error, but expected "//message)
-      end if
+      call checks%fails_by(error, message)
    end subroutine expect
 
 end program test_scene_wells

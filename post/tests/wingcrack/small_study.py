@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import csv
+import io
 import os
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
+
+from wingcrack.command_line import main
 
 POST = Path(__file__).resolve().parents[2]
 
@@ -129,15 +133,15 @@ class SmallStudy:
         """Write the study's file."""
         self.file.write_text(text, encoding="utf-8")
 
-    def command(self, *arguments: str) -> list[str]:
+    def words(self, *arguments: str) -> list[str]:
         """Words of a call."""
-        call = [sys.executable, "-m", "wingcrack", "study", str(self.file)]
-        return [*call, "--out", str(self.out), "--build", str(self.folder / "build"), *arguments]
+        words = ["study", str(self.file), "--out", str(self.out)]
+        return [*words, "--build", str(self.folder / "build"), *arguments]
 
     def start(self, *arguments: str) -> subprocess.Popen[str]:
         """Start a call."""
         return subprocess.Popen(
-            self.command(*arguments),
+            [sys.executable, "-m", "wingcrack", *self.words(*arguments)],
             env=os.environ | {"PYTHONPATH": str(POST)},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -147,9 +151,17 @@ class SmallStudy:
 
     def call(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Call to its end."""
-        with self.start(*arguments) as process:
-            said, error = process.communicate(timeout=120)
-        return subprocess.CompletedProcess(process.args, process.returncode, said, error)
+        return call_here(self.words(*arguments))
+
+
+def call_here(words: list[str]) -> subprocess.CompletedProcess[str]:
+    """Do what the words ask for in this process: a new one takes half a second to begin."""
+    with redirect_stdout(io.StringIO()) as said, redirect_stderr(io.StringIO()) as error:
+        try:
+            status = main(words)
+        except SystemExit as ended:
+            status = int(ended.code or 0)
+    return subprocess.CompletedProcess(words, status, said.getvalue(), error.getvalue())
 
 
 def small_study(folder: Path, text: str = SOUND) -> SmallStudy:
