@@ -58,23 +58,21 @@ module coarse_condensed
 
 contains
 
-   !> Begin with another mesh. By default S is formed where this costs less: its elimination grows
-   !! with the cube of the fracture cells, that of the sparse matrix with the cells to the power
-   !! 1.2, and contact needs about as many of both. In equilibrium growth several tries share the
-   !! factors, and each costs much less with S.
-   subroutine forget(self, mesh, condensation, has_tries)
+   !> Begin with another mesh. By default S is formed where this costs less: forming it grows with
+   !! the cube of the fracture cells, and is done once per step size; the sparse matrix, whose cost
+   !! grows with the cells to the power 1.2, is factorized in each iteration on contact.
+   subroutine forget(self, mesh, condensation)
       class(condensed_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       character(len=*), intent(in) :: condensation  !< "auto", "full" or "sparse"
-      logical, intent(in) :: has_tries  !< each step is tried several times
-      ! where both cost the same, measured
-      real(rk), parameter :: cells_per_square = 30.0_rk, with_tries = 90.0_rk
-      integer(ik), parameter :: few = 800  ! fracture cells: S takes 180 MB
+      ! Where both cost the same, with three iterations per step and with one: beyond 800 fracture
+      ! cells S takes more than 180 MB.
+      real(rk), parameter :: cells_per_square = 90.0_rk, of_many = 30.0_rk
+      integer(ik), parameter :: few = 800
 
       call self%factors%release()
       associate (n => mesh%fracture%n_cells)
-         self%is_full = real(n, rk)**2 <= merge(with_tries, cells_per_square, &
-                                                has_tries .and. n <= few)*mesh%n_cells
+         self%is_full = real(n, rk)**2 <= merge(cells_per_square, of_many, n <= few)*mesh%n_cells
          if (condensation /= "auto") self%is_full = condensation == "full"
          self%is_full = self%is_full .or. n == 0
       end associate
