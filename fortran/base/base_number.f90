@@ -10,7 +10,7 @@ module base_number
    private
 
    public :: brief_text, decimal_digits, exact_text, format_integer, format_real, integer_text
-   public :: most_digits, number_width
+   public :: most_digits, number_width, place_text
 
    integer, parameter :: number_width = 28  !< longest text of a number
    integer, parameter :: most_digits = 17  !< that a double may need
@@ -84,6 +84,16 @@ contains
       end if
       text = buffer(1:length)
    end function brief_text
+
+   !> A position as text, with four digits, or more where it is far from the origin.
+   pure function place_text(xy) result(text)
+      real(rk), intent(in) :: xy(2)  !< [m]
+      character(len=:), allocatable :: text
+      integer :: n
+
+      n = 4 + max(0, int(log10(maxval(abs(xy)) + 1.0_rk)) - 2)
+      text = "("//brief_text(xy(1), n)//", "//brief_text(xy(2), n)//") m"
+   end function place_text
 
    !> The decimal digits d of a number, |x| = d.ddd * 10**power: as few as read back as x, or
    !! rounded. No zeros at the end; but the digit of 0 is 0.

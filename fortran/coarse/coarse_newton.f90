@@ -42,6 +42,10 @@ module coarse_newton
       procedure :: restart
    end type equations_t
 
+   !> Length of a step, over that of the last one, from which on slower methods are tried where the
+   !! iteration fails: a step cut to half mostly converges in a few iterations [-].
+   real(rk), parameter :: share_to_persevere = 0.3_rk
+
    real(rk), parameter :: contact_residual_max = 1.0e-8_rk  !< of an accepted step, relative
 
 contains
@@ -76,7 +80,7 @@ contains
          x = state%guess%from(start, dt)
          how%perseveres = .false.
          call iterate(eq, x, how, found)
-         how%perseveres = .true.
+         how%perseveres = .not. dt > share_to_persevere*state%guess%dt
          if (found%outcome /= outcome_converged) then
             spent = found%iterations
             x = start

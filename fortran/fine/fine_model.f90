@@ -3,7 +3,7 @@ module fine_model
    use algebra_multifrontal, only: multifrontal_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text
+   use base_number, only: place_text
    use fine_boundary, only: check_boundary, check_support, clamped_boundary, find_loose, &
                             fine_boundary_t
    use fine_contact, only: close_joints, contact_problem_t, contact_t, eliminate_loose, &
@@ -326,12 +326,10 @@ contains
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: cell
       character(len=:), allocatable :: words
-      real(rk) :: middle(2)  ! [m]
 
       words = ""
       if (cell == 0) return
-      middle = fracture_cell_centre(fracture, cell)
-      words = ", most of all at ("//brief_text(middle(1), 4)//", "//brief_text(middle(2), 4)//") m"
+      words = ", most of all at "//place_text(fracture_cell_centre(fracture, cell))
    end function cell_place
 
    !> Place of a part that is held only by contact, for messages; empty if there is none.

@@ -7,7 +7,7 @@ module report_watch
    use base_archive, only: archive_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text, integer_text
+   use base_number, only: brief_text, integer_text, place_text
    use base_texts, only: add_text, text_t
    use growth_tip, only: tip_t
    use report_limits, only: judge, limit_k_error, limit_k_methods, limit_k_to_grow, limits, &
@@ -52,16 +52,13 @@ contains
       character(len=*), intent(in) :: when  !< "3600 s", "load factor 0.5"
       real(rk), intent(in), optional :: xy(2)  !< position [m]
       character(len=:), allocatable :: at
-      integer :: n, verdict
+      integer :: verdict
       logical :: is_worst
 
       verdict = judge(limit, value)
       if (verdict == verdict_fine) return
       at = "at "//when
-      if (present(xy)) then
-         n = digits + max(0, int(log10(maxval(abs(xy)) + 1.0_rk)) - 2)  ! far from the origin
-         at = at//", ("//brief_text(xy(1), n)//", "//brief_text(xy(2), n)//") m"
-      end if
+      if (present(xy)) at = at//", "//place_text(xy)
       associate (record => self%records(limit))
          record%states = record%states + 1
          is_worst = .not. value <= record%worst

@@ -4,7 +4,7 @@ module twolevel_notes
    use, intrinsic :: iso_c_binding, only: c_loc
    use base_archive, only: archive_t
    use base_kinds, only: ik, lk, rk
-   use base_number, only: brief_text, integer_text
+   use base_number, only: brief_text, integer_text, place_text
    use base_plane, only: norm2
    use growth_interaction, only: could_separate, interaction_t
    use growth_front, only: front_state_t
@@ -187,9 +187,8 @@ contains
                if (.not. by > least*max(shorter, maxval(gain))) cycle
                ahead = merge(i, j, gain(1) > gain(2))
                behind = merge(j, i, gain(1) > gain(2))
-               what = "this tip is ahead of an equal one at ("// &
-                      brief_text(tips(behind)%xy(1), 4)//", "// &
-                      brief_text(tips(behind)%xy(2), 4)//") m by "//brief_text(by, 3)//" m, "// &
+               what = "this tip is ahead of an equal one at "// &
+                      place_text(tips(behind)%xy)//" by "//brief_text(by, 3)//" m, "// &
                       merge("more than", "less than", by > error(i) + error(j))// &
                       " their errors: which one is ahead is chance"
                call chronicle%add_event(now%coarse%time, event_bifurcation, what, &

@@ -245,6 +245,10 @@ contains
          is_last = is_too_short
          is_unstable = is_last .and. trial%goes_too_far
          if (.not. is_last) call cut_step(self, trial, is_too_short)
+         if (is_too_short) then  ! the slower methods are needed at once (coarse_newton)
+            call self%now%coarse%guess%forget()
+            self%before = self%now%coarse
+         end if
          ! In a step so short that the time of a jump within it does not matter.
          may_jump = is_last .or. (trial%goes_too_far .and. &
                                   self%step%dt <= moment(self%scene, self%before%time))

@@ -2,7 +2,7 @@
 !! well that has emptied the cell.
 module twolevel_unsolved
    use base_kinds, only: ik, rk
-   use base_number, only: brief_text
+   use base_number, only: place_text
    use coarse_state, only: step_report_t
    use mesh_types, only: fracture_mesh_t, network_t
    use scene_types, only: injection_t
@@ -28,7 +28,8 @@ contains
       words = report%reason
       if (report%cell == 0) return
       name = name_of(network, fracture%cell_fracture(report%cell))
-      place = place_of(fracture, report%cell)
+      place = place_text(0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, report%cell)), &
+                                    dim=2))
       if (.not. report%is_drained) then
          words = words//", on "//name//" at "//place
          return
@@ -51,17 +52,6 @@ contains
       name = "a fracture"
       if (allocated(network%names)) name = "fracture '"//trim(network%names(number)%text)//"'"
    end function name_of
-
-   !> Centre of a cell, as text.
-   pure function place_of(fracture, cell) result(place)
-      type(fracture_mesh_t), intent(in) :: fracture
-      integer(ik), intent(in) :: cell
-      character(len=:), allocatable :: place
-      real(rk) :: middle(2)  ! [m]
-
-      middle = 0.5_rk*sum(fracture%point_xy(:, fracture%cell_points(:, cell)), dim=2)
-      place = "("//brief_text(middle(1), 4)//", "//brief_text(middle(2), 4)//") m"
-   end function place_of
 
    !> Well with the largest extraction from a cell, or else from its fracture; 0: none.
    pure integer(ik) function drawing_well(fracture, cell, share, rate) result(well)

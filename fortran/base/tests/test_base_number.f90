@@ -3,7 +3,7 @@ program test_base_number
    use, intrinsic :: ieee_arithmetic, only: ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
                                                                                ieee_value
    use base_kinds, only: ik, lk, pi, rk
-   use base_number, only: brief_text, exact_text, integer_text
+   use base_number, only: brief_text, exact_text, integer_text, place_text
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -47,6 +47,9 @@ program test_base_number
    call checks%is_true(brief_text(0.0123456_rk, 3) == "0.0123", "three digits")
    call checks%is_true(brief_text(-9.9996_rk, 4) == "-10", "rounding up adds a digit")
    call checks%is_true(brief_text(0.0_rk, 3) == "0", "zero has no digits to round")
+   call checks%is_true(place_text([12.34567_rk, -0.5_rk]) == "(12.35, -0.5) m", "a place")
+   call checks%is_true(place_text([466003.217_rk, 6692123.41_rk]) == "(466003.22, 6692123.4) m", &
+                       "a place far from the origin")
    call checks%is_true(brief_text(2.5_rk, 1) == "2", "a tie goes to the even digit")
    call checks%is_true(brief_text(1.0_rk/3.0_rk, 17) == "0.33333333333333331", "all digits")
 
