@@ -7,7 +7,7 @@ module mechanics_state
    use base_timers, only: timers_t
    use fine_elasticity, only: elasticity_t, is_same
    use fine_tip_types, only: frame_of_tip, tip_frame_t
-   use growth_front, only: growth_rules_t
+   use growth_rules, only: growth_rules_t
    use growth_law, only: growth_drive
    use growth_network, only: network_of_scene
    use mechanics_body, only: body_t

@@ -43,7 +43,8 @@ module twolevel_coarse_errors
    use base_timers, only: phase_tips, timers_t
    use coarse_rock, only: rock_t
    use coarse_state, only: state_t
-   use growth_front, only: front_state_t, growth_rules_t
+   use growth_front, only: front_state_t
+   use growth_rules, only: growth_rules_t
    use growth_tip, only: tip_t
    use mesh_types, only: fracture_mesh_t, mesh_t
    use twolevel_correction, only: improve

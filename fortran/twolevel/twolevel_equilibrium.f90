@@ -14,7 +14,7 @@ module twolevel_equilibrium
    use base_timers, only: timers_t
    use coarse_state, only: go_back, step_report_t
    use growth_advances, only: advances_t
-   use growth_front, only: growth_rules_t
+   use growth_rules, only: growth_rules_t
    use growth_network, only: total_length
    use growth_segment, only: segment_t
    use growth_targets, only: target_none

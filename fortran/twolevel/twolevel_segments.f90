@@ -17,7 +17,8 @@ module twolevel_segments
    use base_timers, only: timers_t
    use base_tolerances, only: same_place
    use coarse_state, only: go_back
-   use growth_front, only: front_state_t, growth_rules_t
+   use growth_front, only: front_state_t
+   use growth_rules, only: growth_rules_t
    use growth_network, only: end_gain, end_place, extend, move_end, straighten_end
    use growth_segment, only: segment_t
    use growth_targets, only: find_beside, target_boundary, target_none

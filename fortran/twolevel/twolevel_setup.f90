@@ -4,7 +4,7 @@ module twolevel_setup
    use base_kinds, only: ik, pi, rk
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_state, only: fracture_cells_t
-   use growth_front, only: growth_rules_t
+   use growth_rules, only: growth_rules_t
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: fracture_mesh_t
    use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body

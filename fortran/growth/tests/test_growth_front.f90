@@ -4,7 +4,7 @@ program test_growth_front
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
-   use growth_front, only: growth_rules_t
+   use growth_rules, only: growth_rules_t
    use growth_law, only: growth_drive_t
    use growth_network, only: total_length
    use growth_targets, only: target_boundary
