@@ -119,7 +119,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(tables_t) :: before
 
-      before = self%tables
+      call move_alloc(self%tables%all, before%all)
       call self%tables%open(self%place%directory, scene)
       call self%tables%take_over(before)
    end subroutine take_over

@@ -25,7 +25,7 @@ module report_tables
 
    !> The tables; those that do not apply to the scene remain closed.
    type :: tables_t
-      type(series_t) :: all(entries)
+      type(series_t), allocatable :: all(:)  !< unallocated: not yet opened
       type(text_t), allocatable, private :: probe_names(:)
       type(text_t), allocatable, private :: pressure_names(:)  !< columns of the wells' pressures
    contains
@@ -53,6 +53,7 @@ contains
       character(len=*), intent(in) :: directory
       type(scene_t), intent(in) :: scene
 
+      allocate (self%all(entries))
       call open_history(self, directory//"/history.csv", scene)
       call add(events, "events", event_columns)
       if (scene%growth%enabled .or. scene%growth%intensities) call add(tips, "tips", tip_columns)
@@ -403,6 +404,7 @@ contains
       type(error_t), allocatable :: trouble
       integer :: i
 
+      if (.not. allocated(self%all)) return
       do i = 1, size(self%all)
          call self%all(i)%flush(trouble)
          call keep_first(trouble, error)
