@@ -351,17 +351,17 @@ def test_figures_of_a_run(growing: Path) -> None:
 def test_check_tells_what_decides_about_growth(tmp_path: Path) -> None:
     scene = (TOP / "verification/kgd/kgd.nml").read_text()
     usual = 1.0306923793741721e-4  # K_m = 4
-    told = {}
+    printed = {}
     for name, factor in (("tough", 1.0), ("between", 16.0), ("viscous", 25.0**4)):
         assert "1.0306923793741721e-4" in scene
         text = scene.replace("1.0306923793741721e-4", repr(factor * usual))
         (tmp_path / f"{name}.nml").write_text(text)
-        told[name] = bare(tmp_path, "check", f"{name}.nml").stdout
-    assert "toughness-dominated growth, K_m = 4.000E+00 (well 'well_1')" in told["tough"]
-    assert "growth depends on toughness and viscosity, K_m = 2.000E+00" in told["between"]
-    assert "viscosity-dominated growth, K_m = 1.600E-01" in told["viscous"]
+        printed[name] = bare(tmp_path, "check", f"{name}.nml").stdout
+    assert "toughness-dominated growth, K_m = 4.000E+00 (well 'well_1')" in printed["tough"]
+    assert "growth depends on toughness and viscosity, K_m = 2.000E+00" in printed["between"]
+    assert "viscosity-dominated growth, K_m = 1.600E-01" in printed["viscous"]
     warning = "&injection 'well_1': K_m is 0.16: growth is then viscosity-dominated"
-    assert [warning in told[name] for name in told] == [False, False, True]
+    assert [warning in printed[name] for name in printed] == [False, False, True]
 
 
 def test_a_scene_is_checked_without_running(tmp_path: Path) -> None:
@@ -380,9 +380,9 @@ def test_check_foresees_the_cells(rows_of_fractures: int, tmp_path: Path) -> Non
     command = [sys.executable, str(tool), "--rows", str(rows_of_fractures), "--cells", "8"]
     text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     (tmp_path / "many.nml").write_text(text)
-    told = bare(tmp_path, "check", "many.nml").stdout
-    foreseen = re.search(r"about: +(\d+) cells", told)
-    assert foreseen, told
+    printed = bare(tmp_path, "check", "many.nml").stdout
+    foreseen = re.search(r"about: +(\d+) cells", printed)
+    assert foreseen, printed
     cells = record(run(tmp_path, text))["cells"]
     assert isinstance(cells, int)
     assert abs(int(foreseen[1]) - cells) < 0.25 * cells
@@ -464,4 +464,4 @@ def test_a_terminal_has_a_line_that_is_renewed_and_a_file_has_none(tmp_path: Pat
         words = os.read(leader, 65536).decode()
     assert words.count("\r") >= 2  # it is written, and taken away at the end
     assert re.search(r"\r *[0-9]+ *%", words)
-    assert "\r" not in bare(tmp_path, "run", "small.nml", "--out", "told").stderr
+    assert "\r" not in bare(tmp_path, "run", "small.nml", "--out", "printed").stderr
