@@ -340,12 +340,13 @@ int cm_remesh(const cm_mesh* old_mesh, const cm_network* network, int32_t n_cent
     });
 }
 
-int cm_move_tips(const cm_mesh* old_mesh, const cm_network* network, cm_mesh** new_mesh) {
+int cm_move_tips(const cm_mesh* old_mesh, const cm_network* network, double reach,
+                 cm_mesh** new_mesh) {
     return guarded([&] {
         require(new_mesh != nullptr, "no place was given for the mesh");
         *new_mesh = nullptr;
         require(old_mesh != nullptr, "no mesh was given");
-        *new_mesh = new cm_mesh{move_tips(old_mesh->mesh, network_from(network))};
+        *new_mesh = new cm_mesh{move_tips(old_mesh->mesh, network_from(network), reach)};
     });
 }
 

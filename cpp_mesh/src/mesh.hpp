@@ -85,9 +85,10 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
 Mesh grow_mesh(const Mesh& old_mesh, const Network& network, const RosetteRadii& radii);
 
 // The cells of a mesh, whose nodes have moved along with tips that have gone on, or back, along the
-// last pieces of their paths, or turned with these. Throws MeshError where the network differs
+// last pieces of their paths, or turned with these: nodes as near to a piece as `reach` times its
+// length. Throws MeshError where the network differs
 // otherwise, or cells would have a bad shape: make a new mesh then.
-Mesh move_tips(const Mesh& old_mesh, const Network& network);
+Mesh move_tips(const Mesh& old_mesh, const Network& network, double reach);
 
 } // namespace cpp_mesh
 

@@ -1,11 +1,12 @@
 // Tips that go on along the last pieces of their paths, or turn about where these begin: the cells
 // keep their nodes, and these move along. The elements around a tip are scaled and turned as the
-// piece is; fractures and the body stay; what lies between moves so that edges, shorter ones less
-// than longer ones, are changed as little as possible.
+// piece is; fractures, the body and what is far away stay; what lies between moves so that edges,
+// shorter ones less than longer ones, are changed as little as possible.
 #include "errors.hpp"
 #include "mesh.hpp"
 #include "smooth.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cpp_mesh {
@@ -31,7 +32,9 @@ struct Move {
     int fracture = 0, end = 0; // 1 start, 2 end
     Vec2 start, from, to;
 
-    double ratio() const { return distance(start, to) / distance(start, from); }
+    double length() const { return distance(start, from); }
+    double ratio() const { return distance(start, to) / length(); }
+    double distance_to(Vec2 p) const { return distance_to_segment(p, start, from); }
 
     // The similarity that keeps the start and takes the tip along.
     Vec2 image(Vec2 p) const {
@@ -78,7 +81,12 @@ public:
                     is_free_[plane_node(old_mesh, face, k)] = 0;
     }
 
-    Mesh run(const std::vector<Move>& moves) {
+    Mesh run(const std::vector<Move>& moves, double reach) {
+        for (std::size_t v = 0; v < old_.xy.size(); ++v)
+            is_free_[v] =
+                is_free_[v] != 0 && std::any_of(moves.begin(), moves.end(), [&](const Move& move) {
+                    return move.distance_to(old_.xy[v]) < reach * move.length();
+                });
         for (const Move& move : moves)
             take_along(move);
         relax();
@@ -253,9 +261,9 @@ private:
 
 } // namespace
 
-Mesh move_tips(const Mesh& old_mesh, const Network& network) {
+Mesh move_tips(const Mesh& old_mesh, const Network& network, double reach) {
     const std::vector<Move> moves = moves_between(old_mesh.network, network);
-    return moves.empty() ? old_mesh : Mover(old_mesh, network).run(moves);
+    return moves.empty() ? old_mesh : Mover(old_mesh, network).run(moves, reach);
 }
 
 } // namespace cpp_mesh

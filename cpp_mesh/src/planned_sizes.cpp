@@ -86,9 +86,11 @@ SizeField planned_sizes(const Specification& specification, const Graph& graph,
         rosette_discs(graph, plans, specification.rosette_sectors, specification.ring_slope));
     if (specification.joint_size > 0.0)
         for (const Joint& joint : joints_of(graph))
-            size.add(corner_disc(joint.xy, specification.joint_size));
+            size.add(corner_disc(joint.xy,
+                                 specification.foci.at_corner(specification.joint_size, joint.xy)));
     for (const Vec2& place : specification.refined)
-        size.add(corner_disc(place, specification.refined_size));
+        size.add(
+            corner_disc(place, specification.foci.at_corner(specification.refined_size, place)));
     // Cells between fractures that meet, or almost do, must not be much longer than the gap
     // between the fractures.
     if (size.is_scale_free() || (!specification.is_window &&

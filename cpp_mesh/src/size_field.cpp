@@ -65,13 +65,19 @@ SizeField SizeField::less(const SizeField& other) const {
     return rest;
 }
 
-double SizeFoci::up_to(double most, Vec2 p) const {
-    if (places.empty())
-        return 0.0;
+double SizeFoci::from_nearest(Vec2 p) const {
     double nearest = std::numeric_limits<double>::max();
     for (const Vec2& place : places)
         nearest = std::min(nearest, distance(p, place));
-    return std::min(size + slope * nearest, most);
+    return nearest;
+}
+
+double SizeFoci::up_to(double most, Vec2 p) const {
+    return places.empty() ? 0.0 : std::min(size + slope * from_nearest(p), most);
+}
+
+double SizeFoci::at_corner(double smallest, Vec2 p) const {
+    return places.empty() ? smallest : smallest * std::max(1.0, from_nearest(p) / size);
 }
 
 double SizeDisc::operator()(Vec2 p) const {

@@ -40,6 +40,12 @@ struct SizeFoci {
 
     double operator()(Vec2 p) const { return up_to(largest, p); }
     double up_to(double most, Vec2 p) const;
+    // Of a corner of fractures: `smallest` near a place, and as many times larger as it is farther
+    // away than `size`.
+    double at_corner(double smallest, Vec2 p) const;
+
+private:
+    double from_nearest(Vec2 p) const;
 };
 
 class SizeField {

@@ -79,10 +79,10 @@ public:
                             end_radius.empty() ? nullptr : end_radius.data(), &handle));
     }
 
-    bool move_tips(const ApiMesh& old_mesh, TestNetwork network) {
+    bool move_tips(const ApiMesh& old_mesh, TestNetwork network, double reach = 1e9) {
         cm_destroy(&handle);
         const cm_network view = network.view();
-        return read(cm_move_tips(old_mesh.handle, &view, &handle));
+        return read(cm_move_tips(old_mesh.handle, &view, reach, &handle));
     }
 
     bool remesh(const ApiMesh& old_mesh, TestNetwork network, const std::vector<Point>& centres,

@@ -117,6 +117,29 @@ void along_and_about(Checks& checks) {
     }
 }
 
+// What is farther from the piece than the reach stays where it is, and what is nearer moves.
+void only_within_reach(Checks& checks) {
+    constexpr double reach = 6.0;
+    Window window(0.5);
+    ApiMesh made, moved;
+    checks.is_true(made.create(window.spec, path(0.5, 0.0)), made.error);
+    const TestNetwork network = path(1.0, 0.1);
+    moved.move_tips(made, network, reach);
+    check_moved(checks, made, moved, network, 2.0, "within reach");
+    const Point start = start_of(network), tip = path(0.5, 0.0).fractures[0].back();
+    int n_moved = 0;
+    for (int v = 0; v < made.counts.n_nodes; ++v) {
+        const Point p = made.node(v);
+        if (moved.node(v) == p)
+            continue;
+        ++n_moved;
+        const double x = std::min(std::max(p[0], start[0]), tip[0]);
+        checks.is_true(std::hypot(p[0] - x, p[1] - start[1]) < reach * 0.5 * piece, "too far away");
+    }
+    checks.is_true(n_moved > 50 && n_moved < made.counts.n_nodes / 2,
+                   std::to_string(n_moved) + " nodes have moved");
+}
+
 void refusals(Checks& checks) {
     Window window(1.0);
     ApiMesh made, moved;
@@ -148,6 +171,7 @@ void refusals(Checks& checks) {
 int main() {
     Checks checks;
     along_and_about(checks);
+    only_within_reach(checks);
     refusals(checks);
     return checks.finish();
 }

@@ -14,8 +14,8 @@ module algebra_elimination
    implicit none(type, external)
    private
 
-   public :: element_matrices_t, eliminate_fronts, factors_t, pivots_of, size_of, sum_up_kept, &
-             workspace_t
+   public :: element_matrices_t, eliminate_again, eliminate_fronts, factors_t, pivots_of, size_of, &
+             sum_up_kept, workspace_t
 
    !> Where the matrices of the elements come from.
    type, abstract :: element_matrices_t
@@ -35,10 +35,17 @@ module algebra_elimination
       end subroutine give_matrix
    end interface
 
+   !> What a front has left.
+   type :: remainder_t
+      real(rk), allocatable :: triangle(:)  !< lower triangle column by column
+   end type remainder_t
+
    !> The columns of the factor, front by front.
    type :: factors_t
       type(fronts_t) :: fronts
       type(parts_t) :: parts  !< fronts that are eliminated side by side
+      type(parts_t) :: lasting  !< those that elements that change do not belong to
+      type(remainder_t), allocatable :: left(:)  !< (fronts) by the roots of the lasting parts
       type(lists_t) :: unknowns  !< numbers of the unknowns of each element
       integer(ik) :: n = 0  !< unknowns
       integer(int64), allocatable :: first_entry(:)  !< (fronts + 1) in `factor`
@@ -101,8 +108,24 @@ contains
          !$omp end parallel
       end if
       wrong = maxval([0_ik, wrong_in])
-      if (wrong == 0) call eliminate_rest(self, matrices, part, work, wrong)
+      if (wrong == 0) call eliminate_rest(self, matrices, self%parts, part, work, wrong)
    end subroutine eliminate_fronts
+
+   !> Eliminate only the fronts of the elements that change, and those above.
+   subroutine eliminate_again(self, matrices, work, wrong)
+      class(factors_t), intent(inout) :: self
+      class(element_matrices_t), intent(in) :: matrices
+      type(workspace_t), intent(out) :: work
+      integer(ik), intent(out) :: wrong  !< place of a pivot of the wrong sign in its front; 0: none
+      type(workspace_t) :: part(size(self%lasting%last))
+      integer :: k
+
+      do k = 1, size(part)
+         part(k)%stack = self%left(self%lasting%last(k))%triangle
+         part(k)%top = size(part(k)%stack, kind=int64)
+      end do
+      call eliminate_rest(self, matrices, self%lasting, part, work, wrong)
+   end subroutine eliminate_again
 
    !> Eliminate the fronts of all parts, each as a task of its own for the team of threads.
    subroutine eliminate_parts(self, matrices, part, wrong)
@@ -140,23 +163,24 @@ contains
    end subroutine eliminate_part
 
    !> Eliminate the fronts that are in no part, after these.
-   subroutine eliminate_rest(self, matrices, part, work, wrong)
+   subroutine eliminate_rest(self, matrices, parts, part, work, wrong)
       class(factors_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices
-      type(workspace_t), intent(inout) :: part(:)  !< emptied
+      type(parts_t), intent(in) :: parts
+      type(workspace_t), intent(inout) :: part(:)  !< what they leave; emptied
       type(workspace_t), intent(out) :: work
       integer(ik), intent(out) :: wrong  !< place of a pivot of the wrong sign; 0: none
       integer(ik) :: i, k
 
       wrong = 0
-      call prepare(self, 1, self%fronts%n, self%parts, work)
+      call prepare(self, 1, self%fronts%n, parts, work)
       i = 0
       k = 1
       do while (i < self%fronts%n)
          i = i + 1
          if (k <= size(part)) then
-            if (i == self%parts%first(k)) then
-               i = self%parts%last(k)
+            if (i == parts%first(k)) then
+               i = parts%last(k)
                work%stack(work%top + 1:work%top + part(k)%top) = part(k)%stack
                work%top = work%top + part(k)%top
                work%n_waiting = work%n_waiting + 1
@@ -264,6 +288,10 @@ contains
          self%factor(self%first_entry(i):self%first_entry(i + 1) - 1) &
             = work%front(:int(n, int64)*n_pivots)
          call push(work%front, n, n_pivots, work%stack, work%top)
+         if (allocated(self%left)) then
+            if (fronts%is_lasting(i)) self%left(i)%triangle &
+               = work%stack(work%top - triangle_of(self, i) + 1:work%top)
+         end if
          work%n_waiting = work%n_waiting + 1
          work%waiting(work%n_waiting) = i
       end associate

@@ -6,6 +6,9 @@
 !! occur nowhere else are its pivots; the Schur complement of the others goes to its parent. Some
 !! unknowns may be retained: they are never pivots, and their Schur complement remains at the end.
 !!
+!! Elements whose matrices will change, as those around a tip that moves: what belongs to them comes
+!! after all others, so that a new elimination can begin with what these leave.
+!!
 !! Fronts that may be eliminated in parallel: subtrees without common unknowns, chosen by their work
 !! and not by the number of threads, so that sums are formed in the same order for any number.
 module algebra_fronts
@@ -16,7 +19,7 @@ module algebra_fronts
    implicit none(type, external)
    private
 
-   public :: find_fronts, find_parts, fronts_t, parts_t
+   public :: find_fronts, find_parts, fronts_t, lasting_parts, parts_t
 
    !> Fronts in the order in which they are eliminated: what the children of a front have left lies
    !! on top of a stack.
@@ -28,6 +31,9 @@ module algebra_fronts
       type(lists_t) :: rows  !< (n) numbers of each front's other unknowns, rising
       type(lists_t) :: elements  !< (n + 1) that each front takes up; those of kept unknowns alone
       integer(ik), allocatable :: n_children(:)  !< (n)
+      !> (n) what the front leaves goes to one that belongs to changing elements, or remains, and
+      !! neither itself nor what is below it does; not allocated: no element changes
+      logical, allocatable :: is_lasting(:)
    end type fronts_t
 
    !> What the elimination of one block after another leaves. Blocks by their places in the order.
@@ -52,7 +58,7 @@ module algebra_fronts
 contains
 
    !> Find the fronts.
-   subroutine find_fronts(first_unknown, elements, kept, fronts, error, given)
+   subroutine find_fronts(first_unknown, elements, kept, fronts, error, given, changes)
       integer(ik), intent(in) :: first_unknown(:)  !< (blocks + 1) where each begins
       type(lists_t), intent(in) :: elements  !< their blocks
       integer(ik), intent(in) :: kept(:)  !< unknowns that are not eliminated: whole blocks
@@ -60,32 +66,43 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> The blocks one after another, the kept ones last; where it is absent CAMD finds an order.
       integer(ik), intent(in), optional :: given(:)
+      !> (elements) matrices that will change; not with a given order
+      logical, intent(in), optional :: changes(:)
       type(elimination_t) :: elimination
       integer(ik), allocatable :: order(:), place(:)
       integer(ik), allocatable :: head(:)  ! the last block of the front that each one belongs to
       integer(ik), allocatable :: heads(:)  ! (fronts)
-      logical, allocatable :: is_kept(:)
-      integer(ik) :: b, n_blocks, n_free
+      integer(ik), allocatable :: group(:)  ! 0, perhaps 1 for changing elements, then kept blocks
+      integer(ik) :: b, e, last_group, n_blocks, n_free, n_lasting
 
       n_blocks = size(first_unknown, kind=ik) - 1
       allocate (fronts%number(first_unknown(n_blocks + 1) - 1), source=0_ik)
+      allocate (group(n_blocks), source=0_ik)
+      if (present(changes)) then
+         do e = 1, size(changes, kind=ik)
+            if (changes(e)) group(elements%item(elements%first(e):elements%last(e))) = 1
+         end do
+      end if
       fronts%number(kept) = 1
-      is_kept = [(fronts%number(first_unknown(b)) > 0, b=1, n_blocks)]
+      last_group = merge(2_ik, 1_ik, present(changes))
+      group = [(merge(last_group, group(b), fronts%number(first_unknown(b)) > 0), b=1, n_blocks)]
+      n_lasting = count(group == 0, kind=ik)
       if (present(given)) then
          order = given
       else
-         call minimum_degree(later_neighbours(elements, n_blocks), is_kept, order, error)
+         call minimum_degree(later_neighbours(elements, n_blocks), group, order, error)
          if (allocated(error)) return
       end if
       allocate (place(n_blocks))
       do b = 1, n_blocks
          place(order(b)) = b
       end do
-      n_free = n_blocks - count(is_kept, kind=ik)
+      n_free = n_blocks - count(group == last_group, kind=ik)
       call eliminate_blocks(elements, order, place, n_free, elimination)
       associate (sizes => first_unknown(order + 1) - first_unknown(order))
-         call merge_blocks(elimination, sizes, head)
-         call arrange_fronts(elimination, head, first_unknown, order, fronts, heads)
+         call merge_blocks(elimination, sizes, n_lasting, head)
+         call arrange_fronts(elimination, head, first_unknown, order, n_lasting, fronts, heads)
+         if (.not. present(changes)) deallocate (fronts%is_lasting)
          fronts%n_free = fronts%first_pivot(fronts%n + 1) - 1
          fronts%number(kept) = fronts%n_free + [(b, b=1, size(kept, kind=ik))]
          call expand_rows(elimination, heads, first_unknown, order, fronts)
@@ -248,9 +265,10 @@ contains
    end function grouped
 
    !> Unite blocks with their parents in one front where that leaves few zeros in the factors.
-   pure subroutine merge_blocks(elimination, sizes, head)
+   pure subroutine merge_blocks(elimination, sizes, n_lasting, head)
       type(elimination_t), intent(in) :: elimination
       integer(ik), intent(in) :: sizes(:)  !< unknowns of each block, in the order
+      integer(ik), intent(in) :: n_lasting  !< blocks that are not united with later ones
       integer(ik), allocatable, intent(out) :: head(:)
       integer(ik), allocatable :: n_pivots(:), n_rows(:), n_zeros(:)
       integer(ik) :: k, n_free, p, zeros
@@ -270,7 +288,7 @@ contains
       ! decide.
       do p = 1, n_free
          k = elimination%parent(p)
-         if (k == 0) cycle
+         if (k == 0 .or. (p <= n_lasting .and. k > n_lasting)) cycle
          zeros = n_pivots(p)*(n_pivots(k) + n_rows(k) - n_rows(p))
          if (.not. is_worth(n_pivots(p), n_pivots(k), n_zeros(p) + n_zeros(k) + zeros, &
                             n_rows(k))) cycle
@@ -298,9 +316,10 @@ contains
    end function is_worth
 
    !> Number fronts and unknowns such that what belongs below a front comes right before it.
-   pure subroutine arrange_fronts(elimination, head, first_unknown, order, fronts, heads)
+   pure subroutine arrange_fronts(elimination, head, first_unknown, order, n_lasting, fronts, heads)
       type(elimination_t), intent(in) :: elimination
       integer(ik), intent(in) :: head(:), first_unknown(:), order(:)
+      integer(ik), intent(in) :: n_lasting  !< blocks before those of changing elements
       type(fronts_t), intent(inout) :: fronts
       integer(ik), allocatable, intent(out) :: heads(:)  !< (fronts) the last block of each
       integer(ik), allocatable :: above(:), front_of(:), sequence(:), taker(:), waiting(:)
@@ -335,11 +354,13 @@ contains
 
       fronts%n = n
       allocate (fronts%first_pivot(n + 1), fronts%n_children(n), front_of(n_free))
+      allocate (fronts%is_lasting(n))
       at = 1
       do i = 1, n
          p = sequence(n + 1 - i)
          fronts%first_pivot(i) = at
          fronts%n_children(i) = below%length(p)
+         fronts%is_lasting(i) = p <= n_lasting .and. (above(p) == 0 .or. above(p) > n_lasting)
          do k = members%first(p), members%last(p)
             front_of(members%item(k)) = i
             b = order(members%item(k))
@@ -435,6 +456,23 @@ contains
       parts%last = pack([(i, i=1, n)], is_part)
       parts%first = first(parts%last)
    end subroutine find_parts
+
+   !> The subtrees whose roots are lasting.
+   pure type(parts_t) function lasting_parts(fronts) result(parts)
+      type(fronts_t), intent(in) :: fronts
+      integer(ik) :: first(fronts%n), i, waiting(fronts%n), n_waiting
+
+      n_waiting = 0
+      do i = 1, fronts%n
+         first(i) = i
+         n_waiting = n_waiting - fronts%n_children(i)
+         if (fronts%n_children(i) > 0) first(i) = first(waiting(n_waiting + 1))
+         n_waiting = n_waiting + 1
+         waiting(n_waiting) = i
+      end do
+      parts%last = pack([(i, i=1, fronts%n)], fronts%is_lasting)
+      parts%first = first(parts%last)
+   end function lasting_parts
 
    !> The work of each subtree, its first front and the parent of its root.
    pure subroutine sum_up_work(n_children, n_pivots, n_rows, first, parent, work)

@@ -5,16 +5,17 @@
 !! they have factors A = L S L^T, S the signs, in any order without exchange (Vanderbei 1995). The
 !! caller has to check the growth of rounding errors.
 !! On request condensed onto a few unknowns, which need not be definite.
+!! Where only some elements change, as around a tip that moves, what does not depend on them stays.
 !!
 !! Systems have no common data, so that several can be factorized at the same time; in a large one
 !! subtrees of fronts are eliminated in parallel (`algebra_elimination`), with the same bits for any
 !! number of threads.
 module algebra_multifrontal
    use, intrinsic :: iso_fortran_env, only: int64
-   use algebra_elimination, only: element_matrices_t, eliminate_fronts, factors_t, pivots_of, &
-                                  size_of, sum_up_kept, workspace_t
+   use algebra_elimination, only: element_matrices_t, eliminate_again, eliminate_fronts, &
+                                  factors_t, pivots_of, size_of, sum_up_kept, workspace_t
    use algebra_front_kernels, only: backwards, forwards
-   use algebra_fronts, only: find_fronts, find_parts
+   use algebra_fronts, only: find_fronts, find_parts, lasting_parts, parts_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
@@ -40,7 +41,7 @@ module algebra_multifrontal
 contains
 
    !> Order the unknowns and find the fronts.
-   subroutine analyse(self, first_unknown, elements, error, kept, order, is_negative)
+   subroutine analyse(self, first_unknown, elements, error, kept, order, is_negative, changes)
       class(multifrontal_t), intent(inout) :: self
       !> (blocks + 1) Unknowns that occur in the same elements follow each other and are a block.
       integer(ik), intent(in) :: first_unknown(:)
@@ -50,6 +51,8 @@ contains
       !> (blocks) one after another, the kept ones last; where it is absent an order is found
       integer(ik), intent(in), optional :: order(:)
       logical, intent(in), optional :: is_negative(:)  !< (unknowns) those with negative pivots
+      !> (elements) those whose matrices change; not with a given order
+      logical, intent(in), optional :: changes(:)
       integer(ik), parameter :: none(0) = [integer(ik) ::]
       integer(ik), allocatable :: n_pivots(:), n_rows(:)
       integer(ik) :: b, e, i, k, n, u
@@ -57,11 +60,13 @@ contains
       self%is_factorized = .false.
       self%n = first_unknown(size(first_unknown)) - 1
       if (present(kept)) then
-         call find_fronts(first_unknown, elements, kept, self%fronts, error, order)
+         call find_fronts(first_unknown, elements, kept, self%fronts, error, order, changes)
       else
-         call find_fronts(first_unknown, elements, none, self%fronts, error, order)
+         call find_fronts(first_unknown, elements, none, self%fronts, error, order, changes)
       end if
       if (allocated(error)) return
+      self%lasting = parts_t()
+      if (present(changes)) self%lasting = lasting_parts(self%fronts)
       if (allocated(self%signs)) deallocate (self%signs)
       if (present(is_negative)) then
          allocate (self%signs(self%n))
@@ -101,13 +106,19 @@ contains
    end subroutine analyse
 
    !> Factorize.
-   subroutine factorize(self, matrices, error)
+   subroutine factorize(self, matrices, error, others_are_same)
       class(multifrontal_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices
       type(error_t), allocatable, intent(out) :: error
+      !> Since the last factorization only the elements that change have changed.
+      logical, intent(in), optional :: others_are_same
       type(workspace_t) :: work
       integer(ik) :: n_kept, wrong
+      logical :: again
 
+      again = self%is_factorized
+      if (again) again = present(others_are_same) .and. allocated(self%lasting%last)
+      if (again) again = others_are_same
       self%is_factorized = .false.
       if (.not. allocated(self%first_entry)) then
          call raise_error(error, "multifrontal_t%factorize", "the matrix has not been analysed")
@@ -121,7 +132,13 @@ contains
       if (.not. allocated(self%factor)) then
          allocate (self%factor(self%first_entry(self%fronts%n + 1) - 1))
       end if
-      call eliminate_fronts(self, matrices, work, wrong)
+      if (again) then
+         call eliminate_again(self, matrices, work, wrong)
+      else
+         if (allocated(self%left)) deallocate (self%left)
+         if (allocated(self%lasting%last)) allocate (self%left(self%fronts%n))
+         call eliminate_fronts(self, matrices, work, wrong)
+      end if
       if (wrong > 0) then
          call raise_error(error, "multifrontal_t%factorize", "the matrix is singular, "// &
                           "indefinite (or not quasi-definite), or has an entry that is not "// &

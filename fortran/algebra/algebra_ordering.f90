@@ -78,21 +78,21 @@ contains
       call raise_error(error, "dissect", "METIS could not order the unknowns")
    end subroutine dissect
 
-   !> Order the nodes of a graph by approximate minimum degree, some of them after all others.
-   subroutine minimum_degree(later, is_last, order, error)
+   !> Order the nodes of a graph by approximate minimum degree, one group after another.
+   subroutine minimum_degree(later, group, order, error)
       type(lists_t), intent(in) :: later  !< of each node its neighbours with higher numbers, rising
-      logical, intent(in) :: is_last(:)  !< (n)
+      integer(ik), intent(in) :: group(:)  !< (n) numbers from 0, less than n
       integer(ik), allocatable, intent(out) :: order(:)  !< (n) the nodes one after another
       type(error_t), allocatable, intent(out) :: error
       integer(c_int32_t), parameter :: camd_ok = 0
       integer(c_int32_t) :: status
       integer(ik) :: n
 
-      n = size(is_last, kind=ik)
+      n = size(group, kind=ik)
       allocate (order(n))
       if (n == 0) return
       status = camd_order(n, later%first - 1, later%item - 1, order, c_null_ptr, c_null_ptr, &
-                          merge(1_c_int32_t, 0_c_int32_t, is_last))
+                          int(group, c_int32_t))
       order = order + 1
       if (status /= camd_ok) then
          call raise_error(error, "minimum_degree", "CAMD could not order the unknowns")

@@ -15,6 +15,7 @@ module fine_elements
       integer(ik), allocatable :: first_unknown(:)  !< (blocks + 1)
       type(lists_t) :: blocks  !< of each element
       integer(ik), allocatable :: kept(:)  !< unknowns to condense onto
+      logical, allocatable :: changes(:)  !< (elements) near tips that move; empty: none is
    contains
       procedure :: is_same_as
    end type pattern_t
@@ -31,13 +32,15 @@ module fine_elements
 contains
 
    !> The pattern of a mesh with its constraints.
-   pure type(pattern_t) function pattern_of(cell_nodes, constraints) result(pattern)
+   pure type(pattern_t) function pattern_of(cell_nodes, constraints, changes) result(pattern)
       integer(ik), intent(in) :: cell_nodes(:, :)  !< (6, n_cells)
       type(constraints_t), intent(in) :: constraints
+      logical, intent(in) :: changes(:)  !< (elements) near tips that move; empty: none is
 
       call find_blocks(constraints, pattern%first_unknown)
       pattern%blocks = list_blocks(cell_nodes, constraints, pattern%first_unknown)
       pattern%kept = constraints%kept_dofs
+      pattern%changes = changes
    end function pattern_of
 
    !> Whether two patterns are the same.
@@ -50,10 +53,12 @@ contains
       if (size(self%blocks%first) /= size(other%blocks%first)) return
       if (size(self%blocks%item) /= size(other%blocks%item)) return
       if (size(self%kept) /= size(other%kept)) return
+      if (size(self%changes) /= size(other%changes)) return
       is_same_as = all(self%first_unknown == other%first_unknown) &
                    .and. all(self%blocks%first == other%blocks%first) &
                    .and. all(self%blocks%item == other%blocks%item) &
-                   .and. all(self%kept == other%kept)
+                   .and. all(self%kept == other%kept) &
+                   .and. all(self%changes .eqv. other%changes)
    end function is_same_as
 
    !> Blocks of consecutive unknowns that move the same nodes, those in contact separate.

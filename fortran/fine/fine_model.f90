@@ -34,11 +34,17 @@ module fine_model
       type(constraints_t) :: constraints
       type(contact_problem_t) :: contact_problem
       real(rk), allocatable :: stiffness(:, :, :)  !< (12, 12, n_cells) element matrices [Pa]
+      !> (n_cells) elements that change as tips move along their segments; empty: none is known
+      logical, allocatable :: changes(:)
       logical :: ready = .false.
       type(multifrontal_t), allocatable, private :: solver
       !> The unknowns of the elements that the solver has analysed: meshes whose nodes have moved
       !! have the same.
       type(pattern_t), private :: analysed
+      !> What the solver has factorized, if some elements change: other elements that are the same
+      !! need not be eliminated again.
+      real(rk), allocatable, private :: factorized(:, :, :)  !< stiffness (12, 12, n_cells) [Pa]
+      real(rk), allocatable, private :: factorized_basis(:, :, :)  !< of the constraints
    contains
       procedure :: set_mesh
       procedure :: take_order
@@ -96,6 +102,8 @@ contains
 
       if (.not. allocated(from%analysed%first_unknown)) return
       call move_alloc(from%solver, self%solver)
+      call move_alloc(from%factorized, self%factorized)
+      call move_alloc(from%factorized_basis, self%factorized_basis)
       self%analysed = from%analysed
       deallocate (from%analysed%first_unknown)
       self%ready = .false.
@@ -149,20 +157,54 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(tied_elements_t) :: elements
       type(pattern_t) :: pattern
+      logical :: others_are_same
 
-      pattern = pattern_of(self%mesh%cell_nodes, self%constraints)
+      if (.not. allocated(self%changes)) allocate (self%changes(0))
+      pattern = pattern_of(self%mesh%cell_nodes, self%constraints, self%changes)
+      others_are_same = .false.
       if (.not. pattern%is_same_as(self%analysed)) then
          if (allocated(self%analysed%first_unknown)) deallocate (self%analysed%first_unknown)
          if (.not. allocated(self%solver)) allocate (self%solver)
-         call self%solver%analyse(pattern%first_unknown, pattern%blocks, error, kept=pattern%kept)
+         if (size(self%changes) > 0) then
+            call self%solver%analyse(pattern%first_unknown, pattern%blocks, error, &
+                                     kept=pattern%kept, changes=pattern%changes)
+         else
+            call self%solver%analyse(pattern%first_unknown, pattern%blocks, error, &
+                                     kept=pattern%kept)
+         end if
          if (allocated(error)) return
          self%analysed = pattern
+      else if (allocated(self%factorized)) then
+         others_are_same = are_same(self)
       end if
+      if (allocated(self%factorized)) deallocate (self%factorized, self%factorized_basis)
       elements%cell_nodes => self%mesh%cell_nodes
       elements%stiffness => self%stiffness
       elements%constraints => self%constraints
-      call self%solver%factorize(elements, error)
+      call self%solver%factorize(elements, error, others_are_same)
+      if (allocated(error) .or. size(self%changes) == 0) return
+      self%factorized = self%stiffness
+      self%factorized_basis = self%constraints%basis
    end subroutine factorize
+
+   !> Whether the elements that do not change are those that have been factorized, bit for bit.
+   pure logical function are_same(self)
+      type(fine_model_t), intent(in) :: self
+      real(rk) :: change
+      integer(ik) :: cell
+
+      are_same = .false.
+      do cell = 1, self%mesh%n_cells
+         if (self%changes(cell)) cycle
+         change = sum(abs(self%stiffness(:, :, cell) - self%factorized(:, :, cell)))
+         associate (nodes => self%mesh%cell_nodes(:, cell))
+            change = change + sum(abs(self%constraints%basis(:, :, nodes) &
+                                      - self%factorized_basis(:, :, nodes)))
+         end associate
+         if (.not. change <= 0.0_rk) return
+      end do
+      are_same = .true.
+   end function are_same
 
    !> Condense the matrix onto the jumps of the pairs in contact, if there are any.
    !!

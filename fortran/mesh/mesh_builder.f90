@@ -133,9 +133,11 @@ contains
    !> The cells of an old mesh, whose nodes have moved along with the ends of fractures that lie
    !! elsewhere in the network. An error says that this does not go: make a new mesh then. The old
    !! mesher stays as it is.
-   subroutine move_tips(mesher_old, network, mesher_new, mesh, error)
+   subroutine move_tips(mesher_old, network, reach, mesher_new, mesh, error)
       type(mesher_t), intent(in) :: mesher_old
       type(network_t), intent(in) :: network  !< the old one but for its ends
+      !> How far from the last piece of a fracture nodes move, over its length in the old mesh [-].
+      real(rk), intent(in) :: reach
       type(mesher_t), intent(inout) :: mesher_new  !< what it held before is released
       type(mesh_t), intent(out) :: mesh
       type(error_t), allocatable, intent(out) :: error
@@ -144,8 +146,8 @@ contains
 
       call begin_from(mesher_old, network, mesher_new, arrays, c_network, error)
       if (allocated(error)) return
-      call finish(cm_move_tips(mesher_old%handle, c_network, mesher_new%handle), "move_tips", &
-                  network, mesher_new, mesh, error)
+      call finish(cm_move_tips(mesher_old%handle, c_network, reach, mesher_new%handle), &
+                  "move_tips", network, mesher_new, mesh, error)
    end subroutine move_tips
 
    !> Release a mesh, and prepare another network to mesh in its place from an old mesh.

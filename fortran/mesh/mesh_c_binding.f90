@@ -182,12 +182,13 @@ module mesh_c_binding
          integer(c_int) :: status
       end function cm_grow
 
-      function cm_move_tips(old_mesh, network, new_mesh) result(status) &
+      function cm_move_tips(old_mesh, network, reach, new_mesh) result(status) &
          bind(C, name="cm_move_tips")
-         import :: c_int, c_ptr, cm_network_t
+         import :: c_double, c_int, c_ptr, cm_network_t
          implicit none(type, external)
          type(c_ptr), value :: old_mesh
          type(cm_network_t), intent(in) :: network
+         real(c_double), value :: reach
          type(c_ptr), intent(out) :: new_mesh
          integer(c_int) :: status
       end function cm_move_tips

@@ -9,9 +9,10 @@ module scene_sizes
 
    public :: choose_sizes, sizes_text
 
-   !> Cells along a fracture at the usual tolerance, and in any case. Errors are of first order in
-   !! their size.
-   real(rk), parameter :: usual_cells = 20.0_rk, fewest_cells = 10.0_rk, most_cells = 80.0_rk
+   !> Cells along a fracture at the usual tolerance, along all of them, and along one in any case.
+   !! Errors are of first order in their size.
+   real(rk), parameter :: usual_cells = 20.0_rk, together = 400.0_rk
+   real(rk), parameter :: fewest_cells = 10.0_rk, most_cells = 80.0_rk
    real(rk), parameter :: usual_tolerance = 0.01_rk
 
    !> Edge of a window over the length of its fracture, and the least that changes K little.
@@ -60,7 +61,8 @@ contains
 
       tolerance = scene%time%tolerance
       if (.not. tolerance > 0.0_rk) tolerance = usual_tolerance
-      cells = min(max(usual_cells*(usual_tolerance/tolerance), fewest_cells), most_cells)
+      cells = min(usual_cells, together/size(scene%fractures))*(usual_tolerance/tolerance)
+      cells = min(max(cells, fewest_cells), most_cells)
       largest = edge
       if (scene%discretization%size_boundary > 0.0_rk) largest = scene%discretization%size_boundary
       do i = 1, size(scene%fractures)

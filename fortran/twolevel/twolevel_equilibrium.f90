@@ -51,6 +51,8 @@ module twolevel_equilibrium
    !! is evaluated again in the last try only [-].
    real(rk), parameter :: lack_of_far = 0.1_rk
 
+   real(rk), parameter :: sharp = 0.15_rk  !< kinks behind which K_eq falls at once [rad]
+
    !> New segments that a tip may begin in a step without a jump. The step control aims at less than
    !! one; a step that is a little longer need not be tried again.
    integer, parameter :: segments_max = 2
@@ -494,9 +496,11 @@ contains
 
       self%tip%advance = advances(self%front_state_t, self%start, self%now%segment, &
                                   self%increments())
-      call self%now%segment%pace(self%tip%advance, dt, &
-                                 self%tip%excess(self%rules%toughness) >= -tolerance)
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! straight segments
+      ! Behind a sharp kink a path begins by a jump: its length says nothing of the next step.
+      call self%now%segment%pace(self%tip%advance, dt, &
+                                 self%tip%excess(self%rules%toughness) >= -tolerance .and. &
+                                 abs(self%tip%kink) < sharp)
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%groups%accept(self%tip%excess(self%rules%toughness), &
                                   self%tip%advance, self%increments())

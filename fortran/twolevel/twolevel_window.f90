@@ -18,6 +18,7 @@ module twolevel_window
    use fine_faces, only: face_conditions_t
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_model, only: fine_model_t
+   use growth_network, only: end_pieces
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
@@ -27,7 +28,7 @@ module twolevel_window
    use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: coarse_values_t, face_map_t, match_faces
    use twolevel_window_map, only: clear_edges, window_map_t
-   use twolevel_window_path, only: restore_arc_lengths, straighten_far, without
+   use twolevel_window_path, only: near_ends, restore_arc_lengths, straighten_far, without
    use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
@@ -40,6 +41,14 @@ module twolevel_window
    !> Error of K of a tip without focus, over the difference of two methods [-].
    real(rk), parameter :: without_focus = 2.0_rk
 
+   !> How far from the last segments of paths nodes move with the tips, over the length of the
+   !! segment, and largest share of the elements that change for others not to be eliminated again
+   !! [-].
+   real(rk), parameter :: reach = 6.0_rk, most_change = 0.4_rk
+
+   !> Longest path segment, over the increment [-].
+   real(rk), parameter :: longer = 1.001_rk
+
    !> Network and tips for which the mesh of a window was made, or to which it has been moved.
    type :: made_for_t
       type(network_t) :: network  !< network for which the mesh was made
@@ -47,6 +56,7 @@ module twolevel_window
       real(rk), allocatable :: place(:, :)  !< (2, tips) positions of the tips [m]
       logical, allocatable :: is_free(:)  !< (tips) free crack ends
       logical, allocatable :: has_focus(:)  !< (tips) with small elements around them
+      logical, allocatable :: changes(:)  !< (cells) as tips move; empty: they are too many
       logical :: is_projected = .false.  !< the position in the coarse mesh is known
    end type made_for_t
 
@@ -176,11 +186,32 @@ contains
       call straighten_far(network, spec, self%is_body, far_straight, self%made%kept)
       call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
       if (allocated(error)) return
+      call find_changes(self, scene, far_straight, tips)
       self%has_moved = .false.
       self%follows_other = .false.
       call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
       call self%set_up(scene, tips, error)
    end subroutine build
+
+   !> Find the elements that change as tips in focus move along path segments.
+   subroutine find_changes(self, scene, network, tips)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network  !< in the mesh
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
+      type(window_tip_t), allocatable :: moving(:)
+      real(rk) :: piece(2, size(network%first) - 1)
+      integer(ik) :: i
+
+      piece = end_pieces(network)
+      moving = pack(tips(self%serves), tips(self%serves)%has_focus .or. .not. self%is_body)
+      moving = pack(moving, [(piece(moving(i)%end, moving(i)%fracture) <= longer &
+                              *scene%increment_of(moving(i)%fracture), i=1, size(moving))])
+      self%made%changes = near_ends(self%mesh, network, moving%fracture, moving%end, reach)
+      if (count(self%made%changes) <= most_change*self%mesh%n_cells) return
+      deallocate (self%made%changes)
+      allocate (self%made%changes(0))
+   end subroutine find_changes
 
    !> Move the nodes of the original mesh with tips that have advanced along their last segments.
    !! The window stays at its position. Where this fails, the window has to be built again.
@@ -201,7 +232,7 @@ contains
       if (any(network%first /= self%made%network%first)) return
       far_straight = without(network, self%made%kept)
       self%has_moved = .true.
-      call move_tips(as_made, far_straight, self%mesher, self%mesh, refusal)
+      call move_tips(as_made, far_straight, reach, self%mesher, self%mesh, refusal)
       if (allocated(refusal)) return
       call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
       call self%set_up(scene, tips, error)
@@ -218,6 +249,7 @@ contains
 
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
+      self%model%changes = self%made%changes
       associate (fracture => self%mesh%fracture, tip => tips(self%serves))
          self%at = [(findloc(fracture%tip_fracture == tip(i)%fracture .and. &
                              fracture%tip_end == tip(i)%end, .true., dim=1), i=1, size(tip))]

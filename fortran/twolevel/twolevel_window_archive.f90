@@ -68,6 +68,12 @@ contains
          call archive%list("place", made%place, "2, tips")
          call archive%list("is_free", made%is_free, "tips")
          call archive%list("has_focus", made%has_focus, "tips")
+         call archive%list("changes", made%changes, "changes ?")
+         if (archive%is_loading .and. allocated(made%changes)) then
+            if (all(size(made%changes) /= [0_ik, self%mesh%n_cells])) then
+               call archive%set_fault("changes")
+            end if
+         end if
          call archive%item("is_projected", made%is_projected)
       end associate
    end subroutine visit_made

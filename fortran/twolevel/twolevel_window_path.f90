@@ -8,11 +8,11 @@ module twolevel_window_path
    use base_kinds, only: ik, rk
    use base_plane, only: crosses, norm2, point_distance
    use mesh_builder, only: mesh_spec_t
-   use mesh_types, only: fracture_mesh_t, network_t
+   use mesh_types, only: fracture_mesh_t, mesh_t, network_t
    implicit none(type, external)
    private
 
-   public :: restore_arc_lengths, straighten_far, without
+   public :: near_ends, restore_arc_lengths, straighten_far, without
 
    !> Largest distance of a removed vertex from the straight line, over the size of the elements
    !! there [-].
@@ -42,6 +42,31 @@ contains
       kept = pack([(v, v=1, size(keeps, kind=ik))], keeps)
       simple = without(network, kept)
    end subroutine straighten_far
+
+   !> Cells with a corner so near to the last segment of a fracture's end.
+   pure function near_ends(mesh, network, fracture, end, reach) result(is_near)
+      type(mesh_t), intent(in) :: mesh
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: fracture(:), end(:)  !< the ends
+      real(rk), intent(in) :: reach  !< over the length of the segment [-]
+      logical :: is_near(mesh%n_cells)
+      logical :: node_is_near(mesh%n_nodes)
+      real(rk) :: piece(2, 2)
+      integer(ik) :: c, i, last, v
+
+      node_is_near = .false.
+      do i = 1, size(fracture, kind=ik)
+         last = network%first(fracture(i))
+         if (end(i) == 2) last = network%first(fracture(i) + 1) - 2
+         piece = network%xy(:, last:last + 1)
+         do v = 1, mesh%n_nodes
+            if (node_is_near(v)) cycle
+            node_is_near(v) = point_distance(mesh%xy(:, v), piece) &
+                              <= reach*norm2(piece(:, 2) - piece(:, 1))
+         end do
+      end do
+      is_near = [(any(node_is_near(mesh%cell_nodes(:, c))), c=1, mesh%n_cells)]
+   end function near_ends
 
    !> Network with a selection of its vertices.
    pure function without(network, kept) result(simple)

@@ -180,11 +180,13 @@ int cm_grow(const cm_mesh* old_mesh, const cm_network* network,
 /* The cells of `old_mesh`, whose nodes have moved along with its tips: `network` is the old one in
    which ends of fractures lie elsewhere. The piece from the vertex before each of them is scaled
    and turned, the cells around the tip with it, and so is the rosette; fractures and the boundary
-   stay, and what lies between follows. Fails where the network differs otherwise, a piece would
+   stay, and what lies between follows as far as `reach` times the length of the piece in `old_mesh`
+   from it. Fails where the network differs otherwise, a piece would
    become more than three times longer or shorter or turn by more than 17 degrees, or cells would
    get angles below 17 degrees and below those that they have: make a new mesh then. Guides and
    fixed points inside the body are not followed. */
-int cm_move_tips(const cm_mesh* old_mesh, const cm_network* network, cm_mesh** new_mesh);
+int cm_move_tips(const cm_mesh* old_mesh, const cm_network* network, double reach,
+                 cm_mesh** new_mesh);
 
 int cm_sizes(const cm_mesh* mesh, cm_counts* counts);
 int cm_copy(const cm_mesh* mesh, const cm_arrays* arrays);

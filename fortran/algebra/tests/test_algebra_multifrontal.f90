@@ -23,6 +23,8 @@ program test_algebra_multifrontal
    call agrees_with_dense(150_ik, 300_ik, 40_ik, every=3_ik)
    call agrees_with_dense(150_ik, 300_ik, 40_ik, every=3_ik, size_of_negative=1.0e-2_rk)
    call refuses_wrong_signs()
+   call eliminates_again(40_ik, 60_ik, 0_ik)
+   call eliminates_again(150_ik, 300_ik, 20_ik)
    call solves_a_grid(2_ik)
    call solves_a_grid(60_ik)
    call solves_a_grid(110_ik)  ! large enough to be eliminated in parts
@@ -229,6 +231,54 @@ contains
          matrices%first = [matrices%first, size(matrices%entry, kind=ik) + 1_ik]
       end do
    end subroutine random_elements
+
+   !> Where only elements change that are said to, elimination again gives what a whole elimination
+   !! gives, bit for bit; where others change too, it is not asked for.
+   subroutine eliminates_again(n_blocks, n_elements, n_kept)
+      integer(ik), intent(in) :: n_blocks, n_elements, n_kept
+      type(multifrontal_t) :: solver, whole
+      type(error_t), allocatable :: error
+      type(matrices_t) :: matrices
+      real(rk), allocatable :: s(:, :), s_whole(:, :), x(:), x_whole(:)
+      logical, allocatable :: changes(:)
+      integer(ik), allocatable :: kept(:)
+      integer(ik) :: b, e, i, n, turn
+
+      call random_elements(n_blocks, n_elements, matrices)
+      n = matrices%first_unknown(n_blocks + 1) - 1
+      kept = unknowns_of(matrices, [(n_blocks - 3*b, b=0, n_kept - 1)])
+      changes = [(modulo(e, 20_ik) == 3, e=1, size(matrices%first, kind=ik) - 1)]
+      call solver%analyse(matrices%first_unknown, matrices%elements, error, kept, changes=changes)
+      call checks%no_error(error, "analyse elements that change")
+      call solver%factorize(matrices, error)
+      call whole%analyse(matrices%first_unknown, matrices%elements, error, kept, changes=changes)
+      do turn = 1, 3
+         do e = 1, size(changes, kind=ik)
+            if (.not. (changes(e) .or. turn == 3)) cycle
+            associate (own => matrices%entry(matrices%first(e):matrices%first(e + 1) - 1))
+               own = 1.25_rk*own
+            end associate
+         end do
+         call solver%factorize(matrices, error, others_are_same=turn < 3)
+         call checks%no_error(error, "factorize again")
+         call whole%factorize(matrices, error)
+         x = [(cos(1.0_rk*i), i=1, n)]
+         x_whole = x
+         if (n_kept == 0) then
+            call solver%solve(x, error)
+            call whole%solve(x_whole, error)
+         else
+            call solver%get_schur(s)
+            call whole%get_schur(s_whole)
+            call checks%is_close(maxval(abs(s - s_whole)), 0.0_rk, 0.0_rk, "the same complement")
+            call solver%condense(x, s(:, 1), error)
+            call solver%expand(s(:, 1), x, error)
+            call whole%condense(x_whole, s(:, 1), error)
+            call whole%expand(s(:, 1), x_whole, error)
+         end if
+         call checks%is_close(maxval(abs(x - x_whole)), 0.0_rk, 0.0_rk, "the same solution")
+      end do
+   end subroutine eliminates_again
 
    !> Springs to both neighbours in a square grid of pairs of unknowns, and to the ground: where all
    !! forces are those of the springs to the ground, all unknowns are 1. Its fronts are large.

@@ -95,6 +95,7 @@ contains
    !> Cells and increments follow from the length of each fracture and the tolerance.
    subroutine check_sizes()
       type(scene_t) :: scene
+      integer :: i
 
       scene = growing([20.0_rk])
       call resolve_defaults(scene)
@@ -121,6 +122,9 @@ contains
       scene%time%tolerance = 0.5_rk
       call resolve_defaults(scene)
       call checks%is_close(scene%discretization%size_fracture, 2.0_rk, 1.0e-15_rk, "10 at least")
+      scene = growing([(20.0_rk, i=1, 25)])
+      call resolve_defaults(scene)
+      call checks%is_close(scene%discretization%size_fracture, 1.25_rk, 1.0e-15_rk, "400 in all")
       scene = growing([20.0_rk, 4.0_rk])
       scene%discretization%size_fracture = 0.8_rk
       call resolve_defaults(scene)
