@@ -69,6 +69,7 @@ contains
          call archive%list("is_free", made%is_free, "tips")
          call archive%list("has_focus", made%has_focus, "tips")
          call archive%list("changes", made%changes, "changes ?")
+         call archive%set_extent("changes", -1_ik)
          if (archive%is_loading .and. allocated(made%changes)) then
             if (all(size(made%changes) /= [0_ik, self%mesh%n_cells])) then
                call archive%set_fault("changes")
