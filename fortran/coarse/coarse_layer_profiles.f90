@@ -32,12 +32,13 @@ module coarse_layer_profiles
 
 contains
 
-   !> The pressure at a point that lies before a face with a layer, not farther from it than the
-   !! height of its cell; elsewhere it is left as it is. Beyond the last node of the chain it is an
+   !> The pressure at a point that lies before a face with one of some layers, not farther from it
+   !! than the height of its cell; elsewhere it is left as it is. Beyond the last node of the chain it is an
    !! exponential curve, with the slope of the chain there, to the pressure of the farthest node of
    !! the point's cell: exact where the pressure is linear.
-   pure subroutine find_pressure(layers, mesh, unknowns, inner, xy, cell, at_nodes, pressure)
+   pure subroutine find_pressure(layers, among, mesh, unknowns, inner, xy, cell, at_nodes, pressure)
       type(layers_t), intent(in) :: layers
+      integer(ik), intent(in) :: among(:)  !< numbers of these layers
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
       real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
@@ -46,10 +47,11 @@ contains
       real(rk), intent(in) :: at_nodes(3)  !< pressures at the nodes of this cell [Pa]
       real(rk), intent(inout) :: pressure  !< [Pa]
       real(rk) :: along(2), at_face, distance(3), height, nearest, normal(2), offset(2), start(2)
-      integer(ik) :: far, k, l
+      integer(ik) :: far, i, k, l
 
       nearest = huge(1.0_rk)
-      do l = 1, layers%n
+      do i = 1, size(among, kind=ik)
+         l = among(i)
          associate (ends => mesh%xy(:, mesh%face_nodes(:, mesh%layer_face(l))), &
                     chain => layers%chain(l), n => layers%chain(l)%n)
             start = ends(:, 1)

@@ -89,6 +89,7 @@ contains
       call archive%item("body_force", loads%body_force)
       call archive%list("initial_stress", loads%initial_stress, "3, fine_vertices")
       call archive%list("pore_pressure", loads%pore_pressure, "fine_vertices")
+      call archive%list("heat_pressure", loads%heat_pressure, "3, fine_cells ?")
       call archive%list("traction", loads%traction, "2, fine_faces")
       call archive%list("fluid_pressure", loads%fluid_pressure, "fine_faces")
       call archive%list("jump", loads%jump, "2, 3, fine_faces ?")

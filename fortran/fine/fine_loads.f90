@@ -21,6 +21,9 @@ module fine_loads
       real(rk) :: body_force(2) = 0.0_rk  !< uniform [N/m3]
       real(rk), allocatable :: initial_stress(:, :)  !< (xx yy xy, n_vertices) in situ [Pa]
       real(rk), allocatable :: pore_pressure(:)  !< (n_vertices) in the matrix [Pa]
+      !> (corners, n_cells) pressures with the stress of the temperatures, linear in each element;
+      !! unallocated: no thermal stress [Pa]
+      real(rk), allocatable :: heat_pressure(:, :)
       real(rk), allocatable :: traction(:, :)  !< (2, fracture cells) contact f_tau, f_n [Pa]
       real(rk), allocatable :: fluid_pressure(:)  !< (fracture cells) [Pa]
       real(rk), allocatable :: jump(:, :, :)  !< (tau n, start end mid, fracture cell) [m]
@@ -110,7 +113,8 @@ contains
 
       do cell = 1, fine%n_cells
          associate (nodes => fine%cell_nodes(:, cell))
-            if (.not. (any(abs(loads%pore_pressure(nodes(1:3))) > 0.0_rk) &
+            if (.not. (allocated(loads%heat_pressure) &
+                       .or. any(abs(loads%pore_pressure(nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%initial_stress(:, nodes(1:3))) > 0.0_rk) &
                        .or. any(abs(loads%body_force) > 0.0_rk))) cycle
             share = volume_forces(fine, cell, rocks%elasticity(rocks%index_of(cell))%biot, loads)
@@ -136,6 +140,8 @@ contains
       corner = loads%initial_stress(:, fine%cell_nodes(1:3, cell))
       do k = 1, 3
          corner(1:2, k) = corner(1:2, k) - biot*loads%pore_pressure(fine%cell_nodes(k, cell))
+         if (allocated(loads%heat_pressure)) corner(1:2, k) = corner(1:2, k) &
+         & - biot*loads%heat_pressure(k, cell)
       end do
       if (fine%tip_corner(cell) > 0) then
          force = forces_at_tip(fine, cell, corner, loads%body_force)

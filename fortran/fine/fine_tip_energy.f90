@@ -74,7 +74,7 @@ contains
       call element_rule(model%mesh, frame, cell, n_points, points, weights)
       ! All in the tip's axes.
       do k = 1, 3
-         corner(:, :, k) = initial_stress(loads, frame, nodes(k)) - reference_stress
+         corner(:, :, k) = initial_stress(loads, frame, nodes(k), k, cell) - reference_stress
       end do
       q_nodes = q(nodes)
       xy = model%mesh%xy(:, nodes(:3))
@@ -101,16 +101,19 @@ contains
    end function cell_share
 
    !> In-situ stress less biot*p at a vertex, in the tip's axes [Pa].
-   pure function initial_stress(loads, frame, vertex) result(stress)
+   pure function initial_stress(loads, frame, vertex, k, cell) result(stress)
       type(fine_loads_t), intent(in) :: loads
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: vertex
+      integer(ik), intent(in) :: k, cell  !< it is corner k of this cell
       real(rk) :: stress(2, 2)
       integer(ik) :: i
 
       stress = in_situ_stress(loads, frame, vertex)
       do i = 1, 2
          stress(i, i) = stress(i, i) - frame%rock%biot*loads%pore_pressure(vertex)
+         if (allocated(loads%heat_pressure)) stress(i, i) = stress(i, i) &
+         & - frame%rock%biot*loads%heat_pressure(k, cell)
       end do
    end function initial_stress
 

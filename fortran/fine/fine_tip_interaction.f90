@@ -45,6 +45,9 @@ module fine_tip_interaction
       real(rk), allocatable :: by_displacement(:, :, :, :)
       !> (xx yy xy, modes, domains, nodes) of the initial stress there, zero at midside nodes,
       real(rk), allocatable :: by_stress(:, :, :, :)
+      integer(ik), allocatable :: cell(:)  !< elements in the largest domain
+      !> (corners, modes, domains, elements) of a pressure that is linear in each element,
+      real(rk), allocatable :: by_heat(:, :, :, :)
       real(rk), allocatable :: by_body_force(:, :, :)  !< (2, modes, domains) of the body force,
       integer(ik), allocatable :: face(:)  !< fracture cells in the largest domain
       !> (2, modes, domains, faces) and of their tractions, in the tip's axes.
@@ -78,15 +81,17 @@ contains
       type(interactions_t) :: self
       real(rk) :: q(size(radii), model%mesh%n_nodes)
       integer(ik) :: place(model%mesh%n_nodes)  ! among the nodes of the domain
-      integer(ik) :: cell, i, r
+      integer(ik) :: i, r
 
       do r = 1, size(radii, kind=ik)
          q(r, :) = domain_weight(model%mesh, frame, radii(r), plateau)
       end do
       associate (mesh => model%mesh)
+         self%cell = pack([(i, i=1, mesh%n_cells)], &
+                          [(any(q(1, mesh%cell_nodes(:, i)) > 0.0_rk), i=1, mesh%n_cells)])
          place = 0
-         do cell = 1, mesh%n_cells
-            if (any(q(1, mesh%cell_nodes(:, cell)) > 0.0_rk)) place(mesh%cell_nodes(:, cell)) = 1
+         do i = 1, size(self%cell, kind=ik)
+            place(mesh%cell_nodes(:, self%cell(i))) = 1
          end do
          self%frame = frame
          self%node = pack([(i, i=1, mesh%n_nodes)], place > 0)
@@ -97,13 +102,12 @@ contains
          associate (n => size(self%node), n_domains => size(radii))
             allocate (self%by_displacement(2, 2, n_domains, n), source=0.0_rk)
             allocate (self%by_stress(3, 2, n_domains, n), source=0.0_rk)
+            allocate (self%by_heat(3, 2, n_domains, size(self%cell)))
             allocate (self%by_body_force(2, 2, n_domains), source=0.0_rk)
             allocate (self%by_traction(2, 2, n_domains, size(self%face)), source=0.0_rk)
          end associate
-         do cell = 1, mesh%n_cells
-            if (any(q(1, mesh%cell_nodes(:, cell)) > 0.0_rk)) then
-               call add_cell(self, model, cell, q, place)
-            end if
+         do i = 1, size(self%cell, kind=ik)
+            call add_cell(self, model, i, q, place)
          end do
       end associate
       self%joint = pack([(i, i=1, size(self%face, kind=ik))], &
@@ -121,10 +125,10 @@ contains
    end function interaction_integrals
 
    !> One element's share.
-   pure subroutine add_cell(self, model, cell, q, place)
+   pure subroutine add_cell(self, model, i, q, place)
       type(interactions_t), intent(inout) :: self
       type(fine_model_t), intent(in) :: model
-      integer(ik), intent(in) :: cell
+      integer(ik), intent(in) :: i  !< among the elements of the domain
       real(rk), intent(in) :: q(:, :)  !< (domains, n_nodes) [-]
       integer(ik), intent(in) :: place(:)  !< (n_nodes) among those of the domain
       real(rk) :: points(3, tip_rule_size), weights(tip_rule_size)
@@ -139,7 +143,7 @@ contains
       type(auxiliary_field_t) :: field
       integer(ik) :: c, mode, n_points, nodes(6), point, r
 
-      associate (frame => self%frame)
+      associate (frame => self%frame, cell => self%cell(i))
          nodes = model%mesh%cell_nodes(:, cell)
          xy_nodes = model%mesh%xy(:, nodes)
          q_nodes = transpose(q(:, nodes))
@@ -178,6 +182,8 @@ contains
                end do
             end do
          end do
+         self%by_heat(:, :, :, i) = -frame%rock%biot &
+                                    *(of_corners(1, 1, :, :, :) + of_corners(2, 2, :, :, :))
          call turn_back(self, place(nodes), of_nodes, of_corners, of_body)
       end associate
    end subroutine add_cell
@@ -320,6 +326,14 @@ contains
                end do
             end do
          end do
+         if (allocated(loads%heat_pressure)) then
+            do i = 1, size(self%cell, kind=ik)
+               do r = 1, size(k, 2, kind=ik)
+                  k(:, r) = k(:, r) + matmul(loads%heat_pressure(:, self%cell(i)), &
+                                             self%by_heat(:, :, r, i))
+               end do
+            end do
+         end if
          reference = in_situ_stress(loads, frame, frame%node)
          do i = 1, size(self%face, kind=ik)
             traction = matmul(frame%axes, &

@@ -1,7 +1,8 @@
-!> Temperatures at points, for meshes finer than that of the coarse level: with the profiles in the
-!! layers.
+!> Temperatures within triangles, with the profiles in the layers.
 module heat_field
    use base_kinds, only: ik, rk
+   use base_lists, only: inverted, lists_t
+   use base_plane, only: barycentric
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_layer_profiles, only: find_pressure
    use coarse_layout, only: at_component, layer_block
@@ -10,11 +11,18 @@ module heat_field
    implicit none(type, external)
    private
 
-   public :: add_profile, heat_field_t, new_field
+   public :: heat_field_t, moments, new_field
 
    type :: heat_field_t
       real(rk), allocatable :: nodal(:)  !< (nodes) without the profiles [K]
-      logical, allocatable :: is_near(:)  !< (cells) at a node of a face with a layer
+      type(lists_t) :: near  !< layers at each node
+      real(rk) :: largest = 0.0_rk  !< of all temperatures, without sign [K]
+      !> (cells) mean temperature less that of nodal values and profiles, which are less accurate
+      !! where a front passes from the layers to the cells [K]
+      real(rk), allocatable :: lack(:)
+      !> (3, cells) means with the area coordinates of the corners as weights, less a third of the
+      !! mean, times 3 [K]
+      real(rk), allocatable :: uneven(:, :)
       ! As coarse_layers has pressures:
       real(rk), allocatable :: unknowns(:, :)  !< (3, blocks) [K]
       real(rk), allocatable :: inner(:, :)  !< (n_nodes - 1, layers) [K]
@@ -23,11 +31,12 @@ module heat_field
 contains
 
    !> The field of temperatures above those of the sides' datum.
-   function new_field(heat, temperature) result(field)
+   function new_field(heat, temperature, means) result(field)
       class(heat_model_t), intent(in) :: heat
       real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
+      real(rk), intent(in) :: means(:)  !< (cells) [K]
       type(heat_field_t) :: field
-      logical :: is_near(heat%mesh%n_nodes)
+      real(rk) :: moment(3)
       integer(ik) :: c, k, l
 
       associate (mesh => heat%mesh, layers => heat%layers)
@@ -35,7 +44,6 @@ contains
          field%unknowns = reshape(merge(temperature(max(heat%of_scalar, 1_ik)), 0.0_rk, &
                                         heat%of_scalar > 0), [3, size(heat%of_scalar)/3])
          allocate (field%inner(max(layers%n_nodes - 1, 0_ik), layers%n), source=0.0_rk)
-         is_near = .false.
          do l = 1, layers%n
             k = heat%first_node(l)
             associate (n => layers%chain(l)%n)
@@ -43,9 +51,16 @@ contains
                ! Half the difference between its ends is no unknown of heat.
                field%unknowns(2, layer_block(mesh, l)) = 0.0_rk
             end associate
-            is_near(mesh%face_nodes(:, mesh%layer_face(l))) = .true.
          end do
-         field%is_near = [(any(is_near(mesh%cell_nodes(:, c))), c=1, mesh%n_cells)]
+         field%near = inverted(mesh%face_nodes(:, mesh%layer_face(:layers%n)), mesh%n_nodes)
+         field%largest = max(maxval(abs(temperature)), maxval(abs(layers%given)))
+         allocate (field%lack(mesh%n_cells), source=0.0_rk)
+         allocate (field%uneven(3, mesh%n_cells))
+         do c = 1, mesh%n_cells
+            moment = moments(heat, field, mesh%xy(:, mesh%cell_nodes(:, c)), c)
+            field%lack(c) = means(c) - sum(moment)
+            field%uneven(:, c) = 3.0_rk*moment - sum(moment)
+         end do
       end associate
    end function new_field
 
@@ -81,16 +96,76 @@ contains
       nodal = nodal/number
    end function nodal_values
 
-   !> Replace the temperature at a point by that of the profile of a layer before which it lies.
-   pure subroutine add_profile(heat, field, xy, cell, temperature)
-      class(heat_model_t), intent(in) :: heat
+   !> Means of the temperature in a triangle within a cell, each weighted with the area coordinate of
+   !! one corner: the temperature without profiles is linear, that of the profiles is integrated over
+   !! parts, quadratic in each, which are divided where it is not.
+   function moments(heat, field, xy, cell) result(moment)
+      type(heat_model_t), intent(in) :: heat
       type(heat_field_t), intent(in) :: field
-      real(rk), intent(in) :: xy(2)  !< [m]
-      integer(ik), intent(in) :: cell  !< of the coarse mesh
-      real(rk), intent(inout) :: temperature  !< [K]
+      real(rk), intent(in) :: xy(2, 3)  !< corners [m]
+      integer(ik), intent(in) :: cell
+      real(rk) :: moment(3)  !< [K]
+      integer, parameter :: least = 1, most = 7  ! times a triangle is divided
+      real(rk), parameter :: tolerance = 1.0e-3_rk  ! of the integral of the largest temperature
+      real(rk), parameter :: whole(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3])
+      real(rk) :: plain(3)  ! without profiles
+      integer(ik), allocatable :: among(:)  ! layers
+      integer(ik) :: k
 
-      call find_pressure(heat%layers, heat%mesh, field%unknowns, field%inner, xy, cell, &
-                         field%nodal(heat%mesh%cell_nodes(:, cell)), temperature)
-   end subroutine add_profile
+      associate (nodes => heat%mesh%cell_nodes(:, cell))
+         plain = [(dot_product(field%nodal(nodes), barycentric(heat%mesh%xy(:, nodes), xy(:, k))), &
+                   k=1, 3)]
+         among = [(field%near%of(nodes(k)), k=1, 3)]
+      end associate
+      moment = (sum(plain) + plain)/12.0_rk + field%lack(cell)/3.0_rk
+      if (size(among) > 0) call add_part(whole, [(beyond(whole(:, k)), k=1, 3)], 0)
+
+   contains
+
+      recursive subroutine add_part(corner, value, times)
+         real(rk), intent(in) :: corner(3, 3)  !< area coordinates of the corners, in columns
+         real(rk), intent(in) :: value(3)  !< there [K]
+         integer, intent(in) :: times
+         real(rk) :: centre(3), middle(3, 3), of_centre, of_middle(3)
+         integer(ik) :: a
+
+         centre = sum(corner, dim=2)/3.0_rk
+         of_centre = beyond(centre)
+         associate (area => 0.25_rk**times)
+            if (times >= least .and. &
+                (times == most .or. area*abs(of_centre - sum(value)/3.0_rk) &
+                 <= tolerance*field%largest)) then
+               moment = moment + area*(0.75_rk*of_centre*centre + matmul(corner, value)/12.0_rk)
+               return
+            end if
+         end associate
+         middle = 0.5_rk*(corner + cshift(corner, 1, dim=2))  ! after each corner
+         of_middle = [(beyond(middle(:, a)), a=1, 3)]
+         call add_part(middle, of_middle, times + 1)
+         do a = 1, 3
+            associate (before => modulo(a - 2, 3_ik) + 1)
+               call add_part(reshape([corner(:, a), middle(:, a), middle(:, before)], [3, 3]), &
+                             [value(a), of_middle(a), of_middle(before)], times + 1)
+            end associate
+         end do
+      end subroutine add_part
+
+      !> What the profiles add at a point, on the edge of the triangle just within it [K].
+      real(rk) function beyond(share)
+         real(rk), intent(in) :: share(3)  !< area coordinates [-]
+         real(rk), parameter :: inwards = 1.0e-6_rk
+         real(rk) :: here, there
+
+         associate (at => share + inwards*(1.0_rk/3.0_rk - share))
+            here = dot_product(plain, at)
+            there = here
+            call find_pressure(heat%layers, among, heat%mesh, field%unknowns, field%inner, &
+                               matmul(xy, at), cell, field%nodal(heat%mesh%cell_nodes(:, cell)), &
+                               there)
+            beyond = there - here
+         end associate
+      end function beyond
+
+   end function moments
 
 end module heat_field

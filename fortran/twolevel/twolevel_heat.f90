@@ -108,7 +108,7 @@ contains
          if (allocated(error)) return
          rise%temperature = rise%temperature - heat%initial
          rock%temperature = heat%cell_means(rise)
-         problem%heat_field = new_field(heat, rise%temperature)
+         problem%heat_field = new_field(heat, rise%temperature, rock%temperature)
       end associate
    end subroutine predict_heat
 

@@ -150,8 +150,9 @@ contains
             row%displacement(:, i) = value(:2)
             row%pressure(i) = value(3)
             if (allocated(state%layer)) then
-               call find_pressure(model%layers, mesh, state%unknowns, state%layer, xy(:, i), &
-                                  cells(i), at_nodes(3, :), row%pressure(i))
+               call find_pressure(model%layers, [(k, k=1, model%layers%n)], mesh, &
+                                  state%unknowns, state%layer, xy(:, i), cells(i), &
+                                  at_nodes(3, :), row%pressure(i))
             end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             call find_local_errors(problem, state, cells(i), sum(at_nodes, dim=2)/3.0_rk, &

@@ -415,7 +415,6 @@ contains
          self%loads%pore_pressure = scene%initial%pressure
          if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
       end if
-      call self%map%add_heat(self%loads%pore_pressure)
       if (.not. allocated(self%served)) call self%choose_tips(self%at > 0)
       if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
          call remember_contact(self, state, history)
@@ -500,7 +499,6 @@ contains
       if (present(pressure)) then
          loads%pore_pressure(:self%model%mesh%n_vertices) = &
             pressure(self%map%coarse_cell(:self%model%mesh%n_vertices))
-         call self%map%add_heat(loads%pore_pressure)
       end if
       contact = history%contact
       call self%model%solve(loads, displacement, error, contact)

@@ -28,12 +28,9 @@ module twolevel_window_map
       !> (n_nodes) coarse cell that contains the node; 0 at other nodes
       integer(ik), allocatable :: coarse_cell(:)
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) weights of the nodes of the coarse cell
-      !> (vertices) of twolevel_window_heat; unallocated: no thermal stress [Pa]
-      real(rk), allocatable :: heat_pressure(:)
    contains
       procedure :: find
       procedure :: interpolate
-      procedure :: add_heat
       procedure :: curved_edge
    end type window_map_t
 
@@ -194,14 +191,6 @@ contains
          end associate
       end do
    end subroutine interpolate
-
-   !> Add the pressures that have the stress of the temperatures.
-   pure subroutine add_heat(self, pressure)
-      class(window_map_t), intent(in) :: self
-      real(rk), intent(inout) :: pressure(:)  !< (vertices) [Pa]
-
-      if (allocated(self%heat_pressure)) pressure = pressure + self%heat_pressure
-   end subroutine add_heat
 
    !> Displacements of the window's edge, quadratic in each coarse cell: linear interpolation, plus
    !! half of the terms with the gradients at the nodes. Zero at other nodes.

@@ -263,7 +263,7 @@ contains
             if (allocated(error)) return
          end if
          call window%choose_tips(window%at > 0 .and. front%tip(window%serves)%is_loaded())
-         call warm_window(problem, window%model%mesh, window%map)
+         call warm_window(problem, window%model%mesh, window%map, window%loads)
          call window%find_intensities(scene, problem%mesh, problem%values, state, seen, &
                                       known%history(w), error)
          if (allocated(error)) return
