@@ -33,49 +33,88 @@ module coarse_layer_profiles
 contains
 
    !> The pressure at a point that lies before a face with one of some layers, not farther from it
-   !! than the height of its cell; elsewhere it is left as it is. Beyond the last node of the chain it is an
-   !! exponential curve, with the slope of the chain there, to the pressure of the farthest node of
-   !! the point's cell: exact where the pressure is linear.
-   pure subroutine find_pressure(layers, among, mesh, unknowns, inner, xy, cell, at_nodes, pressure)
+   !! than the height of its cell; elsewhere it is left as it is. Beyond the last node of the chain
+   !! it is an exponential curve, with the slope of the chain there, to the pressure of the farthest
+   !! node of the point's cell: exact where the pressure is linear.
+   !!
+   !! At tips the profile of the last face goes round the tip. Near a tip the pressure differs from
+   !! that of the faces by A xi, xi**2 = (r + x)/2, with the distance r from the tip and x ahead of
+   !! it. Its mean slope before the last face, of length L, is A/sqrt(L): the depth in the profile
+   !! is sqrt(L) xi.
+   pure subroutine find_pressure(layers, among, mesh, tips, unknowns, inner, xy, cell, at_nodes, &
+                                 pressure)
       type(layers_t), intent(in) :: layers
       integer(ik), intent(in) :: among(:)  !< numbers of these layers
       type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: tips(:)  !< nodes at these tips
       real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
       real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
       real(rk), intent(in) :: xy(2)  !< [m]
       integer(ik), intent(in) :: cell  !< in which the point lies, or next to it
       real(rk), intent(in) :: at_nodes(3)  !< pressures at the nodes of this cell [Pa]
       real(rk), intent(inout) :: pressure  !< [Pa]
-      real(rk) :: along(2), at_face, distance(3), height, nearest, normal(2), offset(2), start(2)
-      integer(ik) :: far, i, k, l
+      real(rk), parameter :: small = 0.01_rk
+      real(rk) :: ahead(2), at_face, corners(2, 3), depth, depths(3), height, length, nearest
+      real(rk) :: normal(2), start(2)
+      integer(ik) :: end, far, i, k, l
+      logical :: at_tip
 
       nearest = huge(1.0_rk)
+      corners = mesh%xy(:, mesh%cell_nodes(:, cell))
       do i = 1, size(among, kind=ik)
          l = among(i)
-         associate (ends => mesh%xy(:, mesh%face_nodes(:, mesh%layer_face(l))), &
-                    chain => layers%chain(l), n => layers%chain(l)%n)
-            start = ends(:, 1)
-            along = (ends(:, 2) - start)/norm2(ends(:, 2) - start)
-            normal = [-along(2), along(1)]
-            offset = cell_centre(mesh, layers%cell(l)) - start
-            if (dot_product(offset, normal) < 0.0_rk) normal = -normal
-            height = 3.0_rk*dot_product(offset, normal)
-            offset = xy - start
-            associate (depth => dot_product(offset, normal))
-               if (depth < 0.0_rk .or. depth > min(height, nearest)) cycle
-               if (dot_product(offset, along) < 0.0_rk) cycle
-               if (dot_product(offset, along) > norm2(ends(:, 2) - start)) cycle
-               nearest = depth
-            end associate
-            distance = [(dot_product(mesh%xy(:, mesh%cell_nodes(k, cell)) - start, normal), k=1, 3)]
-            far = maxloc(distance, dim=1)
+         associate (nodes => mesh%face_nodes(:, mesh%layer_face(l)), chain => layers%chain(l), &
+                    n => layers%chain(l)%n)
+            end = merge(2, 1, any(tips == nodes(2)))
+            at_tip = any(tips == nodes(end))
+            start = mesh%xy(:, nodes(end))
+            ahead = start - mesh%xy(:, nodes(3 - end))
+            length = norm2(ahead)
+            ahead = ahead/length
+            normal = [-ahead(2), ahead(1)]
+            depth = dot_product(cell_centre(mesh, layers%cell(l)) - start, normal)
+            if (depth < 0.0_rk) normal = -normal
+            height = 3.0_rk*abs(depth)
+            if (dot_product(xy - start, normal) < 0.0_rk) cycle
+            if (dot_product(xy - start, ahead) < -length) cycle
+            if (dot_product(xy - start, ahead) > 0.0_rk .and. .not. at_tip) cycle
+            depth = depth_of(xy)
+            if (depth > min(height, nearest)) cycle
+            nearest = depth
+            depths = [(depth_of(corners(:, k)), k=1, 3)]
+            far = maxloc(depths, dim=1)
             at_face = layers%given(l)
             if (layers%at(1, l) > 0) at_face = unknowns(3, layers%at(1, l)/3)
-            pressure = along_chain([0.0_rk, chain%place, distance(far)], &
+            if (at_tip) then
+               depth = round_tip(xy)
+               depths(far) = max(round_tip(corners(:, far)), (1.0_rk + small)*chain%place(n))
+            end if
+            pressure = along_chain([0.0_rk, chain%place, depths(far)], &
                                    [at_face, inner(:n - 1, l), unknowns(1, layer_block(mesh, l)), &
-                                    at_nodes(far)], min(nearest, distance(far)))
+                                    at_nodes(far)], min(depth, depths(far)))
          end associate
       end do
+
+   contains
+
+      !> Distance of a point from the face, or from its tip, if it lies ahead of that [m].
+      pure real(rk) function depth_of(point)
+         real(rk), intent(in) :: point(2)  !< [m]
+
+         depth_of = dot_product(point - start, normal)
+         if (at_tip .and. dot_product(point - start, ahead) > 0.0_rk) depth_of = norm2(point - start)
+      end function depth_of
+
+      !> Depth in the profile of the face at a tip [m].
+      pure real(rk) function round_tip(point)
+         real(rk), intent(in) :: point(2)  !< [m]
+
+         associate (from_tip => point - start)
+            round_tip = sqrt(0.5_rk*length*max(0.0_rk, norm2(from_tip) &
+                                               + dot_product(from_tip, ahead)))
+         end associate
+      end function round_tip
+
    end subroutine find_pressure
 
    !> Between nodes by cubics without overshoot (slopes by harmonic means of those of the secants),

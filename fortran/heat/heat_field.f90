@@ -18,7 +18,8 @@ module heat_field
       type(lists_t) :: near  !< layers at each node
       real(rk) :: largest = 0.0_rk  !< of all temperatures, without sign [K]
       !> (cells) mean temperature less that of nodal values and profiles, which are less accurate
-      !! where a front passes from the layers to the cells [K]
+      !! where a front passes from the layers to the cells; 0 at tips, round which only the profiles
+      !! go [K]
       real(rk), allocatable :: lack(:)
       !> (3, cells) means with the area coordinates of the corners as weights, less a third of the
       !! mean, times 3 [K]
@@ -58,7 +59,9 @@ contains
          allocate (field%uneven(3, mesh%n_cells))
          do c = 1, mesh%n_cells
             moment = moments(heat, field, mesh%xy(:, mesh%cell_nodes(:, c)), c)
-            field%lack(c) = means(c) - sum(moment)
+            if (.not. any([(any(mesh%fracture%tip_node == mesh%cell_nodes(k, c)), k=1, 3)])) then
+               field%lack(c) = means(c) - sum(moment)
+            end if
             field%uneven(:, c) = 3.0_rk*moment - sum(moment)
          end do
       end associate
@@ -159,9 +162,9 @@ contains
          associate (at => share + inwards*(1.0_rk/3.0_rk - share))
             here = dot_product(plain, at)
             there = here
-            call find_pressure(heat%layers, among, heat%mesh, field%unknowns, field%inner, &
-                               matmul(xy, at), cell, field%nodal(heat%mesh%cell_nodes(:, cell)), &
-                               there)
+            call find_pressure(heat%layers, among, heat%mesh, heat%mesh%fracture%tip_node, &
+                               field%unknowns, field%inner, matmul(xy, at), cell, &
+                               field%nodal(heat%mesh%cell_nodes(:, cell)), there)
             beyond = there - here
          end associate
       end function beyond

@@ -151,7 +151,7 @@ contains
             row%pressure(i) = value(3)
             if (allocated(state%layer)) then
                call find_pressure(model%layers, [(k, k=1, model%layers%n)], mesh, &
-                                  state%unknowns, state%layer, xy(:, i), cells(i), &
+                                  [integer(ik) ::], state%unknowns, state%layer, xy(:, i), cells(i), &
                                   at_nodes(3, :), row%pressure(i))
             end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
