@@ -197,30 +197,17 @@ contains
       temperature = well%temperature(max(stage, 1_ik))
    end function temperature_of
 
-   !> Warn where temperatures leave their range, as with multi-point fluxes on obtuse cells, and
-   !! where intensities are stated while heat has not passed a coarse cell: their errors do not
-   !! contain that of the temperature.
-   subroutine warn_of_heat(scene, time, state, summary)
-      type(scene_t), intent(in) :: scene
-      real(rk), intent(in) :: time  !< [s]
+   !> Warn where temperatures leave their range, as with multi-point fluxes on obtuse cells.
+   subroutine warn_of_heat(state, summary)
       type(heat_state_t), intent(in) :: state
       type(summary_t), intent(inout) :: summary
       real(rk), parameter :: share = 0.01_rk  ! of the range
-      real(rk), parameter :: passed = 0.3_rk  ! D t over the square of a cell [-]
 
-      associate (material => scene%material, range => state%range(2) - state%range(1))
+      associate (range => state%range(2) - state%range(1))
          if (state%beyond_range > share*range) then
             call summary%warn("temperatures leave the range of those given by more than a "// &
                               "hundredth of it (heat_beyond_range_k): smaller cells make this "// &
                               "less")
-         end if
-         if (scene%growth%intensities .and. material%heat_expansion*range > 0.0_rk .and. &
-             material%heat_conductivity*time < passed*material%heat_capacity &
-             *scene%discretization%size_fracture**2) then
-            call summary%warn("heat has not passed a coarse cell in the first states: the "// &
-                              "stated errors of stress intensity factors contain no error of "// &
-                              "the temperature, and are too small there (docs/theory.md); use "// &
-                              "smaller cells at fractures")
          end if
       end associate
    end subroutine warn_of_heat

@@ -123,7 +123,7 @@ contains
       call watch_errors(self)
       self%summary%heat = row%heat
       if (allocated(self%problem%heat)) then
-         call warn_of_heat(self%scene, self%now%coarse%time, self%now%heat, self%summary)
+         call warn_of_heat(self%now%heat, self%summary)
       end if
       call note_state(self, row%mass_error_relative)
    end subroutine commit_step

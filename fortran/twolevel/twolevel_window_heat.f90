@@ -7,15 +7,17 @@
 module twolevel_window_heat
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, left_part, triangle_area
+   use coarse_rock, only: solid_t
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use heat_field, only: moments
+   use mesh_geometry, only: face_length
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window_map, only: window_map_t
    implicit none(type, external)
    private
 
-   public :: warm_window
+   public :: heat_error, warm_window
 
 contains
 
@@ -85,5 +87,40 @@ contains
       end do
       corner = (12.0_rk*moment - 3.0_rk*sum(moment))/area
    end function linear_part
+
+   !> Error of K_I by the temperatures of coarse cells next to a tip whose faces have another
+   !! temperature than the rock before. With a front of the time t round the tip of a long crack, K_I
+   !! = 0.76 s (D t)^(1/4), s the thermal stress of the faces; measured, cells of the size h leave at
+   !! most 0.06 h/(2 sqrt(D t)) of this wrong (docs/theory.md) [Pa m^1/2].
+   pure real(rk) function heat_error(problem, fracture, end, time) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: fracture, end  !< of the tip
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), parameter :: whole = 0.76_rk, part = 0.03_rk*whole
+      real(rk) :: root
+      integer(ik) :: t
+      type(solid_t) :: solid
+
+      error = 0.0_rk
+      if (.not. (allocated(problem%heat) .and. allocated(problem%model%rock%temperature))) return
+      associate (mesh => problem%heat%mesh, layers => problem%heat%layers, &
+                 rock => problem%heat%rock, field => problem%heat_field)
+         t = findloc(mesh%fracture%tip_fracture == fracture .and. &
+                     mesh%fracture%tip_end == end, .true., dim=1)
+         if (t == 0 .or. layers%n == 0 .or. .not. time > 0.0_rk) return
+         associate (near => field%near%of(mesh%fracture%tip_node(t)))
+            if (size(near) == 0) return
+            associate (l => near(1), c => layers%cell(near(1)))
+               if (layers%at(1, l) == 0) return
+               root = sqrt(sqrt(time*rock%mobility_at(c)/rock%storage(min(int(c), &
+                                                                          size(rock%storage)))))
+               solid = problem%model%rock%solid_at(c)
+               error = solid%heat_stress*2.0_rk*solid%shear/(solid%lame + 2.0_rk*solid%shear) &
+                       *abs(field%unknowns(3, layers%at(1, l)/3)) &
+                       *min(whole*root, part*face_length(mesh, mesh%layer_face(l))/root)
+            end associate
+         end associate
+      end associate
+   end function heat_error
 
 end module twolevel_window_heat

@@ -22,7 +22,7 @@ module twolevel_windows
    use twolevel_back_stress, only: back_stress_of
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window, only: window_t
-   use twolevel_window_heat, only: warm_window
+   use twolevel_window_heat, only: heat_error, warm_window
    use twolevel_window_slot, only: renew, slot_t
    use twolevel_window_tip, only: window_tip_t
    use twolevel_windows_state, only: window_history_t, windows_state_t
@@ -270,6 +270,8 @@ contains
          do i = 1, size(window%serves, kind=ik)
             associate (t => window%serves(i), tip => front%tip(window%serves(i)))
                if (.not. window%served(i)%is_evaluated) cycle
+               seen(t)%found%k1_error = seen(t)%found%k1_error &
+                                        + heat_error(problem, tip%fracture, tip%end, state%time)
                seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end, &
                                                     tip%layer_age)
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
