@@ -16,10 +16,10 @@ module heat_field
    type :: heat_field_t
       real(rk), allocatable :: nodal(:)  !< (nodes) without the profiles [K]
       type(lists_t) :: near  !< layers at each node
-      real(rk) :: largest = 0.0_rk  !< of all temperatures, without sign [K]
+      real(rk), allocatable :: least(:)  !< (cells) what matters in the mean of each [K]
       !> (cells) mean temperature less that of nodal values and profiles, which are less accurate
-      !! where a front passes from the layers to the cells; 0 at tips, round which only the profiles
-      !! go [K]
+      !! where a front passes from the layers to the cells; 0 at thin fronts, and at tips, round
+      !! which only the profiles go [K]
       real(rk), allocatable :: lack(:)
       !> (3, cells) means with the area coordinates of the corners as weights, less a third of the
       !! mean, times 3 [K]
@@ -37,6 +37,7 @@ contains
       real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
       real(rk), intent(in) :: means(:)  !< (cells) [K]
       type(heat_field_t) :: field
+      real(rk), parameter :: thin = 0.05_rk  ! of a cell
       real(rk) :: moment(3)
       integer(ik) :: c, k, l
 
@@ -54,15 +55,15 @@ contains
             end associate
          end do
          field%near = inverted(mesh%face_nodes(:, mesh%layer_face(:layers%n)), mesh%n_nodes)
-         field%largest = max(maxval(abs(temperature)), maxval(abs(layers%given)))
+         field%least = 0.02_rk*max(abs(means), 1.0e-3_rk*maxval(abs(temperature)))
          allocate (field%lack(mesh%n_cells), source=0.0_rk)
          allocate (field%uneven(3, mesh%n_cells))
          do c = 1, mesh%n_cells
             moment = moments(heat, field, mesh%xy(:, mesh%cell_nodes(:, c)), c)
-            if (.not. any([(any(mesh%fracture%tip_node == mesh%cell_nodes(k, c)), k=1, 3)])) then
-               field%lack(c) = means(c) - sum(moment)
-            end if
             field%uneven(:, c) = 3.0_rk*moment - sum(moment)
+            if (any(layers%cells == c) .and. abs(means(c)) < thin*maxval(abs(temperature))) cycle
+            if (any([(any(mesh%fracture%tip_node == mesh%cell_nodes(k, c)), k=1, 3)])) cycle
+            field%lack(c) = means(c) - sum(moment)
          end do
       end associate
    end function new_field
@@ -109,7 +110,6 @@ contains
       integer(ik), intent(in) :: cell
       real(rk) :: moment(3)  !< [K]
       integer, parameter :: least = 1, most = 7  ! times a triangle is divided
-      real(rk), parameter :: tolerance = 1.0e-3_rk  ! of the integral of the largest temperature
       real(rk), parameter :: whole(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3])
       real(rk) :: plain(3)  ! without profiles
       integer(ik), allocatable :: among(:)  ! layers
@@ -137,7 +137,7 @@ contains
          associate (area => 0.25_rk**times)
             if (times >= least .and. &
                 (times == most .or. area*abs(of_centre - sum(value)/3.0_rk) &
-                 <= tolerance*field%largest)) then
+                 <= field%least(cell))) then
                moment = moment + area*(0.75_rk*of_centre*centre + matmul(corner, value)/12.0_rk)
                return
             end if

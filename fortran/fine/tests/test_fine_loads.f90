@@ -28,6 +28,12 @@ program test_fine_loads
       loads%pore_pressure(v) = 1.0_rk + 2.0_rk*fine%xy(1, v) - 0.5_rk*fine%xy(2, v)
       loads%initial_stress(:, v) = [fine%xy(1, v), 4.0_rk - fine%xy(2, v), sum(fine%xy(:, v))]
    end do
+   ! Half of the pressure acts as one in each element, as that of temperatures does.
+   loads%pore_pressure = 0.5_rk*loads%pore_pressure
+   allocate (loads%heat_pressure(3, fine%n_cells))
+   do cell = 1, fine%n_cells
+      loads%heat_pressure(:, cell) = loads%pore_pressure(fine%cell_nodes(:3, cell))
+   end do
    worst = 0.0_rk
    do cell = 1, fine%n_cells
       force = volume_forces(fine, cell, biot, loads)

@@ -309,7 +309,13 @@ contains
             end if
          end associate
       end do
-      loads%pore_pressure = gradient*model%mesh%xy(merge(1, 2, along), :model%mesh%n_vertices)
+      ! Half of it in each element, as that of temperatures.
+      loads%pore_pressure = 0.5_rk*gradient*model%mesh%xy(merge(1, 2, along), &
+                                                          :model%mesh%n_vertices)
+      allocate (loads%heat_pressure(3, model%mesh%n_cells))
+      do node = 1, model%mesh%n_cells
+         loads%heat_pressure(:, node) = loads%pore_pressure(model%mesh%cell_nodes(:3, node))
+      end do
       call model%solve(loads, displacement, error)
       call checks%no_error(error, "linear pressure is solved")
       scale = 0.5_rk*c*half_length*sqrt(pi*half_length)

@@ -13,12 +13,14 @@ program test_heat_steps
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
+   use heat_field, only: heat_field_t, moments, new_field
    use heat_flows, only: set_flows
    use heat_links, only: external_t
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    use heat_steps, only: advance_heat
    use mesh_builder, only: mesher_t
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, load_sides, mesh_square, porous_body, shake, straight_network, &
                             uniform_cells
@@ -102,6 +104,29 @@ contains
                       first, 0, now)
    end subroutine start_heat
 
+   !> Integrals of the temperature that acts within cells, and of that times x, by its moments.
+   subroutine integrate(heat, now, content, moment)
+      type(heat_model_t), intent(in) :: heat
+      type(heat_state_t), intent(in) :: now
+      real(rk), intent(out) :: content, moment  !< [K m2], [K m3]
+      type(heat_field_t) :: field
+      real(rk) :: of_cell(3)
+      integer(ik) :: c
+
+      field = new_field(heat, now%temperature, heat%cell_means(now))
+      content = 0.0_rk
+      moment = 0.0_rk
+      associate (mesh => heat%mesh)
+         do c = 1, mesh%n_cells
+            associate (xy => mesh%xy(:, mesh%cell_nodes(:, c)))
+               of_cell = cell_area(mesh, c)*moments(heat, field, xy, c)
+               content = content + sum(of_cell)
+               moment = moment + dot_product(of_cell, xy(1, :))
+            end associate
+         end do
+      end associate
+   end subroutine integrate
+
    !> The left side is cooled by 50 K: T = 50 erfc(x/(2 sqrt(D t))), and the heat that has left is 2
    !! C 50 sqrt(D t/pi) per area. Cells of 0.1 m and this conductivity are as those of 8 m in a body
    !! of 160 m of granite, a 20th of its edge as by default. After 1e6 s the front passes from the
@@ -119,7 +144,7 @@ contains
       real(rk), parameter :: times(5) = [minute, 3600.0_rk, 1.0e6_rk, years, 10.0_rk*years]
       real(rk), parameter :: tolerance(5) = [0.01_rk, 0.01_rk, 0.02_rk, 0.01_rk, 0.01_rk]
       real(rk), allocatable :: error_at(:)
-      real(rk) :: reached, time
+      real(rk) :: content, depth, reached, time
       integer(ik) :: c
       integer :: k
 
@@ -141,6 +166,12 @@ contains
          error_at = abs(now%temperature/cold + erfc(heat%place(1, :)/reached))
          call checks%is_close(maxval(error_at(mesh%n_cells + 1:)), 0.0_rk, tolerance(k), &
                               "temperatures of layers")
+         if (reached < 0.01_rk) cycle
+         call integrate(heat, now, content, depth)
+         call checks%is_close(content/(-2.0_rk*cold*reached/sqrt(pi)), 1.0_rk, tolerance(k), &
+                              "temperature within cells")
+         call checks%is_close((depth/content - 0.25_rk*sqrt(pi)*reached)/max(reached, 0.1_rk), &
+                              0.0_rk, 0.05_rk, "mean depth of the front")
       end do
       call checks%is_close(maxval(error_at(:mesh%n_cells), &
                                   [(all(heat%layers%cells /= c), c=1, mesh%n_cells)]), &
