@@ -2,16 +2,15 @@
 module coarse_fields
    use base_kinds, only: ik, rk
    use coarse_matrix, only: matrix_t
-   use coarse_layout, only: end_block
-   use coarse_regions, only: fracture_end_region, regions_t, traction_face
+   use coarse_regions, only: regions_t
    use coarse_rock, only: rock_t
-   use mesh_geometry, only: cell_area, corner_geometry, face_length
+   use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
 
    public :: cell_contents, cell_stress, cell_stresses, corner_gradients, corner_tractions
-   public :: displacement_gradients, uneven_forces
+   public :: displacement_gradients
 
 contains
 
@@ -44,68 +43,8 @@ contains
       do b = 1, regions%blocks%length(region)
          d(3*b - 2:3*b) = unknowns(:, regions%blocks%at(region, b))
       end do
-      if (allocated(regions%uneven)) call add_uneven(regions, region, d)
       call regions%traction(region)%apply(d, tractions)
    end subroutine find_tractions
-
-   !> Add what acts at the corners of cells around a vertex beyond their pressures.
-   pure subroutine add_uneven(regions, region, d)
-      type(regions_t), intent(in) :: regions
-      integer(ik), intent(in) :: region
-      real(rk), intent(inout) :: d(:)  !< unknowns around the vertex
-      integer(ik) :: b, cell
-
-      do b = 1, regions%cell_count(region)
-         cell = regions%blocks%at(region, b)
-         d(3*b) = d(3*b) + regions%uneven(findloc(regions%regions_of_block(:, cell), region, dim=1), &
-                                          cell)
-      end do
-   end subroutine add_uneven
-
-   !> Forces, and changes of the content, by what acts at the corners of cells beyond their pressures.
-   pure subroutine uneven_forces(mesh, rock, regions, force)
-      type(mesh_t), intent(in) :: mesh
-      type(rock_t), intent(in) :: rock
-      type(regions_t), intent(in) :: regions
-      real(rk), allocatable, intent(out) :: force(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
-      real(rk) :: area, length(2), lever(2, 2), sign_out(2), traction(2)
-      real(rk) :: tractions(regions%traction_count())
-      real(rk), allocatable :: d(:)
-      integer(ik) :: c, end, f, faces(2), i, j, k, m, r
-
-      allocate (force(3, regions%n_blocks), source=0.0_rk)
-      do r = 1, regions%n_regions
-         m = 3*regions%blocks%length(r)
-         d = spread(0.0_rk, 1, int(m))
-         call add_uneven(regions, r, d)
-         associate (first => regions%at_traction(r), response => regions%traction(r)%matrix)
-            do i = 1, size(response, 2, kind=ik)
-               tractions(first + i - 1) = dot_product(response(:m, i), d)
-            end do
-         end associate
-      end do
-      do c = 1, mesh%n_cells
-         associate (solid => rock%solid_at(c))
-            force(3, c) = -solid%biot*cell_area(mesh, c)*mean_trace(regions, tractions, c) &
-                          /(2.0_rk*(solid%lame + solid%shear))
-         end associate
-         do k = 1, 3
-            call corner_geometry(mesh, c, k, faces, sign_out, length, lever, area)
-            do j = 1, 2
-               call traction_face(mesh, faces(j), sign_out(j))
-               traction = tractions(regions%at_corner(j, k, c):regions%at_corner(j, k, c) + 1)
-               force(:2, c) = force(:2, c) - 0.5_rk*sign_out(j)*length(j)*traction
-            end do
-         end do
-      end do
-      do c = 1, mesh%fracture%n_cells
-         f = mesh%fracture%cell_faces(1, c)
-         do end = 1, 2
-            k = regions%at_traction(fracture_end_region(mesh, regions, c, end), f)
-            force(:2, end_block(mesh, c, end)) = -0.5_rk*face_length(mesh, f)*tractions(k:k + 1)
-         end do
-      end do
-   end subroutine uneven_forces
 
    !> Fluid content of each cell [m2]: storage and volume change (docs/theory.md).
    subroutine cell_contents(mesh, rock, regions, matrix, unknowns, tractions, content)
@@ -241,8 +180,6 @@ contains
          stress(i, i) = stress(i, i) + rock%biot(at)*unknowns(3, cell)
          if (allocated(rock%temperature)) stress(i, i) = stress(i, i) &
             & + rock%heat_stress(at)*rock%temperature(cell)
-         if (allocated(regions%uneven)) stress(i, i) = stress(i, i) &
-            & + rock%biot(at)*regions%uneven(k, cell)
       end do
       nu = rock%lame(at)/(2.0_rk*(rock%lame(at) + rock%shear(at)))
       strain = stress

@@ -52,9 +52,6 @@ module coarse_regions
       !> (2, 2, corner, n_cells) what these two tractions build the stress there from (component,
       !! face), turned where they count as those of the other side [-]
       real(rk), allocatable :: lever(:, :, :, :)
-      !> (corner, n_cells) what acts there beyond the pressure of the cell, without part in its mean:
-      !! of temperatures that vary within the cell; unallocated: nothing [Pa]
-      real(rk), allocatable :: uneven(:, :)
    contains
       procedure :: traction_count
       procedure :: at_traction

@@ -5,7 +5,7 @@ submodule(coarse_model) coarse_steps
    use base_timers, only: phase_contact, phase_factorize, phase_solve
    use base_tolerances, only: same_time
    use coarse_diffusion, only: boundary_outflow, cell_outflow
-   use coarse_fields, only: cell_contents, corner_tractions, uneven_forces
+   use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: add_fracture_balance
    use coarse_fractures, only: flow_paths_t
    use coarse_newton, only: solve_fractures
@@ -181,11 +181,6 @@ contains
       acting = 0.0_rk
       acting = self%rock%with_heat(acting)
       load = load - self%matrix%elastic_forces(acting)
-      if (allocated(self%regions%uneven)) then
-         call uneven_forces(mesh, self%rock, self%regions, acting)
-         load = load - acting
-         acting = self%rock%with_heat(0.0_rk*acting)
-      end if
       do c = 1, mesh%n_cells
          solid = self%rock%solid_at(c)
          load(3, c) = load(3, c) - cell_area(mesh, c)*(solid%storage*acting(3, c) &

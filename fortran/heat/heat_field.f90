@@ -2,12 +2,12 @@
 module heat_field
    use base_kinds, only: ik, rk
    use base_lists, only: inverted, lists_t
-   use base_plane, only: barycentric
+   use base_plane, only: barycentric, triangle_area
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_layer_profiles, only: find_pressure
    use coarse_layout, only: at_component, layer_block
    use heat_model, only: heat_model_t
-   use mesh_geometry, only: cell_centre
+   use mesh_geometry, only: cell_area, cell_centre
    implicit none(type, external)
    private
 
@@ -17,13 +17,13 @@ module heat_field
       real(rk), allocatable :: nodal(:)  !< (nodes) without the profiles [K]
       type(lists_t) :: near  !< layers at each node
       real(rk), allocatable :: least(:)  !< (cells) what matters in the mean of each [K]
+      !> (cells) what the mean temperature leaves of the profiles, whose integral is not found where
+      !! a front is very thin [-]
+      real(rk), allocatable :: found(:)
       !> (cells) mean temperature less that of nodal values and profiles, which are less accurate
-      !! where a front passes from the layers to the cells; 0 at thin fronts, and at tips, round
-      !! which only the profiles go [K]
+      !! where a front passes from the layers to the cells; 0 at tips, round which only the profiles
+      !! go [K]
       real(rk), allocatable :: lack(:)
-      !> (3, cells) means with the area coordinates of the corners as weights, less a third of the
-      !! mean, times 3 [K]
-      real(rk), allocatable :: uneven(:, :)
       ! As coarse_layers has pressures:
       real(rk), allocatable :: unknowns(:, :)  !< (3, blocks) [K]
       real(rk), allocatable :: inner(:, :)  !< (n_nodes - 1, layers) [K]
@@ -38,7 +38,7 @@ contains
       real(rk), intent(in) :: means(:)  !< (cells) [K]
       type(heat_field_t) :: field
       real(rk), parameter :: thin = 0.05_rk  ! of a cell
-      real(rk) :: moment(3)
+      real(rk) :: beyond, largest, plain
       integer(ik) :: c, k, l
 
       associate (mesh => heat%mesh, layers => heat%layers)
@@ -55,15 +55,20 @@ contains
             end associate
          end do
          field%near = inverted(mesh%face_nodes(:, mesh%layer_face(:layers%n)), mesh%n_nodes)
-         field%least = 0.02_rk*max(abs(means), 1.0e-3_rk*maxval(abs(temperature)))
+         largest = maxval(abs(temperature))
+         field%least = 0.02_rk*max(abs(means), 1.0e-3_rk*largest)
+         allocate (field%found(mesh%n_cells), source=1.0_rk)
          allocate (field%lack(mesh%n_cells), source=0.0_rk)
-         allocate (field%uneven(3, mesh%n_cells))
          do c = 1, mesh%n_cells
-            moment = moments(heat, field, mesh%xy(:, mesh%cell_nodes(:, c)), c)
-            field%uneven(:, c) = 3.0_rk*moment - sum(moment)
-            if (any(layers%cells == c) .and. abs(means(c)) < thin*maxval(abs(temperature))) cycle
-            if (any([(any(mesh%fracture%tip_node == mesh%cell_nodes(k, c)), k=1, 3)])) cycle
-            field%lack(c) = means(c) - sum(moment)
+            associate (nodes => mesh%cell_nodes(:, c))
+               plain = sum(field%nodal(nodes))/3.0_rk
+               beyond = sum(moments(heat, field, mesh%xy(:, nodes), c)) - plain
+               if (abs(means(c)) < thin*largest .and. abs(beyond) > 0.0_rk) then
+                  field%found(c) = max(0.0_rk, min(1.0_rk, (means(c) - plain)/beyond))
+               end if
+               if (any([(any(mesh%fracture%tip_node == nodes(k)), k=1, 3)])) cycle
+               field%lack(c) = means(c) - plain - field%found(c)*beyond
+            end associate
          end do
       end associate
    end function new_field
@@ -109,9 +114,10 @@ contains
       real(rk), intent(in) :: xy(2, 3)  !< corners [m]
       integer(ik), intent(in) :: cell
       real(rk) :: moment(3)  !< [K]
-      integer, parameter :: least = 1, most = 7  ! times a triangle is divided
+      integer, parameter :: least = 1, most = 7  ! times a triangle, or the cell, is divided
       real(rk), parameter :: whole(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3])
       real(rk) :: plain(3)  ! without profiles
+      real(rk) :: smallest  ! part, over the triangle
       integer(ik), allocatable :: among(:)  ! layers
       integer(ik) :: k
 
@@ -121,6 +127,7 @@ contains
          among = [(field%near%of(nodes(k)), k=1, 3)]
       end associate
       moment = (sum(plain) + plain)/12.0_rk + field%lack(cell)/3.0_rk
+      smallest = 0.25_rk**most*cell_area(heat%mesh, cell)/max(tiny(1.0_rk), triangle_area(xy))
       if (size(among) > 0) call add_part(whole, [(beyond(whole(:, k)), k=1, 3)], 0)
 
    contains
@@ -136,9 +143,10 @@ contains
          of_centre = beyond(centre)
          associate (area => 0.25_rk**times)
             if (times >= least .and. &
-                (times == most .or. area*abs(of_centre - sum(value)/3.0_rk) &
+                (area <= smallest .or. area*abs(of_centre - sum(value)/3.0_rk) &
                  <= field%least(cell))) then
-               moment = moment + area*(0.75_rk*of_centre*centre + matmul(corner, value)/12.0_rk)
+               moment = moment + field%found(cell)*area*(0.75_rk*of_centre*centre &
+                                                         + matmul(corner, value)/12.0_rk)
                return
             end if
          end associate

@@ -94,7 +94,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(heat_state_t) :: rise
       type(state_t) :: after
-      integer(ik) :: c
 
       if (.not. allocated(problem%heat)) return
       associate (heat => problem%heat, rock => problem%model%rock)
@@ -110,11 +109,6 @@ contains
          rise%temperature = rise%temperature - heat%initial
          rock%temperature = heat%cell_means(rise)
          problem%heat_field = new_field(heat, rise%temperature, rock%temperature)
-         problem%model%regions%uneven = problem%heat_field%uneven
-         do c = 1, problem%mesh%n_cells
-            problem%model%regions%uneven(:, c) = rock%heat_pressure(c, 1.0_rk) &
-                                                 *problem%heat_field%uneven(:, c)
-         end do
       end associate
    end subroutine predict_heat
 

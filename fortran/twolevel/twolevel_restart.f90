@@ -181,7 +181,6 @@ contains
          call visit_step_values(archive, "step", model)
          if (allocated(problem%heat)) then
             call archive%list("temperature", model%rock%temperature, "cells ?")
-            call archive%list("uneven", model%regions%uneven, "3, cells ?")
          end if
          call visit_factors(archive, "factors", model, problem%mesh, error)
          if (allocated(error)) return

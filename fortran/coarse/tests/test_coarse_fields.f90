@@ -3,7 +3,7 @@
 program test_coarse_fields
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions, uneven_forces
+   use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_nodes, only: nodal_fields, node_values
    use coarse_own_pressure, only: own_pressure
@@ -30,7 +30,6 @@ program test_coarse_fields
    call shake(body)
    call test_linear_displacement(body)
    call test_own_pressure(body)
-   call test_uneven(body)
    body = boxes(4_ik)
    call shake(body)
    call test_linear_displacement(body)
@@ -70,34 +69,6 @@ contains
       end do
       call checks%is_close(worst, 0.0_rk, 1.0e-13_rk, "the same at each node by itself")
    end subroutine evaluate
-
-   !> Pressures at the three corners of cells act as pressures of the cells, which store fluid too.
-   subroutine test_uneven(mesh)
-      type(mesh_t), intent(in) :: mesh
-      type(scene_t) :: scene
-      type(rock_t) :: rock
-      type(regions_t) :: regions
-      type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
-      real(rk), allocatable :: expected(:, :), force(:, :), unknowns(:, :)
-      integer(ik) :: c
-
-      scene = porous_body()
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
-      allocate (unknowns(3, regions%n_blocks), source=0.0_rk)
-      unknowns(3, :mesh%n_cells) = [(sin(real(c, rk)), c=1, mesh%n_cells)]
-      expected = matrix%elastic_forces(unknowns)
-      expected(3, :mesh%n_cells) = expected(3, :mesh%n_cells) &
-                                   + matrix%storage*unknowns(3, :mesh%n_cells)
-      regions%uneven = spread(unknowns(3, :mesh%n_cells), 1, 3)
-      call uneven_forces(mesh, rock, regions, force)
-      do c = 1, 3
-         call checks%is_close(maxval(abs(force(c, :) - expected(c, :))), 0.0_rk, &
-                              1.0e-12_rk*maxval(abs(expected(c, :))), "pressures at corners")
-      end do
-   end subroutine test_uneven
 
    !> Any uniform strain, rotation and pressure. At a corner of the body with one cell whose
    !! tractions are all given, the rotation has to come from elsewhere.
