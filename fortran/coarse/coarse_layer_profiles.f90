@@ -53,7 +53,7 @@ contains
       integer(ik), intent(in) :: cell  !< in which the point lies, or next to it
       real(rk), intent(in) :: at_nodes(3)  !< pressures at the nodes of this cell [Pa]
       real(rk), intent(inout) :: pressure  !< [Pa]
-      real(rk), parameter :: small = 0.01_rk
+      real(rk), parameter :: small = 0.01_rk  ! gap of the last two places
       real(rk) :: ahead(2), at_face, corners(2, 3), depth, depths(3), height, length, nearest
       real(rk) :: normal(2), start(2)
       integer(ik) :: end, far, i, k, l
@@ -102,7 +102,9 @@ contains
          real(rk), intent(in) :: point(2)  !< [m]
 
          depth_of = dot_product(point - start, normal)
-         if (at_tip .and. dot_product(point - start, ahead) > 0.0_rk) depth_of = norm2(point - start)
+         if (at_tip .and. dot_product(point - start, ahead) > 0.0_rk) then
+            depth_of = norm2(point - start)
+         end if
       end function depth_of
 
       !> Depth in the profile of the face at a tip [m].

@@ -105,9 +105,9 @@ contains
       nodal = nodal/number
    end function nodal_values
 
-   !> Means of the temperature in a triangle within a cell, each weighted with the area coordinate of
-   !! one corner: the temperature without profiles is linear, that of the profiles is integrated over
-   !! parts, quadratic in each, which are divided where it is not.
+   !> Means of the temperature in a triangle within a cell, each weighted with the area coordinate
+   !! of one corner: the temperature without profiles is linear, that of the profiles is integrated
+   !! over parts, quadratic in each, which are divided where it is not.
    function moments(heat, field, xy, cell) result(moment)
       type(heat_model_t), intent(in) :: heat
       type(heat_field_t), intent(in) :: field

@@ -151,8 +151,8 @@ contains
             row%pressure(i) = value(3)
             if (allocated(state%layer)) then
                call find_pressure(model%layers, [(k, k=1, model%layers%n)], mesh, &
-                                  [integer(ik) ::], state%unknowns, state%layer, xy(:, i), cells(i), &
-                                  at_nodes(3, :), row%pressure(i))
+                                  [integer(ik) ::], state%unknowns, state%layer, xy(:, i), &
+                                  cells(i), at_nodes(3, :), row%pressure(i))
             end if
             row%stress(:, i) = cell_stress(model%regions, state%tractions, cells(i))
             call find_local_errors(problem, state, cells(i), sum(at_nodes, dim=2)/3.0_rk, &

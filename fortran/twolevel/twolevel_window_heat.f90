@@ -89,9 +89,9 @@ contains
    end function linear_part
 
    !> Error of K_I by the temperatures of coarse cells next to a tip whose faces have another
-   !! temperature than the rock before. With a front of the time t round the tip of a long crack, K_I
-   !! = 0.76 s (D t)^(1/4), s the thermal stress of the faces; measured, cells of the size h leave at
-   !! most 0.06 h/(2 sqrt(D t)) of this wrong (docs/theory.md) [Pa m^1/2].
+   !! temperature than the rock before. With a front of the time t round the tip of a long crack,
+   !! K_I = 0.76 s (D t)^(1/4), s the thermal stress of the faces; measured, cells of the size h
+   !! leave at most 0.06 h/(2 sqrt(D t)) of this wrong (docs/theory.md) [Pa m^1/2].
    pure real(rk) function heat_error(problem, fracture, end, time) result(error)
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture, end  !< of the tip

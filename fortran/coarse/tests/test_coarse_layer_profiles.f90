@@ -163,7 +163,8 @@ contains
          end do
          found = -1.0_rk
          call find_pressure(model%layers, [(k, k=1, model%layers%n)], mesh, [integer(ik) ::], &
-                            state%unknowns, state%layer, xy, c, drop*mesh%xy(1, mesh%cell_nodes(:, c)), found)
+                            state%unknowns, state%layer, xy, c, &
+                            drop*mesh%xy(1, mesh%cell_nodes(:, c)), found)
          largest = max(largest, abs(found - drop*xy(1)))
       end do
       call checks%is_close(largest/drop, 0.0_rk, 1.0e-5_rk, "pressure at points, steady flow")
