@@ -66,6 +66,10 @@ module heat_model
       procedure :: begin
       procedure :: scalars
       procedure :: cell_means
+      procedure :: joint_capacity
+      procedure :: last_node
+      procedure :: of_cells
+      procedure :: rock_capacity
       procedure :: undisturbed
    end type heat_model_t
 
@@ -347,47 +351,76 @@ contains
       real(rk), intent(in) :: first  !< first substep [s]
       integer, intent(in) :: n_wells
       type(heat_state_t), intent(out) :: state
-      integer(ik) :: c, k, l
-      real(rk), parameter :: nothing = 1.0e-6_rk  ! of a joint, over the largest cell's [-]
 
       state%temperature = self%initial
       state%next = first
       allocate (state%well_temperature(n_wells), source=0.0_rk)
-      allocate (state%capacity(self%n))
-      associate (layers => self%layers, capacity => state%capacity)
-         do c = 1, self%mesh%n_cells
-            capacity(c) = self%rock%storage(min(int(c), size(self%rock%storage))) &
-                          *cell_area(self%mesh, c)
-         end do
-         if (layers%n > 0) capacity(layers%cells) = layers%storage*layers%rest
-         do l = 1, layers%n
-            k = self%first_node(l)
-            capacity(k:k + layers%chain(l)%n - 1) = layers%chain(l)%storage*layers%chain(l)%volume
-         end do
-         capacity(self%first_cell:self%first_joint - 1) = self%fluid_capacity*width*length
-         capacity(self%first_joint:) = nothing*self%fluid_capacity*maxval([0.0_rk, width*length])
+      associate (of_fractures => self%fluid_capacity*width*length)
+         state%capacity = [self%rock_capacity(), of_fractures, self%joint_capacity(of_fractures)]
       end associate
       state%range = [minval(self%initial), maxval(self%initial)]
    end subroutine begin
+
+   !> Capacity of the rock and its first fluid, of cells and nodes of layers [J/(m K)].
+   pure function rock_capacity(self) result(capacity)
+      class(heat_model_t), intent(in) :: self
+      real(rk) :: capacity(self%first_cell - 1)
+      integer(ik) :: c, l
+
+      do c = 1, self%mesh%n_cells
+         capacity(c) = self%rock%storage(min(int(c), size(self%rock%storage))) &
+                       *cell_area(self%mesh, c)
+      end do
+      associate (layers => self%layers)
+         if (layers%n > 0) capacity(layers%cells) = layers%storage*layers%rest
+         do l = 1, layers%n
+            capacity(self%first_node(l):self%last_node(l)) = layers%chain(l)%storage &
+                                                             *layers%chain(l)%volume
+         end do
+      end associate
+   end function rock_capacity
+
+   !> Capacity of joints: next to nothing, compared with the fracture cells [J/(m K)].
+   pure function joint_capacity(self, of_fractures) result(capacity)
+      class(heat_model_t), intent(in) :: self
+      real(rk), intent(in) :: of_fractures(:)  !< (fracture cells) [J/(m K)]
+      real(rk) :: capacity(self%n - self%first_joint + 1)
+      real(rk), parameter :: nothing = 1.0e-6_rk  ! of the largest [-]
+
+      capacity = nothing*maxval([0.0_rk, of_fractures])
+   end function joint_capacity
+
+   !> Last unknown of a layer.
+   elemental integer(ik) function last_node(self, layer)
+      class(heat_model_t), intent(in) :: self
+      integer(ik), intent(in) :: layer
+
+      last_node = self%first_node(layer) + self%layers%chain(layer)%n - 1
+   end function last_node
+
+   !> Sum over each cell and its layers.
+   pure function of_cells(self, values) result(total)
+      class(heat_model_t), intent(in) :: self
+      real(rk), intent(in) :: values(:)  !< (unknowns of the rock, at least)
+      real(rk) :: total(self%mesh%n_cells)
+      integer(ik) :: c, k, l
+
+      total = values(:self%mesh%n_cells)
+      do l = 1, self%layers%n
+         c = self%layers%cell(l)
+         do k = self%first_node(l), self%last_node(l)
+            total(c) = total(c) + values(k)
+         end do
+      end do
+   end function of_cells
 
    !> Mean temperature of each cell with its layers [K].
    pure function cell_means(self, state) result(mean)
       class(heat_model_t), intent(in) :: self
       type(heat_state_t), intent(in) :: state
       real(rk) :: mean(self%mesh%n_cells)
-      real(rk) :: capacity(self%mesh%n_cells)
-      integer(ik) :: c, k, l
 
-      capacity = state%capacity(:self%mesh%n_cells)
-      mean = capacity*state%temperature(:self%mesh%n_cells)
-      do l = 1, self%layers%n
-         c = self%layers%cell(l)
-         do k = self%first_node(l), self%first_node(l) + self%layers%chain(l)%n - 1
-            capacity(c) = capacity(c) + state%capacity(k)
-            mean(c) = mean(c) + state%capacity(k)*state%temperature(k)
-         end do
-      end do
-      mean = mean/capacity
+      mean = self%of_cells(state%capacity*state%temperature)/self%of_cells(state%capacity)
    end function cell_means
 
 end module heat_model

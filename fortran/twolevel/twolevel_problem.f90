@@ -41,6 +41,8 @@ module twolevel_problem
       integer(ik), allocatable :: rock_cell(:)
       type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
       type(heat_field_t) :: heat_field  !< rise of the temperatures that acts in the present step
+      real(rk) :: heat_span(2) = -1.0_rk  !< start and length of the step of `heat_rise` [s]
+      real(rk), allocatable :: heat_rise(:)  !< (unknowns of heat) after that step [K]
       type(coarse_values_t) :: values  !< values of the state in which tips were evaluated last
    contains
       procedure :: feed_wells

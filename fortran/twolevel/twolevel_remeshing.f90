@@ -10,9 +10,11 @@ submodule(twolevel_state) twolevel_remeshing
    use coarse_layout, only: fracture_layout_t
    use coarse_model, only: rest_fluid
    use coarse_state, only: guess_t
+   use heat_model, only: heat_model_t
    use mesh_builder, only: remesh
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use twolevel_guess, only: transfer_guess
+   use twolevel_heat, only: carry_heat
    use twolevel_setup, only: choose_first_step
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
@@ -56,6 +58,7 @@ contains
       type(fracture_mesh_t) :: fracture_before
       type(fracture_layout_t) :: layout
       type(guess_t) :: guess
+      type(heat_model_t), allocatable :: heat  ! on the mesh before, if it is that of a try
       integer(ik), allocatable :: pairs(:, :)
       real(rk) :: radius
       integer(ik) :: i, k, nearest
@@ -92,8 +95,12 @@ contains
       layout = layout_of(self%problem)
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
-      if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
-      call discard(self%problem)
+      if (.not. allocated(self%kept_problem)) then
+         call move_alloc(self%problem, self%kept_problem)
+      else
+         call move_alloc(self%problem%heat, heat)
+         call discard(self%problem)
+      end if
       call move_alloc(problem, self%problem)
       call self%windows%coarse_changed()
       call self%reference%coarse_changed()
@@ -104,6 +111,13 @@ contains
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
+      if (allocated(heat)) then
+         call carry_heat(self%scene, heat, map, faces, self%problem, self%now, error)
+      else if (allocated(self%scene%heat)) then
+         call carry_heat(self%scene, self%kept_problem%heat, map, faces, self%problem, self%now, &
+                         error)
+      end if
+      if (allocated(error)) return
       call transfer_guess(fracture_before, self%problem%mesh%fracture, pairs, &
                           self%problem%model%connections, layout, layout_of(self%problem), guess)
       self%now%coarse%guess = guess
