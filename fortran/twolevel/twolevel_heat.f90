@@ -60,6 +60,7 @@ contains
       type(coarse_problem_t), intent(inout) :: problem
       type(heat_state_t), intent(inout) :: now
       type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: acting(:)
       real(rk) :: dt
 
       if (.not. allocated(problem%heat)) return
@@ -70,7 +71,9 @@ contains
          call begin_heat(scene, after, problem, now)
       end if
       if (.not. dt > same_time*after%time) return
+      if (allocated(now%acting)) acting = now%acting
       call advance(scene, before%time, after, problem, now, error)
+      if (allocated(acting)) now%acting = acting
    end subroutine follow_heat
 
    !> Set the heat of the first state.
@@ -87,8 +90,9 @@ contains
       end associate
    end subroutine begin_heat
 
-   !> Let the temperatures act that the step to come ends with: with the flows of the last step, or
-   !! those of a try of the same step (settle_heat).
+   !> Let the temperatures act that the step to come ends with: those of a try of the same step, or
+   !! where a substep of heat may be as long as the step, which it may be where rates hardly change,
+   !! those by the rates; else those with the flows of the last step.
    subroutine predict_heat(scene, state, dt, problem, now, error)
       type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state  !< before the step
@@ -96,21 +100,25 @@ contains
       type(coarse_problem_t), intent(inout) :: problem
       type(heat_state_t), intent(inout) :: now
       type(error_t), allocatable, intent(out) :: error
-      type(heat_state_t) :: rise
+      type(heat_state_t) :: then
       type(state_t) :: after
+      logical :: is_known
 
       if (.not. acts(problem)) return
-      if (any(abs(problem%heat_span - [state%time, dt]) > 0.0_rk)) then
-         after = state
-         after%time = state%time + dt
-         rise = now
-         call begin_heat(scene, state, problem, rise)
-         call advance(scene, state%time, after, problem, rise, error)
-         if (allocated(error)) return
-         problem%heat_span = [state%time, dt]
-         problem%heat_rise = rise%temperature - problem%heat%initial
+      is_known = all(abs(problem%heat_span - [state%time, dt]) <= 0.0_rk)
+      if (.not. is_known .and. allocated(now%rate) .and. now%next >= dt) then
+         now%acting = now%temperature + dt*now%rate - problem%heat%initial
+      else
+         if (.not. is_known) then
+            after = state
+            after%time = state%time + dt
+            then = now
+            call begin_heat(scene, state, problem, then)
+            call advance(scene, state%time, after, problem, then, error)
+            if (allocated(error)) return
+         end if
+         now%acting = problem%heat_after%temperature - problem%heat%initial
       end if
-      now%acting = problem%heat_rise
       call act(problem, now)
    end subroutine predict_heat
 
@@ -124,18 +132,18 @@ contains
       logical, intent(out) :: is_settled
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: tolerance = 5.0e-3_rk  ! of the heat moved since the start [-]
-      type(heat_state_t) :: rise
+      type(heat_state_t) :: then
 
       is_settled = .true.
       if (.not. acts(problem)) return
-      rise = now
-      call begin_heat(scene, before, problem, rise)
-      call advance(scene, before%time, after, problem, rise, error)
+      then = now
+      call begin_heat(scene, before, problem, then)
+      call advance(scene, before%time, after, problem, then, error)
       if (allocated(error)) return
-      rise%temperature = rise%temperature - problem%heat%initial
-      is_settled = sum(rise%capacity*abs(rise%temperature - problem%heat_rise)) &
-                   <= tolerance*sum(rise%capacity*abs(rise%temperature))
-      if (.not. is_settled) problem%heat_rise = rise%temperature
+      associate (rise => then%temperature - problem%heat%initial)
+         is_settled = sum(then%capacity*abs(rise - now%acting)) &
+                      <= tolerance*sum(then%capacity*abs(rise))
+      end associate
    end subroutine settle_heat
 
    !> Whether temperatures act on stress or fluid.
@@ -165,7 +173,8 @@ contains
       end associate
    end subroutine act
 
-   !> Advance heat by a step that ends with given flows.
+   !> Advance heat by a step that ends with given flows, or take the result of the last call if it is
+   !! the same step with the same flows.
    subroutine advance(scene, since, after, problem, now, error)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: since  !< start of the step [s]
@@ -173,16 +182,32 @@ contains
       type(coarse_problem_t), intent(inout) :: problem
       type(heat_state_t), intent(inout) :: now
       type(error_t), allocatable, intent(out) :: error
+      logical :: is_same
 
-      call set_flows(problem%heat, problem%mesh, problem%model, after, &
-                     well_flows(scene, problem, since, after))
-      call advance_heat(problem%heat, after%time - since, now, error)
+      associate (heat => problem%heat, span => [since, after%time - since])
+         call set_flows(heat, problem%mesh, problem%model, after, &
+                        well_flows(scene, problem, since, after))
+         associate (flows => [heat%links%flow, heat%externals%flow])
+            is_same = all(abs(problem%heat_span - span) <= 0.0_rk) .and. &
+                      allocated(problem%heat_flows)
+            if (is_same) is_same = size(problem%heat_flows) == size(flows)
+            if (is_same) is_same = all(abs(problem%heat_flows - flows) <= 0.0_rk)
+            if (.not. is_same) then
+               call advance_heat(heat, span(2), now, error)
+               if (allocated(error)) return
+               problem%heat_span = span
+               problem%heat_flows = flows
+               problem%heat_after = now
+            end if
+         end associate
+         now = problem%heat_after
+      end associate
    end subroutine advance
 
    !> Transfer heat to a problem whose mesh has grown.
    subroutine carry_heat(scene, before, map, faces, problem, levels, error)
       type(scene_t), intent(in) :: scene
-      type(heat_model_t), intent(in) :: before  !< on the mesh before
+      type(coarse_problem_t), intent(in) :: before  !< on the mesh before
       type(mesh_map_t), intent(in) :: map
       type(kept_faces_t), intent(in) :: faces
       type(coarse_problem_t), intent(inout) :: problem
@@ -190,15 +215,23 @@ contains
       type(error_t), allocatable, intent(out) :: error
       real(rk) :: filled(problem%mesh%fracture%n_cells)
 
+      if (.not. allocated(scene%heat)) return
       call set_heat(scene, problem, error)
-      if (allocated(error) .or. .not. allocated(levels%heat%temperature)) return
+      if (allocated(error)) return
       filled = 0.0_rk
       associate (s => problem%mesh%fracture%cell_s, new => levels%grown)
          if (scene%growth%new_volume == "prefilled") then
             filled(new) = levels%coarse%aperture(new)*(s(2, new) - s(1, new))
          end if
       end associate
-      call transfer_heat(before, problem%heat, map, faces, filled, levels%heat)
+      if (allocated(levels%heat%temperature)) then
+         call transfer_heat(before%heat, problem%heat, map, faces, filled, levels%heat)
+      end if
+      problem%heat_span = before%heat_span
+      problem%heat_after = before%heat_after
+      if (allocated(problem%heat_after%temperature)) then
+         call transfer_heat(before%heat, problem%heat, map, faces, filled, problem%heat_after)
+      end if
    end subroutine carry_heat
 
    !> What wells supply to fracture cells, joints and rock in a step.

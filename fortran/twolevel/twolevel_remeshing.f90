@@ -10,7 +10,6 @@ submodule(twolevel_state) twolevel_remeshing
    use coarse_layout, only: fracture_layout_t
    use coarse_model, only: rest_fluid
    use coarse_state, only: guess_t
-   use heat_model, only: heat_model_t
    use mesh_builder, only: remesh
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use twolevel_guess, only: transfer_guess
@@ -51,14 +50,13 @@ contains
       real(rk), intent(in) :: centres(:, :)
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(coarse_problem_t), allocatable :: problem
+      type(coarse_problem_t), allocatable :: of_try, problem
       type(mesh_map_t) :: map
       type(profiles_t) :: profiles
       type(kept_faces_t) :: faces
       type(fracture_mesh_t) :: fracture_before
       type(fracture_layout_t) :: layout
       type(guess_t) :: guess
-      type(heat_model_t), allocatable :: heat  ! on the mesh before, if it is that of a try
       integer(ik), allocatable :: pairs(:, :)
       real(rk) :: radius
       integer(ik) :: i, k, nearest
@@ -98,8 +96,8 @@ contains
       if (.not. allocated(self%kept_problem)) then
          call move_alloc(self%problem, self%kept_problem)
       else
-         call move_alloc(self%problem%heat, heat)
-         call discard(self%problem)
+         call move_alloc(self%problem, of_try)
+         call of_try%model%release()
       end if
       call move_alloc(problem, self%problem)
       call self%windows%coarse_changed()
@@ -111,11 +109,10 @@ contains
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
-      if (allocated(heat)) then
-         call carry_heat(self%scene, heat, map, faces, self%problem, self%now, error)
-      else if (allocated(self%scene%heat)) then
-         call carry_heat(self%scene, self%kept_problem%heat, map, faces, self%problem, self%now, &
-                         error)
+      if (allocated(of_try)) then
+         call carry_heat(self%scene, of_try, map, faces, self%problem, self%now, error)
+      else
+         call carry_heat(self%scene, self%kept_problem, map, faces, self%problem, self%now, error)
       end if
       if (allocated(error)) return
       call transfer_guess(fracture_before, self%problem%mesh%fracture, pairs, &
