@@ -66,7 +66,6 @@ module heat_model
       procedure :: begin
       procedure :: scalars
       procedure :: cell_means
-      procedure :: joint_capacity
       procedure :: last_node
       procedure :: of_cells
       procedure :: rock_capacity
@@ -351,12 +350,15 @@ contains
       real(rk), intent(in) :: first  !< first substep [s]
       integer, intent(in) :: n_wells
       type(heat_state_t), intent(out) :: state
+      real(rk), parameter :: nothing = 1.0e-6_rk  ! of a joint, over the largest cell's [-]
 
       state%temperature = self%initial
       state%next = first
       allocate (state%well_temperature(n_wells), source=0.0_rk)
       associate (of_fractures => self%fluid_capacity*width*length)
-         state%capacity = [self%rock_capacity(), of_fractures, self%joint_capacity(of_fractures)]
+         state%capacity = [self%rock_capacity(), of_fractures, &
+                           spread(nothing*maxval([0.0_rk, of_fractures]), 1, &
+                                  int(self%n - self%first_joint) + 1)]
       end associate
       state%range = [minval(self%initial), maxval(self%initial)]
    end subroutine begin
@@ -379,16 +381,6 @@ contains
          end do
       end associate
    end function rock_capacity
-
-   !> Capacity of joints: next to nothing, compared with the fracture cells [J/(m K)].
-   pure function joint_capacity(self, of_fractures) result(capacity)
-      class(heat_model_t), intent(in) :: self
-      real(rk), intent(in) :: of_fractures(:)  !< (fracture cells) [J/(m K)]
-      real(rk) :: capacity(self%n - self%first_joint + 1)
-      real(rk), parameter :: nothing = 1.0e-6_rk  ! of the largest [-]
-
-      capacity = nothing*maxval([0.0_rk, of_fractures])
-   end function joint_capacity
 
    !> Last unknown of a layer.
    elemental integer(ik) function last_node(self, layer)

@@ -15,7 +15,7 @@ module heat_transfer
    use coarse_layer_profiles, only: kept_faces_t
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
-   use mesh_geometry, only: cell_area, face_length
+   use mesh_geometry, only: face_length
    use mesh_types, only: mesh_map_t, mesh_t
    implicit none(type, external)
    private
@@ -29,6 +29,7 @@ module heat_transfer
    end type piece_t
 
    integer, parameter :: rise = 1, rate = 2  !< of what is transferred
+   real(rk), parameter :: tiny_joint = 1.0e-12_rk  !< fluid of one between new cells [m2]
 
 contains
 
@@ -122,13 +123,17 @@ contains
       type(mesh_map_t), intent(in) :: map
       real(rk), intent(in) :: before(:, :), capacity_before(:)
       real(rk), intent(out) :: after(:, :), capacity(:)
-      real(rk) :: share, whole(old%mesh%n_cells)
+      real(rk) :: covered(old%mesh%n_cells), share, whole(old%mesh%n_cells)
       real(rk), allocatable :: of_rock(:)
       integer(ik) :: c, from, k, l
 
       after = 0.0_rk
       capacity = 0.0_rk
       whole = old%of_cells(capacity_before)
+      covered = 0.0_rk
+      do k = 1, size(map%overlap_cell, kind=ik)
+         covered(map%overlap_cell(k)) = covered(map%overlap_cell(k)) + map%overlap_area(k)
+      end do
       do c = 1, new%mesh%n_cells
          if (map%cell_old(c) > 0) then
             capacity(c) = whole(map%cell_old(c))
@@ -140,7 +145,7 @@ contains
             ! Differences: what is uniform remains so.
             do k = first, last
                associate (other => map%overlap_cell(k))
-                  share = whole(other)*map%overlap_area(k)/cell_area(old%mesh, other)
+                  share = whole(other)*map%overlap_area(k)/covered(other)
                   capacity(c) = capacity(c) + share
                   after(:, c) = after(:, c) + share*(before(:, other) - before(:, from))
                end associate
@@ -255,14 +260,13 @@ contains
    end subroutine take_profile
 
    !> Fracture cells, as their parts before; new ones have the temperature of the rock beside them.
-   !! Joints where none was before have that of the cells that meet there.
    pure subroutine transfer_fractures(old, new, faces, filled, before, capacity_before, after, &
                                       capacity)
       class(heat_model_t), intent(in) :: old, new
       type(kept_faces_t), intent(in) :: faces
       real(rk), intent(in) :: filled(:), before(:, :), capacity_before(:)
       real(rk), intent(inout) :: after(:, :), capacity(:)
-      real(rk) :: covered(old%mesh%fracture%n_cells), met(new%n), share, total(2, new%n)
+      real(rk) :: covered(old%mesh%fracture%n_cells), share, total(2)
       integer(ik) :: c, from, i, j, k
 
       covered = 0.0_rk
@@ -278,41 +282,51 @@ contains
          end associate
          capacity(c) = new%fluid_capacity*filled(i)
          if (faces%before%length(i) == 0) cycle
-         total(:, c) = 0.0_rk
+         total = 0.0_rk
          from = old%first_cell - 1 + faces%before%at(i, 1_ik)
          do k = faces%before%first(i), faces%before%last(i)
             associate (cell => faces%before%item(k))
                j = old%first_cell - 1 + cell
                share = capacity_before(j)*faces%of_old(k)/covered(cell)
                capacity(c) = capacity(c) + share
-               total(:, c) = total(:, c) + share*(before(:, j) - before(:, from))
+               total = total + share*(before(:, j) - before(:, from))
             end associate
          end do
          after(:, c) = before(:, from)
-         if (capacity(c) > 0.0_rk) after(:, c) = after(:, c) + total(:, c)/capacity(c)
-      end do
-      met = 0.0_rk
-      total = 0.0_rk
-      do k = size(new%links, kind=ik), 1, -1
-         associate (ends => new%links(k)%ends)
-            if (ends(2) < new%first_joint) cycle
-            met(ends(2)) = met(ends(2)) + 1.0_rk
-            total(:, ends(2)) = total(:, ends(2)) + after(:, ends(1))
-         end associate
+         if (capacity(c) > 0.0_rk) after(:, c) = after(:, c) + total/capacity(c)
       end do
       do j = new%first_joint, new%n
-         after(:, j) = total(:, j)/max(met(j), 1.0_rk)
-      end do
-      capacity(new%first_joint:) = &
-         new%joint_capacity(capacity(new%first_cell:new%first_joint - 1))
-      do i = old%first_joint, old%n
-         do j = new%first_joint, new%n
-            if (norm2(new%place(:, j) - old%place(:, i)) > 0.0_rk) cycle
-            after(:, j) = before(:, i)
-            capacity(j) = capacity_before(i)
-         end do
+         call transfer_joint(old, new, j, before, capacity_before, after, capacity)
       end do
    end subroutine transfer_fractures
+
+   !> A joint: as before, or with next to nothing of the cells that meet there.
+   pure subroutine transfer_joint(old, new, joint, before, capacity_before, after, capacity)
+      class(heat_model_t), intent(in) :: old, new
+      integer(ik), intent(in) :: joint  !< unknown
+      real(rk), intent(in) :: before(:, :), capacity_before(:)
+      real(rk), intent(inout) :: after(:, :), capacity(:)
+      real(rk), parameter :: nothing = 1.0e-6_rk  ! [-]
+      integer(ik), allocatable :: cells(:)
+      integer(ik) :: i, k
+
+      do i = old%first_joint, old%n
+         if (norm2(new%place(:, joint) - old%place(:, i)) > 0.0_rk) cycle
+         after(:, joint) = before(:, i)
+         capacity(joint) = capacity_before(i)
+         return
+      end do
+      cells = pack([(new%links(k)%ends(1), k=1, size(new%links, kind=ik))], &
+                   new%links%ends(2) == joint)
+      associate (total => sum(capacity(cells)))
+         after(:, joint) = sum(after(:, cells), dim=2)/size(cells)
+         capacity(joint) = new%fluid_capacity*tiny_joint
+         if (.not. total > 0.0_rk) return
+         after(:, joint) = matmul(after(:, cells), capacity(cells))/total
+         capacity(joint) = nothing*total
+         capacity(cells) = (1.0_rk - nothing)*capacity(cells)
+      end associate
+   end subroutine transfer_joint
 
    !> Give the new cells the heat that is missing, or take it from them where it is negative.
    pure subroutine close_balance(new, map, missing, capacity, state)

@@ -15,7 +15,7 @@ submodule(twolevel_state) twolevel_remeshing
    use twolevel_guess, only: transfer_guess
    use twolevel_heat, only: carry_heat
    use twolevel_setup, only: choose_first_step
-   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
+   use twolevel_overlaps, only: fracture_overlaps, kept_faces, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
    use twolevel_wells, only: entries_of, transfer_shares
    implicit none(type, external)
@@ -148,28 +148,6 @@ contains
          call take_profiles(layers, profiles, map%cell_old, faces, state%unknowns, state%layer)
       end associate
    end subroutine transfer_layers
-
-   !> Faces of fracture cells before that those of a new mesh consist of.
-   pure function kept_faces(before, after) result(faces)
-      type(fracture_mesh_t), intent(in) :: before, after
-      type(kept_faces_t) :: faces
-      type(overlaps_t) :: overlaps
-      integer(ik) :: c, k
-
-      overlaps = fracture_overlaps(before, after)
-      faces%before%first = overlaps%first
-      faces%before%item = overlaps%old
-      faces%of_old = overlaps%length
-      faces%of_new = overlaps%length
-      do c = 1, after%n_cells
-         do k = faces%before%first(c), faces%before%last(c)
-            associate (old => before%cell_s(:, faces%before%item(k)), new => after%cell_s(:, c))
-               faces%of_old(k) = min(1.0_rk, faces%of_old(k)/(old(2) - old(1)))
-               faces%of_new(k) = min(1.0_rk, faces%of_new(k)/(new(2) - new(1)))
-            end associate
-         end do
-      end do
-   end function kept_faces
 
    !> Insert the blocks of layers after those of the cells.
    pure subroutine insert_layers(n_cells, n_layers, unknowns)
