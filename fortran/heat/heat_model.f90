@@ -15,7 +15,7 @@ module heat_model
    use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, local_system_t, share_t
    use coarse_joints, only: joints_t
-   use coarse_layer_places, only: place_layers
+   use coarse_layer_places, only: cell_ahead, place_layers
    use coarse_layers, only: layers_t
    use coarse_layout, only: at_component, block_count, end_block, layer_block
    use coarse_permeability, only: place_regions
@@ -261,8 +261,8 @@ contains
    end function scalars
 
    !> Set up the links, in this order: faces of the mesh; from node to node of layers, the last one
-   !! to the cell; pairs of fracture cells; branches to their joints. Faces on the outer boundary
-   !! have none.
+   !! to the cell; pairs of fracture cells; branches to their joints; last fracture cells to the
+   !! cells ahead of the tips. Faces on the outer boundary have none.
    subroutine link(self, connections, joints)
       class(heat_model_t), intent(inout) :: self
       integer(ik), intent(in) :: connections(:, :)
@@ -270,7 +270,7 @@ contains
       integer(ik) :: b, f, i, k, l, n
 
       n = self%mesh%n_faces + self%first_cell - 1 - self%mesh%n_cells + size(connections, 2) &
-          + joints%branch_count()
+          + joints%branch_count() + self%mesh%fracture%n_tips
       allocate (self%links(n))
       do f = 1, self%mesh%n_faces
          self%links(f) = face_link(self, f)
@@ -296,6 +296,13 @@ contains
          self%links(k + b) = link_t([self%first_cell - 1 + joints%cell(b), &
                                      self%first_joint - 1 + joints%joint(b)], is_limited=.true.)
       end do
+      k = k + joints%branch_count()
+      associate (fracture => self%mesh%fracture)
+         do i = 1, fracture%n_tips
+            self%links(k + i)%ends = [self%first_cell - 1 + fracture%point_cells%at( &
+                                      fracture%tip_point(i), 1_ik), cell_ahead(self%mesh, i)]
+         end do
+      end associate
    end subroutine link
 
    !> From the first cell of a face to the second, or to the fracture, whose layer is in between.

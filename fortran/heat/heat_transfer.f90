@@ -43,7 +43,7 @@ contains
       type(piece_t), allocatable :: pieces(:)
       real(rk), allocatable :: before(:, :), after(:, :)  ! (2, unknowns) rise [K] and rate [K/s]
       real(rk), allocatable :: capacity(:)  ! (unknowns) [J/(m K)]
-      real(rk) :: heat, supplied
+      real(rk) :: bounds(2), heat, supplied
 
       allocate (before(2, old%n), after(2, new%n), capacity(new%n))
       before = 0.0_rk
@@ -54,10 +54,15 @@ contains
       call transfer_cells(old, new, map, before, state%capacity, after, capacity)
       call transfer_layers(old, new, map, pieces, before, state%capacity, after, capacity)
       call transfer_fractures(old, new, faces, filled, before, state%capacity, after, capacity)
-      state%temperature = max(state%range(1), min(state%range(2), new%initial + after(rise, :)))
+      bounds = [min(state%range(1), minval(state%temperature)), &
+                max(state%range(2), maxval(state%temperature))]
+      state%temperature = max(bounds(1), min(bounds(2), new%initial + after(rise, :)))
       ! Fluid that new cells begin with comes from outside.
       supplied = new%fluid_capacity*sum(filled*state%temperature(new%first_cell:new%first_joint - 1))
-      call close_balance(new, map, heat + supplied - sum(capacity*state%temperature), capacity, state)
+      call close_balance(new, map%cell_old == 0, heat + supplied, capacity, bounds, &
+                         state%temperature)
+      call close_balance(new, map%cell_old >= 0, heat + supplied, capacity, bounds, &
+                         state%temperature)
       state%stored = state%stored + (sum(capacity*state%temperature) - heat)
       state%by_sides = state%by_sides + supplied
       state%capacity = capacity
@@ -328,33 +333,35 @@ contains
       end associate
    end subroutine transfer_joint
 
-   !> Give the new cells the heat that is missing, or take it from them where it is negative.
-   pure subroutine close_balance(new, map, missing, capacity, state)
+   !> Give some cells the heat that is missing, or take from them what is too much, as far as
+   !! temperatures stay within bounds.
+   pure subroutine close_balance(new, takes, heat, capacity, bounds, temperature)
       class(heat_model_t), intent(in) :: new
-      type(mesh_map_t), intent(in) :: map
-      real(rk), intent(in) :: missing  !< [J/m]
+      logical, intent(in) :: takes(:)  !< (cells)
+      real(rk), intent(in) :: heat  !< of the body [J/m]
       real(rk), intent(in) :: capacity(:)
-      type(heat_state_t), intent(inout) :: state
-      real(rk) :: space(new%n)
-      integer(ik) :: c, l
+      real(rk), intent(in) :: bounds(2)  !< [K]
+      real(rk), intent(inout) :: temperature(:)
+      real(rk) :: bound, missing, space(new%n)
+      integer(ik) :: l
 
-      associate (bound => state%range(merge(2, 1, missing > 0.0_rk)))
-         space = 0.0_rk
-         do c = 1, new%mesh%n_cells
-            if (map%cell_old(c) == 0) space(c) = capacity(c)*(bound - state%temperature(c))
-         end do
-         do l = 1, new%layers%n
-            if (map%cell_old(new%layers%cell(l)) > 0) cycle
-            associate (first => new%first_node(l), last => new%last_node(l))
-               space(first:last) = capacity(first:last)*(bound - state%temperature(first:last))
-            end associate
-         end do
-         if (.not. abs(sum(space)) > 0.0_rk) return
-         where (abs(space) > 0.0_rk)
-            state%temperature = state%temperature + min(1.0_rk, missing/sum(space)) &
-                                *(bound - state%temperature)
-         end where
+      missing = heat - sum(capacity*temperature)
+      bound = bounds(merge(2, 1, missing > 0.0_rk))
+      space = 0.0_rk
+      associate (n => new%mesh%n_cells)
+         where (takes) space(:n) = capacity(:n)*(bound - temperature(:n))
       end associate
+      do l = 1, new%layers%n
+         if (.not. takes(new%layers%cell(l))) cycle
+         associate (nodes => [new%first_node(l), new%last_node(l)])
+            space(nodes(1):nodes(2)) = capacity(nodes(1):nodes(2)) &
+                                       *(bound - temperature(nodes(1):nodes(2)))
+         end associate
+      end do
+      if (.not. abs(sum(space)) > 0.0_rk) return
+      where (abs(space) > 0.0_rk)
+         temperature = temperature + min(1.0_rk, missing/sum(space))*(bound - temperature)
+      end where
    end subroutine close_balance
 
 end module heat_transfer

@@ -476,8 +476,8 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       type(entry_row_t), allocatable :: entries(:)
       type(well_row_t), allocatable :: rows(:)
 
-      if (size(self%scene%injections) == 0) return
       if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+      if (size(self%scene%injections) == 0) return
       call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
       call self%value_errors%note_wells(self%scene, self%problem, rows, self%now%stated_errors, &
