@@ -105,7 +105,8 @@ contains
             do side = 1, 2
                if (mesh%face_layer(mesh%fracture%cell_faces(side, cell)) == 0) cycle
                flow(i) = flow(i) + tip_conductance(model%rock, ahead) &
-                         *(state%unknowns(3, end_block(mesh, cell, side)) - state%unknowns(3, ahead))
+                         *(state%unknowns(3, end_block(mesh, cell, side)) &
+                           - state%unknowns(3, ahead))
             end do
          end associate
       end do

@@ -58,7 +58,9 @@ contains
                 max(state%range(2), maxval(state%temperature))]
       state%temperature = max(bounds(1), min(bounds(2), new%initial + after(rise, :)))
       ! Fluid that new cells begin with comes from outside.
-      supplied = new%fluid_capacity*sum(filled*state%temperature(new%first_cell:new%first_joint - 1))
+      associate (of_fractures => state%temperature(new%first_cell:new%first_joint - 1))
+         supplied = new%fluid_capacity*sum(filled*of_fractures)
+      end associate
       call close_balance(new, map%cell_old == 0, heat + supplied, capacity, bounds, &
                          state%temperature)
       call close_balance(new, map%cell_old >= 0, heat + supplied, capacity, bounds, &
@@ -109,7 +111,7 @@ contains
       end do
    end function pieces_of
 
-   !> Length of what two segments on one line have in common; 0 where they are on different ones [m].
+   !> Length of what two segments on one line have in common; 0: they are on different ones [m].
    pure real(rk) function common_length(first, second) result(length)
       real(rk), intent(in) :: first(2, 2), second(2, 2)  !< ends in columns [m]
       real(rk) :: along(2), at(2), offset(2, 2)
@@ -171,7 +173,7 @@ contains
       capacity(:new%mesh%n_cells) = capacity(:new%mesh%n_cells)*of_rock(:new%mesh%n_cells)
    end subroutine transfer_cells
 
-   !> Temperatures of the layers, and of the cells such that these have the heat of the layers before.
+   !> Temperatures of layers, and of cells such that these have the heat of the layers before.
    pure subroutine transfer_layers(old, new, map, pieces, before, capacity_before, after, capacity)
       class(heat_model_t), intent(in) :: old, new
       type(mesh_map_t), intent(in) :: map

@@ -173,8 +173,8 @@ contains
       end associate
    end subroutine act
 
-   !> Advance heat by a step that ends with given flows, or take the result of the last call if it is
-   !! the same step with the same flows.
+   !> Advance heat by a step that ends with given flows, or take the result of the last call if it
+   !! is the same step with the same flows.
    subroutine advance(scene, since, after, problem, now, error)
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: since  !< start of the step [s]
