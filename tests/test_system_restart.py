@@ -33,7 +33,7 @@ MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
 MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
 SCENES = {
     "steps": FINE,
-    "heat": with_heat(FINE),
+    "heat": with_heat(GROWING),
     "growth": GROWING,
     "paris": GROWING_BY_PARIS,
     "mechanics": MECHANICS,

@@ -15,7 +15,7 @@ module coarse_layer_places
    implicit none(type, external)
    private
 
-   public :: add_tip_flow, place_layers
+   public :: add_tip_flow, cell_ahead, place_layers, tip_conductance
 
    !> A layer is at most this part of the distance of the centre of the cell from the face, and
    !! those of m faces at most the other part over m [-].
@@ -184,7 +184,7 @@ contains
             ahead = cell_ahead(mesh, tip)
             do side = 1, 2
                if (mesh%face_layer(fracture%cell_faces(side, cell)) == 0) cycle
-               conductance = round_tip*rock%mobility_at(ahead)
+               conductance = tip_conductance(rock, ahead)
             call add(matrix, end_block(mesh, cell, side), end_block(mesh, cell, side), -conductance)
                call add(matrix, ahead, ahead, -conductance)
                call add(matrix, end_block(mesh, cell, side), ahead, conductance)
@@ -205,6 +205,14 @@ contains
       end subroutine add
 
    end subroutine add_tip_flow
+
+   !> Between each face of a tip's cell and the cell ahead [m2/(Pa s)].
+   pure real(rk) function tip_conductance(rock, ahead) result(conductance)
+      type(rock_t), intent(in) :: rock
+      integer(ik), intent(in) :: ahead
+
+      conductance = round_tip*rock%mobility_at(ahead)
+   end function tip_conductance
 
    !> The cell at a tip whose centre lies most nearly ahead of it.
    pure integer(ik) function cell_ahead(mesh, tip) result(ahead)

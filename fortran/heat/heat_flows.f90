@@ -8,6 +8,8 @@ module heat_flows
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
    use coarse_diffusion, only: region_fluxes
+   use coarse_layer_places, only: cell_ahead, tip_conductance
+   use coarse_layout, only: end_block
    use coarse_model, only: coarse_model_t
    use coarse_state, only: state_t
    use heat_links, only: external_t
@@ -28,10 +30,11 @@ contains
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(in) :: state  !< after the step
       type(external_t), intent(in) :: wells(:)  !< their flows [W/(m K)]
-      real(rk) :: through(mesh%n_faces)
+      real(rk) :: round_tips(mesh%fracture%n_tips), through(mesh%n_faces)
       integer(ik) :: f, first, k, l
 
-      through = face_flows(mesh, model, state)*heat%fluid_capacity
+      round_tips = tip_flows(mesh, model, state)
+      through = face_flows(mesh, model, state, round_tips)*heat%fluid_capacity
       heat%links(:mesh%n_faces)%flow = merge(through, 0.0_rk, mesh%face_side == 0)
       k = mesh%n_faces
       do l = 1, heat%layers%n
@@ -42,15 +45,20 @@ contains
       first = k + 1
       k = k + size(state%flow, kind=ik)
       heat%links(first:k)%flow = state%flow*heat%fluid_capacity
-      heat%links(k + 1:)%flow = state%branch_flow*heat%fluid_capacity
+      first = k + 1
+      k = k + size(state%branch_flow, kind=ik)
+      heat%links(first:k)%flow = state%branch_flow*heat%fluid_capacity
+      heat%links(k + 1:)%flow = round_tips*heat%fluid_capacity
       heat%externals = [wells, sides(heat, -through), outlets(heat, model, state)]
    end subroutine set_flows
 
    !> Flow through each face out of its first cell [m2/s].
-   function face_flows(mesh, model, state) result(through)
+   function face_flows(mesh, model, state, round_tips) result(through)
       type(mesh_t), intent(in) :: mesh
       type(coarse_model_t), intent(in) :: model
       type(state_t), intent(in) :: state
+      real(rk), intent(in) :: round_tips(:)  !< (tips) of their cells' loss [m2/s]
+      real(rk) :: loss(mesh%fracture%n_cells)
       real(rk) :: through(mesh%n_faces)
       real(rk), allocatable :: flux(:), scalars(:)
       integer(ik) :: f, i, j, r
@@ -67,12 +75,50 @@ contains
          deallocate (flux)
       end do
       do i = 1, mesh%fracture%n_cells
+         loss(i) = state%leakoff(i)*face_length(mesh, mesh%fracture%cell_faces(1, i))
+      end do
+      do i = 1, mesh%fracture%n_tips
+         j = tip_cell(mesh, i)
+         loss(j) = loss(j) - round_tips(i)
+      end do
+      do i = 1, mesh%fracture%n_cells
          associate (faces => mesh%fracture%cell_faces(:, i))
-            through(faces) = through(faces) - 0.5_rk*(state%leakoff(i)*face_length(mesh, faces(1)) &
-                                                      + sum(through(faces)))
+            through(faces) = through(faces) - 0.5_rk*(loss(i) + sum(through(faces)))
          end associate
       end do
    end function face_flows
+
+   !> Flow round each tip from the faces of its cell to the cell ahead, as in coarse_layer_places
+   !! [m2/s].
+   pure function tip_flows(mesh, model, state) result(flow)
+      type(mesh_t), intent(in) :: mesh
+      type(coarse_model_t), intent(in) :: model
+      type(state_t), intent(in) :: state
+      real(rk) :: flow(mesh%fracture%n_tips)
+      integer(ik) :: ahead, i, side
+
+      flow = 0.0_rk
+      if (model%layers%n == 0) return
+      do i = 1, mesh%fracture%n_tips
+         ahead = cell_ahead(mesh, i)
+         associate (cell => tip_cell(mesh, i))
+            do side = 1, 2
+               if (mesh%face_layer(mesh%fracture%cell_faces(side, cell)) == 0) cycle
+               flow(i) = flow(i) + tip_conductance(model%rock, ahead) &
+                         *(state%unknowns(3, end_block(mesh, cell, side)) &
+                           - state%unknowns(3, ahead))
+            end do
+         end associate
+      end do
+   end function tip_flows
+
+   !> Fracture cell at a tip.
+   pure integer(ik) function tip_cell(mesh, tip)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: tip
+
+      tip_cell = mesh%fracture%point_cells%at(mesh%fracture%tip_point(tip), 1_ik)
+   end function tip_cell
 
    !> Heat across the outer boundary, except what the multi-point fluxes conduct. Fluid that enters
    !! has the temperature of the side, or where it has none that before the first step.

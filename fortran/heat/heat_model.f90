@@ -15,7 +15,7 @@ module heat_model
    use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, local_system_t, share_t
    use coarse_joints, only: joints_t
-   use coarse_layer_places, only: place_layers
+   use coarse_layer_places, only: cell_ahead, place_layers
    use coarse_layers, only: layers_t
    use coarse_layout, only: at_component, block_count, end_block, layer_block
    use coarse_permeability, only: place_regions
@@ -66,6 +66,9 @@ module heat_model
       procedure :: begin
       procedure :: scalars
       procedure :: cell_means
+      procedure :: last_node
+      procedure :: of_cells
+      procedure :: rock_capacity
       procedure :: undisturbed
    end type heat_model_t
 
@@ -258,8 +261,8 @@ contains
    end function scalars
 
    !> Set up the links, in this order: faces of the mesh; from node to node of layers, the last one
-   !! to the cell; pairs of fracture cells; branches to their joints. Faces on the outer boundary
-   !! have none.
+   !! to the cell; pairs of fracture cells; branches to their joints; last fracture cells to the
+   !! cells ahead of the tips. Faces on the outer boundary have none.
    subroutine link(self, connections, joints)
       class(heat_model_t), intent(inout) :: self
       integer(ik), intent(in) :: connections(:, :)
@@ -267,7 +270,7 @@ contains
       integer(ik) :: b, f, i, k, l, n
 
       n = self%mesh%n_faces + self%first_cell - 1 - self%mesh%n_cells + size(connections, 2) &
-          + joints%branch_count()
+          + joints%branch_count() + self%mesh%fracture%n_tips
       allocate (self%links(n))
       do f = 1, self%mesh%n_faces
          self%links(f) = face_link(self, f)
@@ -293,6 +296,13 @@ contains
          self%links(k + b) = link_t([self%first_cell - 1 + joints%cell(b), &
                                      self%first_joint - 1 + joints%joint(b)], is_limited=.true.)
       end do
+      k = k + joints%branch_count()
+      associate (fracture => self%mesh%fracture)
+         do i = 1, fracture%n_tips
+            self%links(k + i)%ends = [self%first_cell - 1 + fracture%point_cells%at( &
+                                      fracture%tip_point(i), 1_ik), cell_ahead(self%mesh, i)]
+         end do
+      end associate
    end subroutine link
 
    !> From the first cell of a face to the second, or to the fracture, whose layer is in between.
@@ -347,47 +357,69 @@ contains
       real(rk), intent(in) :: first  !< first substep [s]
       integer, intent(in) :: n_wells
       type(heat_state_t), intent(out) :: state
-      integer(ik) :: c, k, l
       real(rk), parameter :: nothing = 1.0e-6_rk  ! of a joint, over the largest cell's [-]
 
       state%temperature = self%initial
       state%next = first
       allocate (state%well_temperature(n_wells), source=0.0_rk)
-      allocate (state%capacity(self%n))
-      associate (layers => self%layers, capacity => state%capacity)
-         do c = 1, self%mesh%n_cells
-            capacity(c) = self%rock%storage(min(int(c), size(self%rock%storage))) &
-                          *cell_area(self%mesh, c)
-         end do
-         if (layers%n > 0) capacity(layers%cells) = layers%storage*layers%rest
-         do l = 1, layers%n
-            k = self%first_node(l)
-            capacity(k:k + layers%chain(l)%n - 1) = layers%chain(l)%storage*layers%chain(l)%volume
-         end do
-         capacity(self%first_cell:self%first_joint - 1) = self%fluid_capacity*width*length
-         capacity(self%first_joint:) = nothing*self%fluid_capacity*maxval([0.0_rk, width*length])
+      associate (of_fractures => self%fluid_capacity*width*length)
+         state%capacity = [self%rock_capacity(), of_fractures, &
+                           spread(nothing*maxval([0.0_rk, of_fractures]), 1, &
+                                  int(self%n - self%first_joint) + 1)]
       end associate
       state%range = [minval(self%initial), maxval(self%initial)]
    end subroutine begin
+
+   !> Capacity of the rock and its first fluid, of cells and nodes of layers [J/(m K)].
+   pure function rock_capacity(self) result(capacity)
+      class(heat_model_t), intent(in) :: self
+      real(rk) :: capacity(self%first_cell - 1)
+      integer(ik) :: c, l
+
+      do c = 1, self%mesh%n_cells
+         capacity(c) = self%rock%storage(min(int(c), size(self%rock%storage))) &
+                       *cell_area(self%mesh, c)
+      end do
+      associate (layers => self%layers)
+         if (layers%n > 0) capacity(layers%cells) = layers%storage*layers%rest
+         do l = 1, layers%n
+            capacity(self%first_node(l):self%last_node(l)) = layers%chain(l)%storage &
+                                                             *layers%chain(l)%volume
+         end do
+      end associate
+   end function rock_capacity
+
+   !> Last unknown of a layer.
+   elemental integer(ik) function last_node(self, layer)
+      class(heat_model_t), intent(in) :: self
+      integer(ik), intent(in) :: layer
+
+      last_node = self%first_node(layer) + self%layers%chain(layer)%n - 1
+   end function last_node
+
+   !> Sum over each cell and its layers.
+   pure function of_cells(self, values) result(total)
+      class(heat_model_t), intent(in) :: self
+      real(rk), intent(in) :: values(:)  !< (unknowns of the rock, at least)
+      real(rk) :: total(self%mesh%n_cells)
+      integer(ik) :: c, k, l
+
+      total = values(:self%mesh%n_cells)
+      do l = 1, self%layers%n
+         c = self%layers%cell(l)
+         do k = self%first_node(l), self%last_node(l)
+            total(c) = total(c) + values(k)
+         end do
+      end do
+   end function of_cells
 
    !> Mean temperature of each cell with its layers [K].
    pure function cell_means(self, state) result(mean)
       class(heat_model_t), intent(in) :: self
       type(heat_state_t), intent(in) :: state
       real(rk) :: mean(self%mesh%n_cells)
-      real(rk) :: capacity(self%mesh%n_cells)
-      integer(ik) :: c, k, l
 
-      capacity = state%capacity(:self%mesh%n_cells)
-      mean = capacity*state%temperature(:self%mesh%n_cells)
-      do l = 1, self%layers%n
-         c = self%layers%cell(l)
-         do k = self%first_node(l), self%first_node(l) + self%layers%chain(l)%n - 1
-            capacity(c) = capacity(c) + state%capacity(k)
-            mean(c) = mean(c) + state%capacity(k)*state%temperature(k)
-         end do
-      end do
-      mean = mean/capacity
+      mean = self%of_cells(state%capacity*state%temperature)/self%of_cells(state%capacity)
    end function cell_means
 
 end module heat_model

@@ -14,6 +14,8 @@ module heat_state
       real(rk), allocatable :: capacity(:)  !< (unknowns) with the fluid that is there now [J/(m K)]
       !> (unknowns) of the last substep; unallocated before the first [K/s]
       real(rk), allocatable :: rate(:)
+      !> (unknowns) rise that acted in the last step; unallocated: none did [K]
+      real(rk), allocatable :: acting(:)
       !> (wells) of what flows out of the body, else into it, in the last step [K]
       real(rk), allocatable :: well_temperature(:)
       real(rk) :: last = 0.0_rk  !< length of the last substep [s]
@@ -50,6 +52,7 @@ contains
       call archive%list("temperature", self%temperature, "heat ?")
       call archive%list("capacity", self%capacity, "heat ?")
       call archive%list("rate", self%rate, "heat ?")
+      call archive%list("acting", self%acting, "heat ?")
       call archive%list("well_temperature", self%well_temperature, "all_wells ?")
       call archive%agree("heat", [allocated(self%temperature), allocated(self%capacity), &
                                   allocated(self%well_temperature)])

@@ -48,7 +48,7 @@ contains
       end do
    end subroutine check_given_heat
 
-   !> What heat does not cover yet, and temperatures of wells.
+   !> Wells that may inject have a temperature, or one per stage.
    pure subroutine check_heat(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -56,12 +56,6 @@ contains
       integer :: i, record
 
       if (.not. allocated(scene%heat)) return
-      if (scene%growth%enabled) then
-         call refuse(error, sheet, sheet%find("heat"), "", "is given with growth, but heat is "// &
-                     "not carried over to grown fractures yet; omit &heat or set enabled of "// &
-                     "&growth to .false.")
-         return
-      end if
       do i = 1, size(scene%injections)
          record = sheet%find("injection", i)
          associate (well => scene%injections(i))

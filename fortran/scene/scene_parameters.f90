@@ -126,9 +126,8 @@ module scene_parameters
       group_t("initial", implied=.true., scenes=in_fluid, meaning="State before the first step."), &
       group_t("heat", scenes=in_fluid, &
          meaning="Heat in rock and fractures: conduction, and what the fluid carries; none "// &
-                 "without this group. With heat_expansion temperatures act on stresses and "// &
-                 "pressures; they do not act on viscosity, and fractures must not grow "// &
-                 "(docs/theory.md)."), &
+                 "without this group. Temperatures act on stresses and pressures by "// &
+                 "heat_expansion, not on viscosity (docs/theory.md)."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
          meaning="Stress in the body before loading, in equilibrium with tractions on its "// &

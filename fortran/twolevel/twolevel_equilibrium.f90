@@ -20,6 +20,7 @@ module twolevel_equilibrium
    use growth_targets, only: target_none
    use growth_tip, only: tip_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_heat, only: settle_heat, settlings_max
    use twolevel_levels_state, only: levels_state_t
    use twolevel_segments, only: are_at_ligaments, begin_segments, can_join, join_targets, &
                                 shared_excesses
@@ -69,6 +70,7 @@ module twolevel_equilibrium
       integer, allocatable :: begun(:)  !< (tips) number of new segments that the tip has begun
       type(previous_try_t) :: previous_try
       type(advances_t) :: advances  !< search for the positions of the tips on their segments
+      integer :: settlings = 0  !< tries with the flows of the last one, which moved other heat
       logical :: is_over = .false.  !< the tries have ended
    end type search_t
 
@@ -427,10 +429,19 @@ contains
       type(timers_t), intent(inout) :: timers
       type(trial_t), intent(inout) :: trial
       type(error_t), allocatable, intent(out) :: error
-      logical :: any_exceeds
+      logical :: any_exceeds, is_settled
 
       call evaluate_others(self, any_exceeds, timers, error)
       if (allocated(error) .or. any_exceeds) return
+      call settle_heat(self%scene, self%before, self%now%coarse, self%problem, self%now%heat, &
+                       is_settled, error)
+      if (allocated(error)) return
+      if (.not. is_settled .and. search%settlings < settlings_max) then
+         search%settlings = search%settlings + 1
+         search%previous_try = previous_try_t()
+         search%advances = advances_t()
+         return
+      end if
       search%is_over = .true.
       associate (length => self%now%segment%length, increment => self%increments())
          trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, &

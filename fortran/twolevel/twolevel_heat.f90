@@ -3,6 +3,7 @@ module twolevel_heat
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_time
+   use coarse_layer_profiles, only: kept_faces_t
    use coarse_state, only: state_t
    use heat_field, only: new_field
    use heat_flows, only: set_flows
@@ -10,17 +11,22 @@ module twolevel_heat
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    use heat_steps, only: advance_heat
+   use heat_transfer, only: transfer_heat
+   use mesh_types, only: mesh_map_t
    use report_rows, only: heat_row_t, summary_t, well_row_t
    use report_simulation, only: snapshot_t
    use scene_types, only: injection_t, scene_t
+   use twolevel_levels_state, only: levels_state_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_stepping, only: first_step
    use twolevel_wells, only: rate
    implicit none(type, external)
    private
 
-   public :: add_heat_fields, add_well_temperatures, follow_heat, heat_row, predict_heat, set_heat
-   public :: warn_of_heat
+   public :: act, add_heat_fields, add_well_temperatures, carry_heat, follow_heat, heat_row
+   public :: predict_heat, set_heat, settle_heat, settlings_max, warn_of_heat
+
+   integer, parameter :: settlings_max = 3  !< tries that are repeated since they moved other heat
 
 contains
 
@@ -54,6 +60,7 @@ contains
       type(coarse_problem_t), intent(inout) :: problem
       type(heat_state_t), intent(inout) :: now
       type(error_t), allocatable, intent(out) :: error
+      real(rk), allocatable :: acting(:)
       real(rk) :: dt
 
       if (.not. allocated(problem%heat)) return
@@ -64,9 +71,9 @@ contains
          call begin_heat(scene, after, problem, now)
       end if
       if (.not. dt > same_time*after%time) return
-      call set_flows(problem%heat, problem%mesh, problem%model, after, &
-                     well_flows(scene, problem, before%time, after))
-      call advance_heat(problem%heat, dt, now, error)
+      if (allocated(now%acting)) acting = now%acting
+      call advance(scene, before%time, after, problem, now, error)
+      if (allocated(acting)) now%acting = acting
    end subroutine follow_heat
 
    !> Set the heat of the first state.
@@ -83,34 +90,149 @@ contains
       end associate
    end subroutine begin_heat
 
-   !> The temperatures that act in the step to come: those at its end, if the fluid flows as in the
-   !! last step.
-   subroutine predict_heat(scene, state, now, dt, problem, error)
+   !> Let the temperatures act that the step to come ends with: those of a try of the same step, or
+   !! where a substep of heat may be as long as the step, which it may be where rates hardly change,
+   !! those by the rates; else those with the flows of the last step.
+   subroutine predict_heat(scene, state, dt, problem, now, error)
       type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state  !< before the step
-      type(heat_state_t), intent(in) :: now
       real(rk), intent(in) :: dt  !< [s]
       type(coarse_problem_t), intent(inout) :: problem
+      type(heat_state_t), intent(inout) :: now
       type(error_t), allocatable, intent(out) :: error
-      type(heat_state_t) :: rise
+      type(heat_state_t) :: then
       type(state_t) :: after
+      logical :: is_known
 
-      if (.not. allocated(problem%heat)) return
-      associate (heat => problem%heat, rock => problem%model%rock)
-         if (.not. any(abs([rock%heat_stress, rock%heat_content]) > 0.0_rk)) return
-         after = state
-         after%time = state%time + dt
-         call set_flows(heat, problem%mesh, problem%model, state, &
-                        well_flows(scene, problem, state%time, after))
-         rise = now
-         call begin_heat(scene, state, problem, rise)
-         call advance_heat(heat, dt, rise, error)
-         if (allocated(error)) return
-         rise%temperature = rise%temperature - heat%initial
-         rock%temperature = heat%cell_means(rise)
-         problem%heat_field = new_field(heat, rise%temperature, rock%temperature)
-      end associate
+      if (.not. acts(problem)) return
+      is_known = all(abs(problem%heat_span - [state%time, dt]) <= 0.0_rk)
+      if (.not. is_known .and. allocated(now%rate) .and. now%next >= dt) then
+         now%acting = now%temperature + dt*now%rate - problem%heat%initial
+      else
+         if (.not. is_known) then
+            after = state
+            after%time = state%time + dt
+            then = now
+            call begin_heat(scene, state, problem, then)
+            call advance(scene, state%time, after, problem, then, error)
+            if (allocated(error)) return
+         end if
+         now%acting = problem%heat_after%temperature - problem%heat%initial
+      end if
+      call act(problem, now)
    end subroutine predict_heat
+
+   !> Compare the temperatures that acted in a try of a step with those that its flows give. Where
+   !! these have moved other heat by more than a tolerance, the try is to be repeated with them.
+   subroutine settle_heat(scene, before, after, problem, now, is_settled, error)
+      type(scene_t), intent(in) :: scene
+      type(state_t), intent(in) :: before, after
+      type(coarse_problem_t), intent(inout) :: problem
+      type(heat_state_t), intent(in) :: now  !< before the step
+      logical, intent(out) :: is_settled
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: tolerance = 5.0e-3_rk  ! of the heat moved since the start [-]
+      type(heat_state_t) :: then
+
+      is_settled = .true.
+      if (.not. acts(problem)) return
+      then = now
+      call begin_heat(scene, before, problem, then)
+      call advance(scene, before%time, after, problem, then, error)
+      if (allocated(error)) return
+      associate (rise => then%temperature - problem%heat%initial)
+         is_settled = sum(then%capacity*abs(rise - now%acting)) &
+                      <= tolerance*sum(then%capacity*abs(rise))
+      end associate
+   end subroutine settle_heat
+
+   !> Whether temperatures act on stress or fluid.
+   pure logical function acts(problem)
+      type(coarse_problem_t), intent(in) :: problem
+
+      acts = allocated(problem%heat)
+      if (acts) acts = any(abs([problem%model%rock%heat_stress, &
+                                problem%model%rock%heat_content]) > 0.0_rk)
+   end function acts
+
+   !> Let the temperatures of a state act that acted when it was found.
+   subroutine act(problem, now)
+      type(coarse_problem_t), intent(inout) :: problem
+      type(heat_state_t), intent(in) :: now
+
+      if (.not. allocated(now%acting)) then
+         if (allocated(problem%model%rock%temperature)) deallocate (problem%model%rock%temperature)
+         return
+      end if
+      associate (heat => problem%heat)
+         associate (capacity => heat%rock_capacity())
+            problem%model%rock%temperature = heat%of_cells(capacity*now%acting(:size(capacity))) &
+                                             /heat%of_cells(capacity)
+         end associate
+         problem%heat_field = new_field(heat, now%acting, problem%model%rock%temperature)
+      end associate
+   end subroutine act
+
+   !> Advance heat by a step that ends with given flows, or take the result of the last call if it
+   !! is the same step with the same flows.
+   subroutine advance(scene, since, after, problem, now, error)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: since  !< start of the step [s]
+      type(state_t), intent(in) :: after
+      type(coarse_problem_t), intent(inout) :: problem
+      type(heat_state_t), intent(inout) :: now
+      type(error_t), allocatable, intent(out) :: error
+      logical :: is_same
+
+      associate (heat => problem%heat, span => [since, after%time - since])
+         call set_flows(heat, problem%mesh, problem%model, after, &
+                        well_flows(scene, problem, since, after))
+         associate (flows => [heat%links%flow, heat%externals%flow])
+            is_same = all(abs(problem%heat_span - span) <= 0.0_rk) .and. &
+                      allocated(problem%heat_flows)
+            if (is_same) is_same = size(problem%heat_flows) == size(flows)
+            if (is_same) is_same = all(abs(problem%heat_flows - flows) <= 0.0_rk)
+            if (.not. is_same) then
+               call advance_heat(heat, span(2), now, error)
+               if (allocated(error)) return
+               problem%heat_span = span
+               problem%heat_flows = flows
+               problem%heat_after = now
+            end if
+         end associate
+         now = problem%heat_after
+      end associate
+   end subroutine advance
+
+   !> Transfer heat to a problem whose mesh has grown.
+   subroutine carry_heat(scene, before, map, faces, problem, levels, error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: before  !< on the mesh before
+      type(mesh_map_t), intent(in) :: map
+      type(kept_faces_t), intent(in) :: faces
+      type(coarse_problem_t), intent(inout) :: problem
+      type(levels_state_t), intent(inout) :: levels
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: filled(problem%mesh%fracture%n_cells)
+
+      if (.not. allocated(scene%heat)) return
+      call set_heat(scene, problem, error)
+      if (allocated(error)) return
+      filled = 0.0_rk
+      associate (s => problem%mesh%fracture%cell_s, new => levels%grown)
+         if (scene%growth%new_volume == "prefilled") then
+            filled(new) = levels%coarse%aperture(new)*(s(2, new) - s(1, new))
+         end if
+      end associate
+      if (allocated(levels%heat%temperature)) then
+         call transfer_heat(before%heat, problem%heat, map, faces, filled, levels%heat)
+      end if
+      problem%heat_span = before%heat_span
+      problem%heat_after = before%heat_after
+      if (allocated(problem%heat_after%temperature)) then
+         call transfer_heat(before%heat, problem%heat, map, faces, filled, problem%heat_after)
+      end if
+   end subroutine carry_heat
 
    !> What wells supply to fracture cells, joints and rock in a step.
    function well_flows(scene, problem, since, state) result(externals)

@@ -3,11 +3,12 @@
 module twolevel_overlaps
    use base_kinds, only: ik, rk
    use base_tolerances, only: same_place
+   use coarse_layer_profiles, only: kept_faces_t
    use mesh_types, only: fracture_mesh_t
    implicit none(type, external)
    private
 
-   public :: fracture_overlaps, overlaps_t
+   public :: fracture_overlaps, kept_faces, overlaps_t
 
    !> Old cells that each new cell overlaps, in their order along the fracture.
    type :: overlaps_t
@@ -46,6 +47,28 @@ contains
          overlaps%first(i + 1) = size(overlaps%old, kind=ik) + 1
       end do
    end function fracture_overlaps
+
+   !> Faces of fracture cells before that those of a new mesh consist of.
+   pure function kept_faces(before, after) result(faces)
+      type(fracture_mesh_t), intent(in) :: before, after
+      type(kept_faces_t) :: faces
+      type(overlaps_t) :: overlaps
+      integer(ik) :: c, k
+
+      overlaps = fracture_overlaps(before, after)
+      faces%before%first = overlaps%first
+      faces%before%item = overlaps%old
+      faces%of_old = overlaps%length
+      faces%of_new = overlaps%length
+      do c = 1, after%n_cells
+         do k = faces%before%first(c), faces%before%last(c)
+            associate (old => before%cell_s(:, faces%before%item(k)), new => after%cell_s(:, c))
+               faces%of_old(k) = min(1.0_rk, faces%of_old(k)/(old(2) - old(1)))
+               faces%of_new(k) = min(1.0_rk, faces%of_new(k)/(new(2) - new(1)))
+            end associate
+         end do
+      end do
+   end function kept_faces
 
    !> Whether a cell overlaps no old cell: the cell has been added by growth.
    elemental logical function is_new(self, cell)

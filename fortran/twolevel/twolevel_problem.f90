@@ -19,6 +19,7 @@ module twolevel_problem
    use scene_types, only: injection_t, scene_t
    use heat_field, only: heat_field_t
    use heat_model, only: heat_model_t
+   use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
    use twolevel_wells, only: ask_wells, between_cells, control_wells, entries_of, feed_joints, &
@@ -41,6 +42,11 @@ module twolevel_problem
       integer(ik), allocatable :: rock_cell(:)
       type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
       type(heat_field_t) :: heat_field  !< rise of the temperatures that acts in the present step
+      ! Heat after the last step that was tried, start and length of this step [s], and its flows;
+      ! unallocated: those on another mesh.
+      type(heat_state_t) :: heat_after
+      real(rk) :: heat_span(2) = -1.0_rk
+      real(rk), allocatable :: heat_flows(:)  !< [W/(m K)]
       type(coarse_values_t) :: values  !< values of the state in which tips were evaluated last
    contains
       procedure :: feed_wells

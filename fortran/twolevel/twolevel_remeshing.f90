@@ -13,8 +13,9 @@ submodule(twolevel_state) twolevel_remeshing
    use mesh_builder, only: remesh
    use mesh_types, only: fracture_mesh_t, mesh_map_t
    use twolevel_guess, only: transfer_guess
+   use twolevel_heat, only: carry_heat
    use twolevel_setup, only: choose_first_step
-   use twolevel_overlaps, only: fracture_overlaps, overlaps_t
+   use twolevel_overlaps, only: fracture_overlaps, kept_faces, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
    use twolevel_wells, only: entries_of, transfer_shares
    implicit none(type, external)
@@ -49,7 +50,7 @@ contains
       real(rk), intent(in) :: centres(:, :)
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
-      type(coarse_problem_t), allocatable :: problem
+      type(coarse_problem_t), allocatable :: of_try, problem
       type(mesh_map_t) :: map
       type(profiles_t) :: profiles
       type(kept_faces_t) :: faces
@@ -92,8 +93,12 @@ contains
       layout = layout_of(self%problem)
       call transfer_levels(self%scene, self%problem, map, problem, self%now)
       call timers%stop(phase_transfer)
-      if (.not. allocated(self%kept_problem)) call move_alloc(self%problem, self%kept_problem)
-      call discard(self%problem)
+      if (.not. allocated(self%kept_problem)) then
+         call move_alloc(self%problem, self%kept_problem)
+      else
+         call move_alloc(self%problem, of_try)
+         call of_try%model%release()
+      end if
       call move_alloc(problem, self%problem)
       call self%windows%coarse_changed()
       call self%reference%coarse_changed()
@@ -104,6 +109,12 @@ contains
       call self%problem%feed_wells(self%scene, error)
       if (allocated(error)) return
       call rest_fluid(self%problem%model, self%now%coarse)
+      if (allocated(of_try)) then
+         call carry_heat(self%scene, of_try, map, faces, self%problem, self%now, error)
+      else
+         call carry_heat(self%scene, self%kept_problem, map, faces, self%problem, self%now, error)
+      end if
+      if (allocated(error)) return
       call transfer_guess(fracture_before, self%problem%mesh%fracture, pairs, &
                           self%problem%model%connections, layout, layout_of(self%problem), guess)
       self%now%coarse%guess = guess
@@ -137,28 +148,6 @@ contains
          call take_profiles(layers, profiles, map%cell_old, faces, state%unknowns, state%layer)
       end associate
    end subroutine transfer_layers
-
-   !> Faces of fracture cells before that those of a new mesh consist of.
-   pure function kept_faces(before, after) result(faces)
-      type(fracture_mesh_t), intent(in) :: before, after
-      type(kept_faces_t) :: faces
-      type(overlaps_t) :: overlaps
-      integer(ik) :: c, k
-
-      overlaps = fracture_overlaps(before, after)
-      faces%before%first = overlaps%first
-      faces%before%item = overlaps%old
-      faces%of_old = overlaps%length
-      faces%of_new = overlaps%length
-      do c = 1, after%n_cells
-         do k = faces%before%first(c), faces%before%last(c)
-            associate (old => before%cell_s(:, faces%before%item(k)), new => after%cell_s(:, c))
-               faces%of_old(k) = min(1.0_rk, faces%of_old(k)/(old(2) - old(1)))
-               faces%of_new(k) = min(1.0_rk, faces%of_new(k)/(new(2) - new(1)))
-            end associate
-         end do
-      end do
-   end function kept_faces
 
    !> Insert the blocks of layers after those of the cells.
    pure subroutine insert_layers(n_cells, n_layers, unknowns)

@@ -15,7 +15,7 @@ submodule(twolevel_state) twolevel_restart
    use mesh_archive, only: visit_mesher_and_mesh
    use report_restart, only: visit_simulation
    use twolevel_archive, only: visit_levels, visit_stepper, visit_value_errors, visit_values
-   use twolevel_heat, only: heat_row, set_heat
+   use twolevel_heat, only: act, heat_row, set_heat
    use twolevel_places, only: place_tips
    use twolevel_schedule, only: next_switch
    use twolevel_setup, only: keep_above_zero, rules_of_scene
@@ -179,9 +179,7 @@ contains
             if (allocated(archive%fault)) return
          end if
          call visit_step_values(archive, "step", model)
-         if (allocated(problem%heat)) then
-            call archive%list("temperature", model%rock%temperature, "cells ?")
-         end if
+         if (archive%is_loading) call act(problem, self%now%heat)
          call visit_factors(archive, "factors", model, problem%mesh, error)
          if (allocated(error)) return
          call visit_values(archive, "values", problem%values)

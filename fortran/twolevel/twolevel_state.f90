@@ -14,7 +14,7 @@ module twolevel_state
    use report_restart, only: restartable_t
    use report_simulation, only: snapshot_t
    use twolevel_field_errors, only: add_rock_errors, find_fracture_errors, note_joint_errors
-   use twolevel_heat, only: add_heat_fields, heat_row, predict_heat
+   use twolevel_heat, only: act, add_heat_fields, heat_row, predict_heat
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_pace, only: pace_t
@@ -237,11 +237,13 @@ contains
          call self%windows%put_back()
          call self%reference%put_back()
       end if
-      if (.not. allocated(self%kept_problem)) return
-      call discard(self%problem)
-      call move_alloc(self%kept_problem, self%problem)
-      call self%windows%coarse_changed()
-      call self%reference%coarse_changed()
+      if (allocated(self%kept_problem)) then
+         call discard(self%problem)
+         call move_alloc(self%kept_problem, self%problem)
+         call self%windows%coarse_changed()
+         call self%reference%coarse_changed()
+      end if
+      call act(self%problem, self%now%heat)
    end subroutine put_back
 
    !> Copy of all quantities that a step changes.
@@ -301,7 +303,7 @@ contains
       type(step_report_t), intent(out) :: report
       type(error_t), allocatable, intent(out) :: error
 
-      call predict_heat(self%scene, self%now%coarse, self%now%heat, dt, self%problem, error)
+      call predict_heat(self%scene, self%now%coarse, dt, self%problem, self%now%heat, error)
       if (allocated(error)) return
       call self%problem%advance(self%scene, dt, self%now%coarse, timers, report, error)
       if (allocated(error)) return

@@ -7,6 +7,7 @@ submodule(twolevel_state) twolevel_steps
    use base_timers, only: timers_t
    use base_tolerances, only: same_time
    use coarse_rock, only: shear_beside
+   use coarse_state, only: go_back
    use mesh_types, only: fracture_mesh_t
    use report_rows, only: entry_row_t, event_replay, event_step_cut, event_unstable, &
                           history_row_t, well_row_t
@@ -15,7 +16,8 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
-   use twolevel_heat, only: add_well_temperatures, follow_heat, warn_of_heat
+   use twolevel_heat, only: add_well_temperatures, follow_heat, settle_heat, settlings_max, &
+                            warn_of_heat
    use twolevel_limits, only: watch_levels
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
@@ -307,19 +309,28 @@ contains
       type(trial_t), intent(out) :: trial
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      logical :: is_settled
+      integer :: k
 
       if (self%scene%growth%in_equilibrium()) then
      call find_equilibrium(self, self%step%dt, is_last, may_jump, timers, self%step%report, trial, &
                                error)
          return
       end if
-      call self%try_step(self%step%dt, timers, self%step%report, error)
-      if (allocated(error)) return
-      trial%converged = self%step%report%converged
-      if (.not. trial%converged) then
-         trial%reason = self%step%report%reason
-         return
-      end if
+      do k = 0, settlings_max
+         if (k > 0) call go_back(self%now%coarse, self%before)
+         call self%try_step(self%step%dt, timers, self%step%report, error)
+         if (allocated(error)) return
+         trial%converged = self%step%report%converged
+         if (.not. trial%converged) then
+            trial%reason = self%step%report%reason
+            return
+         end if
+         call settle_heat(self%scene, self%before, self%now%coarse, self%problem, self%now%heat, &
+                          is_settled, error)
+         if (allocated(error)) return
+         if (is_settled) exit
+      end do
       trial%time_error = self%step_error(self%step%dt)
       if (.not. is_last) then
          call share_before_switch(self, self%step%dt, punctual, trial%switch, timers, error)
@@ -465,8 +476,8 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       type(entry_row_t), allocatable :: entries(:)
       type(well_row_t), allocatable :: rows(:)
 
-      if (size(self%scene%injections) == 0) return
       if (self%is_initial) call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+      if (size(self%scene%injections) == 0) return
       call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
       call self%value_errors%note_wells(self%scene, self%problem, rows, self%now%stated_errors, &

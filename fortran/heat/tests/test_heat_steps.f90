@@ -41,6 +41,7 @@ program test_heat_steps
    call carried_through_rock()
    call network(.true.)
    call network(.false.)
+   call steady_tips()
    call regions_in_series()
    call thermal_stress(0.0_rk, .false.)
    call thermal_stress(0.3_rk, .false.)
@@ -282,6 +283,47 @@ contains
       end if
       call checks%is_true(all(now%capacity > 0.0_rk), "capacities remain")
    end subroutine network
+
+   !> Steady flow from a fracture with two tips: what flows into each part of the body flows out of
+   !! it, and its capacity remains.
+   subroutine steady_tips()
+      type(scene_t) :: scene
+      type(mesh_t) :: mesh
+      type(coarse_model_t) :: model
+      type(state_t) :: state
+      type(heat_model_t) :: heat
+      type(heat_state_t) :: now
+      type(mesher_t) :: mesher
+      type(step_report_t) :: report
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+      real(rk), parameter :: line(2, 2, 1) = reshape([0.6_rk, 0.9_rk, 1.3_rk, 1.1_rk], [2, 2, 1])
+      real(rk), parameter :: rate = 1.0e-9_rk, long = 1.0e4_rk  ! [m2/s], [s]
+      real(rk), allocatable :: before(:)
+
+      scene = hot_body(2.6_rk)
+      call load_sides(scene, [-20.0e6_rk, -20.0e6_rk, 0.0_rk])
+      scene%sides(:)%pressure_given = .true.
+      call mesh_square(checks, straight_network(line), 0.1_rk, 0.3_rk, mesher, mesh)
+      model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
+      model%first_step = 1.0_rk
+      call model%set_mesh(mesh, scene, timers, error)
+      call checks%no_error(error, "discretization of a fracture")
+      call checks%is_true(model%layers%n > 0, "layers of pressure")
+      call new_state(mesh, model%cells, initial_t(), model, state)
+      model%cells%injection(1) = rate
+      call model%advance(mesh, 1.0e20_rk, state, timers, report, error)
+      call checks%no_error(error, "steady flow from a fracture")
+      call start_heat(scene, mesh, model, state, 1.0_rk, heat, now)
+      before = now%capacity
+      call set_flows(heat, mesh, model, state, &
+                     [external_t(heat%first_cell, flow=of_fluid*rate, temperature=-70.0_rk)])
+      call advance_heat(heat, long, now, error)
+      call checks%no_error(error, "heat from a fracture")
+      call checks%is_close(maxval(abs(now%capacity - before)), 0.0_rk, &
+                           1.0e-6_rk*of_fluid*rate*long, "capacity in steady flow")
+      call checks%is_close(now%balance_error(), 0.0_rk, 1.0e-10_rk, "balance in steady flow")
+   end subroutine steady_tips
 
    !> Steady conduction between two sides through a body whose right half conducts a thousandth.
    subroutine regions_in_series()

@@ -65,9 +65,6 @@ program test_scene_heat
    call refuse(10, "&heat temperature=150.0 tolerance=2.0 /", &
                ":10: &heat: tolerance is 2.0 but must be a finite number "// &
                "greater than 0.0 and at most 1.0")
-   call refuse(14, "&growth enabled=.true. /", ":10: &heat: is given with growth, but heat is "// &
-               "not carried over to grown fractures yet; omit &heat or set enabled of &growth "// &
-               "to .false.")
    call put_changed(path, good, 9, "&injection fracture='f1' rate=-1.0e-9 /", 9, &
                     "&injection fracture='f1' rate=-1.0e-9 /")
    call read_scene(path, scene, error)
