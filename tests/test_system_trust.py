@@ -142,7 +142,7 @@ def test_where_no_window_helps_the_errors_are_stated(tmp_path: Path) -> None:
 
     Growth goes on; the errors of the pressure and of the position are an event and a warning.
     """
-    assert run(tmp_path, poisson=0.49999999999, ratio=1.0) == (0, "")
+    assert run(tmp_path, poisson=0.499999, ratio=1.0) == (0, "")
     out = tmp_path / "out"
     uncertain = [row for row in rows(out / "events.csv") if row["kind"] == "growth_uncertain"]
     assert windows(tmp_path)
