@@ -39,16 +39,19 @@ contains
       end do
    end subroutine warm_window
 
-   !> The linear pressure in an element, at its corners: from its parts in the coarse cells [Pa].
+   !> The linear pressure in an element, at its corners: from its parts in the coarse cells, or where
+   !! these hardly hold it (along paths that differ from the coarse ones) from the cells of its
+   !! corners, continued [Pa].
    function linear_part(problem, xy, corner_cells) result(corner)
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: xy(2, 3)  !< corners [m]
       integer(ik), intent(in) :: corner_cells(3)  !< coarse cells there
       real(rk) :: corner(3)
-      real(rk) :: area, moment(3), of_part(3), share(3, 3)
+      real(rk), parameter :: most = 0.9_rk  ! of the area that counts as held
+      real(rk) :: area, moment(3)
       real(rk), allocatable :: part(:, :)
       integer(ik), allocatable :: cells(:)
-      integer(ik) :: c, i, j, k, next
+      integer(ik) :: c, i, k, next
 
       moment = 0.0_rk
       area = 0.0_rk
@@ -69,12 +72,7 @@ contains
             end if
             do k = 2, size(part, 2, kind=ik) - 1
                associate (triangle => part(:, [1_ik, k, k + 1]))
-                  share = reshape([(barycentric(xy, triangle(:, j)), j=1, 3)], [3, 3])
-                  of_part = moments(problem%heat, problem%heat_field, triangle, c)
-                  do j = 1, 3
-                     of_part(j) = problem%model%rock%heat_pressure(c, of_part(j))
-                  end do
-                  moment = moment + triangle_area(triangle)*matmul(share, of_part)
+                  moment = moment + integrals(problem, xy, triangle, c)
                   area = area + triangle_area(triangle)
                end associate
             end do
@@ -85,8 +83,32 @@ contains
             end do
          end associate
       end do
+      if (.not. area > most*triangle_area(xy)) then
+         moment = 0.0_rk
+         do k = 1, 3
+            moment = moment + integrals(problem, xy, xy, corner_cells(k))/3.0_rk
+         end do
+         area = triangle_area(xy)
+      end if
       corner = (12.0_rk*moment - 3.0_rk*sum(moment))/area
    end function linear_part
+
+   !> Integrals of the pressure in a coarse cell over a triangle, each weighted with an area
+   !! coordinate of an element [Pa m2].
+   function integrals(problem, xy, triangle, cell) result(moment)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: xy(2, 3)  !< corners of the element [m]
+      real(rk), intent(in) :: triangle(2, 3)  !< [m]
+      integer(ik), intent(in) :: cell
+      real(rk) :: moment(3)
+      real(rk) :: of_part(3), share(3, 3)
+      integer(ik) :: j
+
+      share = reshape([(barycentric(xy, triangle(:, j)), j=1, 3)], [3, 3])
+      of_part = moments(problem%heat, problem%heat_field, triangle, cell)
+      of_part = [(problem%model%rock%heat_pressure(cell, of_part(j)), j=1, 3)]
+      moment = triangle_area(triangle)*matmul(share, of_part)
+   end function integrals
 
    !> Error of K_I by the temperatures of coarse cells next to a tip whose faces have another
    !! temperature than the rock before. With a front of the time t round the tip of a long crack,
