@@ -39,8 +39,8 @@ contains
       end do
    end subroutine warm_window
 
-   !> The linear pressure in an element, at its corners: from its parts in the coarse cells, or where
-   !! these hardly hold it (along paths that differ from the coarse ones) from the cells of its
+   !> The linear pressure in an element, at its corners: from its parts in the coarse cells, or, if
+   !! these hardly hold it (along paths that differ from the coarse ones), from the cells at its
    !! corners, continued [Pa].
    function linear_part(problem, xy, corner_cells) result(corner)
       type(coarse_problem_t), intent(in) :: problem
