@@ -69,7 +69,7 @@ contains
       state%by_sides = state%by_sides + supplied
       state%capacity = capacity
       if (allocated(state%rate)) state%rate = after(rate, :)
-      if (allocated(state%acting)) deallocate (state%acting)  ! found anew for the next step
+      if (allocated(state%acting)) deallocate (state%acting)  ! found again for the next step
    end subroutine transfer_heat
 
    !> Faces with layers before, and the new ones that overlap them.
@@ -266,7 +266,7 @@ contains
       end associate
    end subroutine take_profile
 
-   !> Fracture cells, as their parts before; new ones have the temperature of the rock beside them.
+   !> Fracture cells, as their parts before; new ones have that of the rock on both sides.
    pure subroutine transfer_fractures(old, new, faces, filled, before, capacity_before, after, &
                                       capacity)
       class(heat_model_t), intent(in) :: old, new
