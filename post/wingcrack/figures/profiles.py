@@ -153,14 +153,16 @@ def _profile(
     run: Run, table: Table, label: str, mine: BoolArray, wanted_s: Sequence[float]
 ) -> Figure:
     lines = _lines(run, table, label, mine, wanted_s)
-    panels = _panels(table)
-    columns = len(panels) // 2
-    figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
-    axes = list(figure.subplots(2, columns, sharex=True).flat)
+    jumps = np.concatenate([table.number(panel.column)[mine] for panel in _PANELS[:2]])
+    rows = 2 if without_round_off(jumps, jump_scale(run)).any() else 1
+    columns = len(_panels(table)) // 2
+    panels = _panels(table)[(2 - rows) * columns :]  # of a fracture that is stuck: stresses only
+    figure = style.new_figure(style.DOUBLE_COLUMN, 1.9 * rows + 1.1)
+    axes = list(figure.subplots(rows, columns, sharex=True).flat)
     for panel, axis in zip(panels, axes, strict=True):
         _draw_panel(axis, lines, panel)
     friction = _draw_bound(axes[-1], lines)
-    for axis in axes[columns:]:
+    for axis in axes[-columns:]:
         axis.set_xlabel(f"distance along the fracture [{run_length_unit(run).name}]")
     style.letter(axes)
     figure.suptitle(run.fracture_name(label), fontsize=9)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,7 @@ COLUMNS = (
 )
 _MOST_MARKS = 9  # joints with a line of their own
 _MOST_FACTS = 17  # lines for which there is room
+_WIDEST = 38  # characters of the line of a well
 _MOST_PEAKS = 2  # of wells, the highest
 _NEAR = 0.03  # share of the axis between marks that are both named
 _EARLY = 0.02  # share of the run in which the injectivity may leave its panel
@@ -420,8 +422,9 @@ def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
         lines.append(f"leaked off {100.0 * share:z.0f} %")
     for name, row, highest in highest_pressures(table)[:_MOST_PEAKS]:
         when = at(float(table.moments()[row]))
-        of_well = f"{name}: " if name else ""
-        lines.append(f"{of_well}peak pressure {float(MEGAPASCAL.of(highest)):.2f} MPa at {when}")
+        of_well = f"{name}: peak" if name else "peak pressure"
+        words = f"{of_well} {float(MEGAPASCAL.of(highest)):.2f} MPa at {when}"
+        lines += wrap(words, _WIDEST, subsequent_indent="  ")
     lines.append(f"stimulated {length('stimulated_length_m')},")
     lines.append(f"  of it connected {length('connected_stimulated_m')}")
     clusters = int(table.number("n_clusters")[-1])
