@@ -218,5 +218,9 @@ def _well(lines: Sequence[Line], grows: bool) -> str:
     total = np.bincount(cluster, [line.length for line in lines])[cluster]
     longest = max(range(len(lines)), key=lambda i: (total[i], lines[i].length))
     rate = float(f"{min(1.0e-5, _RATE * total[longest]):.1g}")
-    well = {"fracture": lines[longest].name, "rate": rate, "pressure": 33e6 if grows else 29e6}
+    well: dict[str, Value] = {
+        "fracture": lines[longest].name,
+        "rate": rate,
+        "pressure": 33e6 if grows else 29e6,
+    }
     return (_LIMIT_WITH_GROWTH if grows else _LIMIT) + group_text("injection", well)

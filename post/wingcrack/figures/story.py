@@ -102,7 +102,7 @@ def story(run: Run) -> Figure:
     beside = style.chosen(page=map_ratio(run) > _FLAT, column=False, slide=True)
     width = style.whole_width()
     stacked = style.chosen(page=beside, column=True, slide=True)
-    text = style.text_height(len(facts) + 8 if stacked else max(len(facts), 7) + 1)
+    text = style.text_height(len(facts) + 11 if stacked else max(len(facts), 7) + 1)
     heights = [(0.62 if beside else 1.0) * (width - 0.8) * map_ratio(run) + 0.7]
     heights = [max(*heights, text)] if beside else [*heights, text]
     heights = style.chosen(page=heights, column=heights, slide=[text])
@@ -299,7 +299,8 @@ def _legend_above(axes: Axes) -> None:
     """Legend in two columns, with room for it above what is drawn."""
     entries = len(axes.get_legend_handles_labels()[0])
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + (0.06 + 0.13 * -(-entries // 2)) * (high - low))
+    row = style.chosen(page=0.14, column=0.14, slide=0.25)
+    axes.set_ylim(low, high + (0.06 + row * -(-entries // 2)) * (high - low))
     axes.legend(loc="upper left", ncols=2)
 
 
@@ -311,9 +312,8 @@ def draw_lengths(axes: Axes, run: Run) -> None:
         values = unit.of(run.history.number(column))
         axes.plot(time, values, dashes, color=colour, label=name)
     axes.set(title="length: connected with a well, stimulated", ylabel=f"length [{unit.name}]")
-    low, high = axes.get_ylim()
-    axes.set_ylim(0.0, high + 0.35 * (high - min(low, 0.0)))  # room for the legend
-    axes.legend(loc="upper left", ncols=2)
+    axes.set_ylim(bottom=0.0)
+    _legend_above(axes)
 
 
 def _draw_moment(axes: Axes, run: Run) -> None:
