@@ -20,6 +20,7 @@ FRACTURE_DEFAULTS: dict[str, Value] = {"friction": 0.6, "dilation_deg": 3.0, "ap
 _CELLS = 8.0  # along a fracture
 _MOST = 1500.0  # cells along all fractures: some two minutes
 _RATE = 1.4e-7  # of the well for each metre of its cluster [m2/s per m]
+_MOST_RATE = 1.0e-5  # and at most, where the median fracture has two metres [m2/s]
 # Cells far from the fractures over those at them, and in the diagonal of the body: with less of one
 # or the other cells grow too slowly from small ones in a wide body
 _COARSENING, _ACROSS = 8.0, 25.0
@@ -217,7 +218,9 @@ def _well(lines: Sequence[Line], grows: bool) -> str:
         np.minimum.at(cluster, other, before[one])
     total = np.bincount(cluster, [line.length for line in lines])[cluster]
     longest = max(range(len(lines)), key=lambda i: (total[i], lines[i].length))
-    rate = float(f"{min(1.0e-5, _RATE * total[longest]):.1g}")
+    # larger networks take more before anything slips
+    most = _MOST_RATE * max(1.0, 0.5 * float(np.median([line.length for line in lines])))
+    rate = float(f"{min(most, _RATE * total[longest]):.1g}")
     well: dict[str, Value] = {
         "fracture": lines[longest].name,
         "rate": rate,
