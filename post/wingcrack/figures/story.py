@@ -219,7 +219,12 @@ def draw_pressure(axes: Axes, run: Run) -> None:
     beside.set_ylim(min(0.0, 1.25 * float(rate.min())), max(1.25 * float(rate.max()), 1e-300))
     beside.set_ylabel(f"rate [{unit.name}]")
     lines = [axes.lines[0], beside.lines[0]]
-    axes.legend(handles=lines, loc="lower center")
+    # the legend avoids what its own axes have: the pressure once more, unseen
+    (low, high), (least, most) = axes.get_ylim(), beside.get_ylim()
+    share = (MEGAPASCAL.of(pressure) - low) / (high - low)
+    beside.plot(time, least + (most - least) * share, lw=0.0)
+    beside.set_ylim(least, most)
+    beside.legend(handles=lines, loc="best")
 
 
 def _draw_pressures(axes: Axes, run: Run, wells: Table) -> None:
