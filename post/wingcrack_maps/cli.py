@@ -223,7 +223,6 @@ def _network(
         content.note("cells", words)
     line_values = [line.attributes for line in content.lines]
     lines = content.lines
-    wells = entry_values("injection", content.wells, content, path)
     entries = (line_values, regions, region_values, body, cell, cells, given.growth)
     wells = entry_values("injection", content.wells, content, path)
     return Network(lines, *entries, content.wells, wells)  # type: ignore[arg-type]

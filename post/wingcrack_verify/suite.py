@@ -105,25 +105,19 @@ def _read(folder: Path, read: Callable[[Path], Item]) -> Item | BrokenCase:
 
 def judge_suite(suite: Suite, outcomes: Mapping[tuple[str, str], Outcome]) -> JudgedSuite:
     """Judge all cases; `outcomes` by case and run."""
-    cases = []
-    for case in suite.cases:
-        if isinstance(case, BrokenCase):
-            unreadable = CaseReport(
-                case.name, case.name, UNREADABLE, "", case.folder, broken=case.reason
-            )
-            cases.append(unreadable)
-        else:
-            cases.append(judge_case(case, _of_case(outcomes, case.name)))
-    stability = []
-    for item in suite.stability:
-        if isinstance(item, BrokenCase):
-            broken = StabilityReport(
-                item.name, item.name, UNREADABLE, "", item.folder, broken=item.reason
-            )
-            stability.append(broken)
-        else:
-            stability.append(judge_stability(item, _of_case(outcomes, item.name)))
-    return JudgedSuite(tuple(cases), tuple(stability))
+    cases = tuple(
+        CaseReport(item.name, item.name, UNREADABLE, "", item.folder, broken=item.reason)
+        if isinstance(item, BrokenCase)
+        else judge_case(item, _of_case(outcomes, item.name))
+        for item in suite.cases
+    )
+    stability = tuple(
+        StabilityReport(item.name, item.name, UNREADABLE, "", item.folder, broken=item.reason)
+        if isinstance(item, BrokenCase)
+        else judge_stability(item, _of_case(outcomes, item.name))
+        for item in suite.stability
+    )
+    return JudgedSuite(cases, stability)
 
 
 def _of_case(outcomes: Mapping[tuple[str, str], Outcome], name: str) -> dict[str, Outcome]:

@@ -52,9 +52,9 @@ def test_load_against_length(loaded: Run) -> None:
     assert growing.get_xlabel() == "step [-]"
 
 
-def test_intensities_by_step_and_the_rest_by_load(loaded: Run) -> None:
+def test_what_grows_under_a_load_is_drawn_by_step(loaded: Run) -> None:
     assert intensities(loaded).axes[0].get_xlabel() == "step [-]"
-    assert development(loaded).axes[0].get_xlabel() == "load factor [-]"
+    assert development(loaded).axes[0].get_xlabel() == "step [-]"
 
 
 def test_no_load_no_figure(wet_run: Path) -> None:

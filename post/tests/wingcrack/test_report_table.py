@@ -59,3 +59,4 @@ def test_page_and_file_have_the_same_rows(wells: Path, tmp_path: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert text.count("<tr>") == 1 + len(rows)
     assert '<a href="report.csv">' in text
+    assert "<td>2e-12</td>" in text  # the injectivity, in its unit

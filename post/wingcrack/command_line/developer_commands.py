@@ -10,6 +10,14 @@ from wingcrack.command_line.values import absolute, whole
 
 _SOLVER = TOP / "build" / "release" / "fortran" / "app" / "wingcrack-solver"
 _NAMES = Parameter("names", "[NAME...]", many=True)
+_FOLDERS = tuple(
+    Parameter(name, "DIR", help, absolute, TOP / path)
+    for name, path, help in (  # noqa: A001
+        ("--cases", "verification", "where the cases are"),
+        ("--build", "build/release", "where the solver was built"),
+        ("--cache", "build/verification", "where the files of the runs are kept"),
+    )
+)
 
 
 @command(
@@ -18,15 +26,8 @@ _NAMES = Parameter("names", "[NAME...]", many=True)
     Parameter("names", "[CASE...]", many=True),
     flag("--quick", "only the quick cases"),
     Parameter("--jobs", "N", "runs at a time (2)", whole(1, 64), 2),
-    *(
-        Parameter(name, "DIR", help, absolute, TOP / path)
-        for name, path, help in (  # noqa: A001
-            ("--cases", "verification", "where the cases are"),
-            ("--build", "build/release", "where the solver was built"),
-            ("--cache", "build/verification", "where the files of the runs are kept"),
-            ("--report", "verification/report", "where the report goes"),
-        )
-    ),
+    *_FOLDERS,
+    Parameter("--report", "DIR", "where the report goes", absolute, TOP / "verification/report"),
     about="""\
 Runs the verification cases, measures their errors and writes verification/report/ with index.html,
 report.json and, where Chromium or Chrome is installed, report.pdf. What has not changed since an
@@ -61,15 +62,8 @@ _PAPERS = ("paper_a", "paper_b", "paper_c", "paper_d")
     Parameter("--out", "DIR", "for the results (default: out/PAPER)", Path),
     flag("--quick", "some of the numbers and figures, in seconds"),
     Parameter("--jobs", "N", "runs at a time (2)", whole(1, 64), 2),
-    *(
-        Parameter(name, "DIR", help, absolute, TOP / path)
-        for name, path, help in (  # noqa: A001
-            ("--papers", "inputs/papers", "where the files of the papers are"),
-            ("--cases", "verification", "where the cases are, whose runs are used"),
-            ("--build", "build/release", "where the solver was built"),
-            ("--cache", "build/verification", "where the files of the runs are kept"),
-        )
-    ),
+    Parameter("--papers", "DIR", "where their files are", absolute, TOP / "inputs/papers"),
+    *_FOLDERS,
     about="""\
 Runs all scenes and studies of a paper of the thesis (Dang 2023), draws its figures, and writes a
 table of every number that it prints: the thesis' value, that of an experiment where it quotes one,

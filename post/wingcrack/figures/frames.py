@@ -114,14 +114,16 @@ def extent(fields: Sequence[MatrixField]) -> Window:
     return Window(float(x_min), float(x_max), float(y_min), float(y_max))
 
 
-def zoom_window(body: Window, fractures: Sequence[FractureField | None]) -> Window | None:
+def zoom_window(
+    body: Window, fractures: Sequence[FractureField | None], small: float = SMALL
+) -> Window | None:
     """Square around all fractures at all times; None if they are large in the body or absent."""
     ends = [f.segments.reshape(-1, 2) for f in fractures if f is not None and len(f.segments)]
-    return _square(body, np.concatenate(ends)) if ends else None
+    return _square(body, np.concatenate(ends), small) if ends else None
 
 
 def changed_window(
-    body: Window, frames: Sequence[Frame], changes: Sequence[FloatArray]
+    body: Window, frames: Sequence[Frame], changes: Sequence[FloatArray], small: float = SMALL
 ) -> Window | None:
     """Square around the cells that change by a share of the largest change; None if it is large.
 
@@ -132,15 +134,15 @@ def changed_window(
         frame.matrix.points[frame.matrix.triangles[np.abs(change) >= CHANGED * largest]]
         for frame, change in zip(frames, changes, strict=True)
     ]
-    return _square(body, np.concatenate(points).reshape(-1, 2)) if largest > 0.0 else None
+    return _square(body, np.concatenate(points).reshape(-1, 2), small) if largest > 0.0 else None
 
 
-def _square(body: Window, points: FloatArray) -> Window | None:
+def _square(body: Window, points: FloatArray, small: float = SMALL) -> Window | None:
     """Square with some room around points, inside the body; None if they fill much of it."""
     lower, upper = points.min(axis=0), points.max(axis=0)
     size = float((upper - lower).max())
     width, height = body.x_max - body.x_min, body.y_max - body.y_min
-    if size == 0.0 or size > SMALL * min(width, height):
+    if size == 0.0 or size > small * min(width, height):
         return None
     half = 0.7 * size
     half_x, half_y = min(half, width / 2), min(half, height / 2)
@@ -283,7 +285,7 @@ def draw_fractures(axes: Axes, fractures: FractureField | None, width: float, un
         return
     # a white casing keeps all three colours apart from light and dark parts of the map
     casing = LineCollection(
-        list(unit.of(fractures.segments)), colors="white", linewidths=width + 1.0, capstyle="round"
+        list(unit.of(fractures.segments)), colors="white", linewidths=1.45 * width, capstyle="round"
     )
     axes.add_collection(casing, autolim=False)
     for number, state in enumerate(style.STATES):

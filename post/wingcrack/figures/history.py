@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.load import STEP_LABEL, abscissa, has_load, tip_steps
+from wingcrack.figures.load import abscissa, has_load, states_abscissa
 from wingcrack.figures.marks import mark_moments
 from wingcrack.figures.pressures import injected_and_produced, well_pressures
 from wingcrack.figures.read import Run, needed
@@ -55,7 +55,7 @@ def intensities(run: Run) -> Figure:
     table = needed(run.tips, "tips.csv", "stress intensity factors")
     if run.history.rows == 1:
         return intensities_table(run)
-    time, label = _tip_abscissa(run, table)
+    time, label = states_abscissa(run, table)
     tips = _groups(table, _tips(table))
     unit = intensity_unit(*(table.number(column) for _, _, column, _, _ in _MODES))
     toughness = run.scene.toughness_pa_sqrtm if run.scene else None
@@ -94,7 +94,7 @@ def draw_intensity(axes: Axes, run: Run, quantity: str = "keq") -> list[Artist]:
     mode = _MODES[INTENSITIES.index(quantity)]
     tips = _groups(table, _tips(table))
     unit = intensity_unit(*(table.number(column) for _, _, column, _, _ in _MODES))
-    _draw_mode(axes, table, mode, [rows for _, rows in tips], _tip_abscissa(run, table), unit)
+    _draw_mode(axes, table, mode, [rows for _, rows in tips], states_abscissa(run, table), unit)
     toughness = run.scene.toughness_pa_sqrtm if run.scene and quantity == "keq" else None
     if toughness is not None:
         axes.axhline(float(unit.of(toughness)), color="#555555", linewidth=0.8, ls="--")
@@ -105,12 +105,6 @@ def draw_intensity(axes: Axes, run: Run, quantity: str = "keq") -> list[Artist]:
 def _of_methods(handle: Artist) -> bool:
     """Whether an entry of the legend tells methods apart, which K_eq does not show."""
     return str(handle.get_label()).startswith(("lines:", "circles:", "bands:"))
-
-
-def _tip_abscissa(run: Run, table: Table) -> tuple[FloatArray, str]:
-    if has_load(run) and growth_start(run) is not None:
-        return tip_steps(run, table), STEP_LABEL
-    return abscissa(run, table.moments())
 
 
 def _draw_mode(
@@ -176,7 +170,7 @@ def development(run: Run) -> Figure:
 
 def draw_length(axes: Axes, run: Run) -> None:
     """Draw the length of all fractures into axes."""
-    time, label = abscissa(run, run.history.moments())
+    time, label = states_abscissa(run, run.history)
     unit = run_length_unit(run)
     values = unit.of(run.history.number("fracture_length_m"))
     axes.plot(time, values, color=style.CYCLE[0])
@@ -186,7 +180,7 @@ def draw_length(axes: Axes, run: Run) -> None:
 
 def draw_pressure(axes: Axes, run: Run) -> None:
     """Draw the pressure of each well into axes."""
-    time, label = abscissa(run, run.history.moments())
+    time, label = states_abscissa(run, run.history)
     pressures = well_pressures(run.history)
     for index, (name, pressure) in enumerate(pressures.items()):
         axes.plot(time, MEGAPASCAL.of(pressure), label=name, **style.line_look(index))
@@ -197,7 +191,7 @@ def draw_pressure(axes: Axes, run: Run) -> None:
 
 def draw_jumps(axes: Axes, run: Run) -> None:
     """Draw largest slip and opening into axes."""
-    time, label = abscissa(run, run.history.moments())
+    time, label = states_abscissa(run, run.history)
     slip, opening = (
         without_round_off(run.history.number(name), jump_scale(run))
         for name in ("max_slip_m", "max_opening_m")
@@ -215,7 +209,7 @@ def draw_jumps(axes: Axes, run: Run) -> None:
 
 def draw_states(axes: Axes, run: Run) -> None:
     """Draw how many fracture cells stick, slip and are open into axes."""
-    time, label = abscissa(run, run.history.moments())
+    time, label = states_abscissa(run, run.history)
     rows = settled_rows(run)  # in the short steps after growth fractures stick that slip else
     for state, dashes in zip(style.STATES, ("-", "-", "--"), strict=True):
         # a state holds for the step that ends at its time

@@ -11,12 +11,15 @@ from matplotlib.figure import Figure
 
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
+from wingcrack.figures.fields import FractureField
 from wingcrack.figures.frames import (
+    CHANGED,
     draw_fractures_by,
     extent,
     line_width,
     read_frame,
     set_window,
+    value_scale,
     written_states,
     zoom_window,
 )
@@ -47,7 +50,9 @@ def jump_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
         raise AbsentError("the run has no fractures")
     names = ["slip", "aperture" if "aperture" in fractures.cell else "opening"]
     body = extent([frame.matrix])
-    view = zoom_window(body, [fractures]) or body
+    jump = np.hypot(*fractures.cell["jump"].T[:2])
+    changed = FractureField(fractures.segments[jump >= CHANGED * jump.max()], fractures.state)
+    view = zoom_window(body, [changed], small=np.inf) or body
     unit = run_length_unit(run)
     panel = min(3.0, 2.6 * view.ratio)
     figure = style.new_figure(style.DOUBLE_COLUMN, panel + 0.7)
@@ -55,8 +60,11 @@ def jump_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     for axes, name in zip(panels, names, strict=True):
         values = fractures.of(name)
         fitting = displacement_unit(values)
-        norm = Normalize(0.0, float(fitting.of(values).max()) or 1.0)
-        draw_fractures_by(axes, fractures, fitting.of(values), norm, line_width(run, _WIDTH), unit)
+        drawn = fitting.of(values)
+        norm = Normalize(0.0, float(drawn.max()) or 1.0)
+        if name == "aperture":
+            norm = value_scale([drawn])
+        draw_fractures_by(axes, fractures, drawn, norm, line_width(run, _WIDTH), unit)
         set_window(axes, view, unit)
         style.map_axes(axes, unit)
         axes.set_title(f"{name}, {moment_label(run, frame.moment, frame.row)}")

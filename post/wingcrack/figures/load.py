@@ -32,6 +32,14 @@ def abscissa(run: Run, moments: FloatArray) -> tuple[FloatArray, str]:
     return clock.of(moments), f"time [{clock.name}]"
 
 
+def states_abscissa(run: Run, table: Table) -> tuple[FloatArray, str]:
+    """What stands below curves of a table: time, or under a load at which tips grow the step."""
+    if has_load(run) and growth_start(run) is not None:
+        steps = tip_steps(table) if table.has("tip") else np.arange(1.0, table.rows + 1.0)
+        return steps, STEP_LABEL
+    return abscissa(run, table.moments())
+
+
 def moment_label(run: Run, moment: float, row: int | None = None) -> str:
     """How a title calls a moment of the run; states of one load by their step (row, from 0) too."""
     value, label = abscissa(run, np.array([moment]))
@@ -43,7 +51,7 @@ def moment_label(run: Run, moment: float, row: int | None = None) -> str:
     return f"$t$ = {value[0]:.4g} {label[6:-1]}"
 
 
-def tip_steps(run: Run, table: Table) -> FloatArray:
+def tip_steps(table: Table) -> FloatArray:
     """Number of the step, from 1, of each row of tips.csv: a tip has one in each until it joins."""
     tips = table.text("tip")
     steps = np.zeros(table.rows)

@@ -60,7 +60,8 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     Where the pressure differs from place to place from the start on (depth, gravity), its change
     since the first written state is drawn, in which the wells are seen.
 
-    Fractures that are small in the body get a second panel each, below the whole body. Raises
+    Fractures that are small in the body get a second panel each, below the whole body; else the
+    part of the body is shown that has fractures or changes. Raises
     `AbsentError` if the run wrote no VTU files, or none with a pressure (mechanics only).
 
     `wanted_s`: times [s]; the nearest written ones are drawn. Default: see `select_states`.
@@ -69,10 +70,14 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     body = extent([frame.matrix for frame in frames])
     first = frames[0] if wanted_s == () else read_frame(run, 0)
     changes = [changes_since(first, frame, "pressure") for frame in frames]
-    zoom = _smaller(
-        zoom_window(body, [frame.fractures for frame in frames]),
-        changed_window(body, frames, changes),
-    )
+    fractures = [frame.fractures for frame in frames]
+    close = [zoom_window(body, fractures), changed_window(body, frames, changes)]
+    wide = [
+        zoom_window(body, fractures, np.inf),
+        changed_window(body, frames, changes, np.inf),
+    ]
+    zoom = min(filter(None, close), key=_width, default=None)
+    whole = max(filter(None, wide), key=_width, default=body) if zoom is None else body
     fields, label = [frame.matrix.cell["pressure"] for frame in frames], "pore pressure"
     low, high = usual_range(first.matrix, first.matrix.cell["pressure"], body)
     if high - low > _DEPTH * max(map(_largest, changes)):
@@ -84,7 +89,7 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
     unit = run_length_unit(run)
     columns = min(style.across(PANELS_PER_ROW), len(frames))
     bands = -(-len(frames) // columns)
-    views = [body] if zoom is None else [body, zoom]
+    views = [whole] if zoom is None else [whole, zoom]
     figure, grid = _panels(columns, bands, views)
     lettered = []
     for index, frame in enumerate(frames):
@@ -92,8 +97,8 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
         for depth, view in enumerate(views):
             axes = grid[band * len(views) + depth][column]
             draw_field(axes, frame, values[index], norm, colours, unit)
-            close = depth == 1 or zoom is None
-            draw_fractures(axes, frame.fractures, line_width(run, 2.2 if close else 1.0), unit)
+            width = 1.0 if depth == 0 and zoom is not None else 2.2
+            draw_fractures(axes, frame.fractures, line_width(run, width), unit)
             set_window(axes, view, unit)
             if depth == 0:
                 axes.set_title(_title(run, frame.moment))
@@ -127,10 +132,8 @@ def _states(frames: Sequence[Frame]) -> list[Line2D]:
     return [item for number, item in enumerate(style.state_handles()) if number in numbers]
 
 
-def _smaller(one: Window | None, other: Window | None) -> Window | None:
-    """The narrower of two windows, or the one that there is."""
-    there = [window for window in (one, other) if window is not None]
-    return min(there, key=lambda window: window.x_max - window.x_min, default=None)
+def _width(window: Window) -> float:
+    return window.x_max - window.x_min
 
 
 def _largest(values: FloatArray) -> float:

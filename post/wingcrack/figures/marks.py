@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from wingcrack.figures import style
-from wingcrack.figures.load import abscissa, has_load
+from wingcrack.figures.load import abscissa, has_load, states_abscissa
 from wingcrack.figures.read import Run
 from wingcrack.figures.states import growth_start
 
@@ -48,9 +48,17 @@ def mark_moments(run: Run, panels: Sequence[Axes]) -> list[Line2D]:
         (wells, "well starts or stops", (0, (5, 2, 1, 2))),
     ):
         look: dict[str, Any] = {"color": "#555555", "linewidth": 1.0, "linestyle": dashes}
-        for place in abscissa(run, np.array(moments))[0]:
+        for place in [_place(run, moment) for moment in moments]:
             for axes in panels:
-                axes.axvline(float(place), zorder=1, **look)
+                axes.axvline(place, zorder=1, **look)
         if moments:
             handles.append(style.handle(label=name, **look))
     return handles
+
+
+def _place(run: Run, moment: float) -> float:
+    """Where a moment stands on the axes of `states_abscissa`."""
+    if has_load(run):
+        row = int(np.argmin(np.abs(run.history.moments() - moment)))
+        return float(states_abscissa(run, run.history)[0][row])
+    return float(abscissa(run, np.array([moment]))[0][0])

@@ -131,7 +131,7 @@ def _report(rows: Sequence[Mapping[str, Cell]]) -> str:
 def _shown(column: str, value: Cell) -> str:
     if not isinstance(value, float):
         return str(value)
-    return f"{1e-6 * value:.4g}" if column.endswith("_pa") else f"{value:.4g}"
+    return f"{1e-6 * value:.4g}" if "[MPa]" in _REPORTED.get(column, "") else f"{value:.4g}"
 
 
 def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:

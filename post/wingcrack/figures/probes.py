@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from wingcrack.errors import AbsentError
 from wingcrack.figures import style
-from wingcrack.figures.load import abscissa
+from wingcrack.figures.load import states_abscissa
 from wingcrack.figures.marks import mark_moments
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.table import Table
@@ -63,7 +63,7 @@ def probe_histories(run: Run) -> Figure:
     quantities = [q for q in _QUANTITIES if any(table.has(names[0] + end) for end, _ in q.parts)]
     if table.rows == 1:
         return _values_table(table, names, quantities)
-    time, below = abscissa(run, table.moments())
+    time, below = states_abscissa(run, table)
     figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
     panels = list(figure.subplots(1, len(quantities), squeeze=False).flat)
     for axes, quantity in zip(panels, quantities, strict=True):

@@ -155,17 +155,33 @@ def _profile(
     lines = _lines(run, table, label, mine, wanted_s)
     panels = _panels(table)
     columns = len(panels) // 2
-    figure = style.new_figure(style.DOUBLE_COLUMN, 4.9)
-    axes = list(figure.subplots(2, columns, sharex=True).flat)
+    halves = [panels[:columns], panels[columns:]]
+    # of a fracture that is stuck stresses only, of one that is open without a fluid jumps only
+    halves = [half for half in halves if _says_something(run, table, mine, half)] or halves[1:]
+    panels, rows = [panel for half in halves for panel in half], len(halves)
+    figure = style.new_figure(style.DOUBLE_COLUMN, 1.9 * rows + 1.1)
+    axes = list(figure.subplots(rows, columns, sharex=True).flat)
     for panel, axis in zip(panels, axes, strict=True):
         _draw_panel(axis, lines, panel)
-    friction = _draw_bound(axes[-1], lines)
-    for axis in axes[columns:]:
+    friction = _draw_bound(axes[-1], lines) if panels[-1].stress else None
+    for axis in axes[-columns:]:
         axis.set_xlabel(f"distance along the fracture [{run_length_unit(run).name}]")
     style.letter(axes)
     figure.suptitle(run.fracture_name(label), fontsize=9)
     style.outside_legend(figure, _time_handles(lines.names, lines.colours, friction), 4)
     return figure
+
+
+def _says_something(run: Run, table: Table, mine: BoolArray, panels: Sequence[_Panel]) -> bool:
+    """Whether not all is zero; an aperture alone does not count."""
+    return any(
+        without_round_off(
+            table.number(panel.column)[mine],
+            traction_scale(run) if panel.stress else jump_scale(run),
+        ).any()
+        for panel in panels
+        if panel.column != "aperture_m"
+    )
 
 
 def draw_profile(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,7 @@ COLUMNS = (
 )
 _MOST_MARKS = 9  # joints with a line of their own
 _MOST_FACTS = 17  # lines for which there is room
+_WIDEST = 38  # characters of the line of a well
 _MOST_PEAKS = 2  # of wells, the highest
 _NEAR = 0.03  # share of the axis between marks that are both named
 _EARLY = 0.02  # share of the run in which the injectivity may leave its panel
@@ -100,7 +102,7 @@ def story(run: Run) -> Figure:
     beside = style.chosen(page=map_ratio(run) > _FLAT, column=False, slide=True)
     width = style.whole_width()
     stacked = style.chosen(page=beside, column=True, slide=True)
-    text = style.text_height(len(facts) + 8 if stacked else max(len(facts), 7) + 1)
+    text = style.text_height(len(facts) + 11 if stacked else max(len(facts), 7) + 1)
     heights = [(0.62 if beside else 1.0) * (width - 0.8) * map_ratio(run) + 0.7]
     heights = [max(*heights, text)] if beside else [*heights, text]
     heights = style.chosen(page=heights, column=heights, slide=[text])
@@ -217,7 +219,12 @@ def draw_pressure(axes: Axes, run: Run) -> None:
     beside.set_ylim(min(0.0, 1.25 * float(rate.min())), max(1.25 * float(rate.max()), 1e-300))
     beside.set_ylabel(f"rate [{unit.name}]")
     lines = [axes.lines[0], beside.lines[0]]
-    axes.legend(handles=lines, loc="lower center")
+    # the legend avoids what its own axes have: the pressure once more, unseen
+    (low, high), (least, most) = axes.get_ylim(), beside.get_ylim()
+    share = (MEGAPASCAL.of(pressure) - low) / (high - low)
+    beside.plot(time, least + (most - least) * share, lw=0.0)
+    beside.set_ylim(least, most)
+    beside.legend(handles=lines, loc="best")
 
 
 def _draw_pressures(axes: Axes, run: Run, wells: Table) -> None:
@@ -297,7 +304,8 @@ def _legend_above(axes: Axes) -> None:
     """Legend in two columns, with room for it above what is drawn."""
     entries = len(axes.get_legend_handles_labels()[0])
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + (0.06 + 0.13 * -(-entries // 2)) * (high - low))
+    row = style.chosen(page=0.14, column=0.14, slide=0.25)
+    axes.set_ylim(low, high + (0.06 + row * -(-entries // 2)) * (high - low))
     axes.legend(loc="upper left", ncols=2)
 
 
@@ -309,9 +317,8 @@ def draw_lengths(axes: Axes, run: Run) -> None:
         values = unit.of(run.history.number(column))
         axes.plot(time, values, dashes, color=colour, label=name)
     axes.set(title="length: connected with a well, stimulated", ylabel=f"length [{unit.name}]")
-    low, high = axes.get_ylim()
-    axes.set_ylim(0.0, high + 0.35 * (high - min(low, 0.0)))  # room for the legend
-    axes.legend(loc="upper left", ncols=2)
+    axes.set_ylim(bottom=0.0)
+    _legend_above(axes)
 
 
 def _draw_moment(axes: Axes, run: Run) -> None:
@@ -420,8 +427,9 @@ def _facts(run: Run, marks: Sequence[Mark]) -> list[str]:
         lines.append(f"leaked off {100.0 * share:z.0f} %")
     for name, row, highest in highest_pressures(table)[:_MOST_PEAKS]:
         when = at(float(table.moments()[row]))
-        of_well = f"{name}: " if name else ""
-        lines.append(f"{of_well}peak pressure {float(MEGAPASCAL.of(highest)):.2f} MPa at {when}")
+        of_well = f"{name}: peak" if name else "peak pressure"
+        words = f"{of_well} {float(MEGAPASCAL.of(highest)):.2f} MPa at {when}"
+        lines += wrap(words, _WIDEST, subsequent_indent="  ")
     lines.append(f"stimulated {length('stimulated_length_m')},")
     lines.append(f"  of it connected {length('connected_stimulated_m')}")
     clusters = int(table.number("n_clusters")[-1])

@@ -18,7 +18,7 @@ from wingcrack.figures.facts import Facts, gather_facts
 from wingcrack.figures.geometry import draw_geometry
 from wingcrack.figures.growth import read_growth
 from wingcrack.figures.history import draw_jumps, draw_length, draw_pressure, draw_states
-from wingcrack.figures.load import STEP_LABEL, abscissa, draw_load, has_load, tip_steps
+from wingcrack.figures.load import abscissa, draw_load, has_load, states_abscissa
 from wingcrack.figures.read import Run, needed
 from wingcrack.figures.states import growth_start, slips_or_opens
 from wingcrack.figures.story import COLUMNS, Mark, draw_lengths, draw_marks, find_marks
@@ -175,10 +175,7 @@ def _draw_ratio(axes: Axes, run: Run) -> None:
     if run.tips is None or run.tips.rows == 0 or not toughness:
         draw_jumps(axes, run)  # nothing can grow: how far fractures slip and open
         return
-    if has_load(run) and growth_start(run) is not None:
-        place, below = tip_steps(run, run.tips), STEP_LABEL
-    else:
-        place, below = abscissa(run, run.tips.moments())
+    place, below = states_abscissa(run, run.tips)
     ratio = run.tips.number("keq_pa_sqrtm") / toughness
     moments, groups = np.unique(place, return_inverse=True)
     largest = np.full(moments.size, -np.inf)

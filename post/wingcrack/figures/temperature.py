@@ -25,7 +25,7 @@ def temperature(run: Run) -> Figure:
     table = needed(run.fractures, "fractures.csv", "values along fractures")
     if not table.has("temperature_k"):
         raise AbsentError("the scene has no &heat")
-    figure = style.new_figure(style.DOUBLE_COLUMN, 2.8)
+    figure = style.new_figure(style.DOUBLE_COLUMN, 3.2)
     along, by_time = figure.subplots(1, 2)
     chosen = _widest(table)
     _draw_profiles(along, run, table, chosen)
@@ -64,7 +64,12 @@ def _draw_profiles(axes: Axes, run: Run, table: Table, chosen: str) -> None:
         xlabel="distance along the fracture [m]",
         ylabel="temperature [K]",
     )
-    axes.legend()
+    _legend_below(axes)
+
+
+def _legend_below(axes: Axes) -> None:
+    """Put the legend below the axes: curves leave no corner free."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.22), ncols=2)
 
 
 def _draw_times(axes: Axes, run: Run, table: Table, chosen: str) -> None:
@@ -84,4 +89,4 @@ def _draw_times(axes: Axes, run: Run, table: Table, chosen: str) -> None:
                 moments, of_well, ":", color=style.CYCLE[index % len(style.CYCLE)], label=well
             )
     axes.set(title="by time", xlabel=below, ylabel="temperature [K]")
-    axes.legend()
+    _legend_below(axes)

@@ -72,9 +72,17 @@ class SceneFile:
         """Set a value; the solver judges it in `check` and `run`."""
         group, item, name = _parts(address)
         shown = _fortran(value, parameter(group, name))
-        if not self._groups.get(group) and not item:
-            self._groups[group] = [f90nml.Namelist()]
-        self._pick(group, item, address)[name] = shown
+        if item:
+            self._pick(group, item, address)
+        self.put(address, shown)
+
+    def put(self, address: str, value: Any) -> None:
+        """Set a value of any name; the item after the last one of a group is added."""
+        group, item, name = _parts(address)
+        items = self._groups.get(group, [])
+        if (not items and not item) or item == str(len(items) + 1):
+            self._groups[group] = [*items, f90nml.Namelist()]
+        self._pick(group, item, address)[name] = value
 
     def __delitem__(self, address: str) -> None:
         """Take a value away, so that its default holds."""
@@ -124,12 +132,15 @@ class SceneFile:
         group, _, name = _parts(address)
         return parameter(group, name)
 
-    def text(self) -> str:
-        """The scene file's text; remarks of the file that was read are not in it."""
+    def text(self, *, stays: bool = False) -> str:
+        """The scene file's text; remarks of the file that was read are not in it.
+
+        Tables have their whole path, unless the scene stays next to them.
+        """
         text = StringIO()
         for name, items in self._groups.items():
             for item in items:
-                f90nml.Namelist({name: self._beside(item)}).write(text)
+                f90nml.Namelist({name: item if stays else self._beside(item)}).write(text)
                 text.write("\n")
         return text.getvalue()
 

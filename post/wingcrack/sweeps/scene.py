@@ -1,20 +1,15 @@
-"""Scenes with some values changed: the namelists of a scene file, edited by group and name."""
+"""Scenes with some values changed, as text."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from io import StringIO
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
-import f90nml
-
-from wingcrack.errors import CaseError
-from wingcrack.figures.text_files import namelist_groups, read_text
+from wingcrack.errors import CaseError, SceneError
 from wingcrack.runner.task import hash_of
-
-_Groups: TypeAlias = dict[str, list[Any]]
+from wingcrack.runs.scene_files import SceneFile
 
 # No fields for ParaView: nothing here reads them, and their cost is not that of the numbers.
 DEFAULTS: dict[str, Any] = {"output.vtu": False}
@@ -30,18 +25,17 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
     that are taken away first.
     """
     try:
-        groups = _groups(namelist_groups(read_text(path)))
-    except (OSError, ValueError) as reason:
+        scene = SceneFile.read(path)
+        for address in unset:
+            _remove(scene, address)
+        for address, value in (DEFAULTS | dict(changes)).items():
+            values = list(value) if isinstance(value, list | tuple) else value
+            if not all(isinstance(one, str | int | float) for one in _listed(values)):
+                raise SceneError(f"'{address}' must be numbers, texts or truth values, not {value}")
+            scene.put(address, values)
+    except SceneError as reason:
         raise CaseError(f"{path.name}: {reason}") from None
-    for address in unset:
-        _remove(groups, address)
-    for address, value in (DEFAULTS | dict(changes)).items():
-        _set(groups, address, value)
-    text = StringIO()
-    for name, items in groups.items():
-        for item in items:
-            f90nml.Namelist({name: item}).write(text)
-    return text.getvalue()
+    return scene.text(stays=True)  # a run has copies of its tables
 
 
 @lru_cache(maxsize=1)
@@ -50,64 +44,14 @@ def scene_hash() -> str:
     return hash_of(Path(__file__).read_bytes())
 
 
-def _groups(scene: Any) -> _Groups:
-    """All groups by name, each as a list of its items: most have one."""
-    groups: _Groups = {}
-    for name, group in scene.items():
-        groups.setdefault(str(name), []).append(group)
-    return groups
+def _listed(values: Any) -> list[Any]:
+    return values if isinstance(values, list) else [values]
 
 
-def _set(groups: _Groups, address: str, value: Any) -> None:
-    group_name, *item, name = _parts(address)
-    items = groups.setdefault(group_name, [])
-    if not items or item == [str(len(items) + 1)]:  # the first of its kind, or one more
-        items.append(f90nml.Namelist())
-    group = _pick(items, item, address)
-    values = list(value) if isinstance(value, list | tuple) else [value]
-    if not all(isinstance(one, str | int | float) for one in values):
-        raise CaseError(f"'{address}' must be numbers, texts or truth values, not {value}")
-    group[name] = values if isinstance(value, list | tuple) else value
-
-
-def _remove(groups: _Groups, address: str) -> None:
+def _remove(scene: SceneFile, address: str) -> None:
     """Take away a group, an item of it or a name in it."""
-    group_name, _, rest = address.lower().partition(".")
-    items = groups.get(group_name, [])
-    if not items:
-        raise CaseError(f"unset: the scene has no group '{group_name}'")
-    if not rest:
-        del groups[group_name]
-    elif "." not in rest and not (len(items) == 1 and rest in items[0]):
-        items.remove(_pick(items, [address.partition(".")[2]], address))
+    group, _, rest = address.partition(".")
+    if "." in rest or address in scene:
+        del scene[address]
     else:
-        _, *item, name = _parts(address)
-        group = _pick(items, item, address)
-        if name not in group:
-            raise CaseError(f"unset: the scene has no '{address}'")
-        del group[name]
-
-
-def _pick(items: Sequence[Any], item: Sequence[str], address: str) -> Any:
-    """Item of a group by number or name; the only one if neither is given."""
-    if not item:
-        if len(items) != 1:
-            raise CaseError(f"'{address}': there are {len(items)} such groups; say which")
-        return items[0]
-    (wanted,) = item
-    if wanted.isdecimal() and len(wanted) < 10:
-        if not 1 <= int(wanted) <= len(items):
-            raise CaseError(f"'{address}': there is no item {wanted} (there are {len(items)})")
-        return items[int(wanted) - 1]
-    named = [entry for entry in items if str(entry.get("name", "")) == wanted]
-    if len(named) != 1:
-        raise CaseError(f"'{address}': there is no item '{wanted}' of that name")
-    return named[0]
-
-
-def _parts(address: str) -> list[str]:
-    """Group, perhaps item, name."""
-    group, *item, name = address.split(".") if "." in address else ("", "", "", "")
-    if not (group and name and len(item) <= 1 and all(item)):
-        raise CaseError(f"'{address}' must be group.name or group.item.name")
-    return [group.lower(), *item, name.lower()]
+        scene.remove(group.lower(), rest or None)
