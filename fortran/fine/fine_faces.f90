@@ -24,6 +24,7 @@ module fine_faces
 
    public :: build_constraints, check_conditions, constraints_t, face_conditions_t
    public :: columns_max, face_contact, face_jump, face_law_t, face_loaded, face_slip
+   public :: faces_at_joints
    public :: loaded_everywhere, prescribe_jumps
 
    integer(ik), parameter :: columns_max = 8  !< unknowns that may move one node
@@ -233,6 +234,17 @@ contains
          end do
       end do
    end subroutine find_pairs
+
+   !> Whether the ends of fracture cells lie at joints, where more than two nodes meet.
+   pure function faces_at_joints(fine) result(is_at_joint)
+      type(fine_mesh_t), intent(in) :: fine
+      logical :: is_at_joint(fine%fracture%n_cells)
+      type(constraints_t) :: constraints
+
+      call find_pairs(fine, constraints)
+      is_at_joint = any(constraints%face_pair(:2, :) == 0 .and. &
+                        fine%face_nodes(:2, 1, :) /= fine%face_nodes(:2, 2, :), dim=1)
+   end function faces_at_joints
 
    !> The condition of each pair, and the frame of pairs that may slip. At a kink it is the mean of
    !! the frames of the cells that have the pair's condition, and so is the dilation. In contact the

@@ -22,7 +22,7 @@
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
-   use growth_competition, only: complementary_advances, broyden_update
+   use growth_competition, only: complementary_advances
    implicit none(type, external)
    private
 
@@ -50,13 +50,13 @@ module growth_advances
       real(rk), allocatable, private :: length(:)  !< distance between the bounds [m]
       !> distance from the upper bound within which a tip is put onto the bound [m]
       real(rk), allocatable, private :: sliver(:)
-      !> (tips) scale of the natural residual, and slope of the excess as estimated first [1/m]
+      !> (tips) scale of the natural residual: the steepest estimate of the excess' fall so far [1/m]
       real(rk), allocatable, private :: scale(:)
       real(rk), allocatable, private :: best(:)  !< position with the least residual so far [m]
       real(rk), allocatable, private :: excess(:)  !< value at `best` [-]
-      real(rk), private :: residual = huge(1.0_rk)  !< value at `best` [-]
-      !> trust region, over the distance between the bounds [-]
-      real(rk), private :: radius = 1.0_rk
+      real(rk), allocatable, private :: residual(:)  !< (tips) value at `best` [-]
+      !> (tips) trust region, over the distance between the bounds [-]
+      real(rk), allocatable, private :: radius(:)
       integer, private :: rejected = 0  !< number of proposals rejected in succession
       integer, private :: rejected_in_all = 0
       !> (tips) lack of toughness between the bounds at which a search that has stalled ends [-]
@@ -95,6 +95,7 @@ contains
       self%length = max(upper - lower, epsilon(1.0_rk)*abs(upper), tiny(1.0_rk))
       self%sliver = resolution*self%length
       if (present(sliver)) self%sliver = max(self%sliver, sliver)
+      allocate (self%radius(size(lower)), source=1.0_rk)
       self%scale = [(max(-matrix(i, i), flat/self%length(i)), i=1, size(lower))]
    end subroutine begin
 
@@ -167,18 +168,27 @@ contains
       end if
    end function in_equilibrium
 
-   !> Accept the evaluated position if the residual has fallen; shrink the trust region otherwise.
+   !> Accept the evaluated position if the residual has fallen. Otherwise shrink the trust region of
+   !! the tips whose residual has grown.
    pure subroutine judge(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) [-]
-      real(rk) :: residual
+      real(rk) :: residual(size(excess))
+      logical :: is_better
+      integer :: i
 
-      associate (scale => self%scale, place => self%place)
-         residual = norm2(scale*(place - min(self%upper, max(self%lower, place + excess/scale))))
-      end associate
-      if (self%evaluations == 1 .or. residual < 0.95_rk*self%residual) then
-         if (self%evaluations > 1 .and. residual < 0.5_rk*self%residual) then
-            self%radius = min(1.0_rk, 2.0_rk*self%radius)
+      self%scale = max(self%scale, [(-self%matrix(i, i), i=1, size(excess))])
+      residual = natural_residual(self, self%place, excess)
+      is_better = .not. allocated(self%residual)
+      if (.not. is_better) then
+         self%residual = natural_residual(self, self%best, self%excess)
+         is_better = norm2(residual) < 0.95_rk*norm2(self%residual)
+      end if
+      if (is_better) then
+         if (allocated(self%residual)) then
+            if (norm2(residual) < 0.5_rk*norm2(self%residual)) then
+               self%radius = min(1.0_rk, 2.0_rk*self%radius)
+            end if
          end if
          self%best = self%place
          self%excess = excess
@@ -191,24 +201,40 @@ contains
       end if
    end subroutine judge
 
-   !> Broyden update of the matrix, with advances scaled by the lengths of the segments.
+   !> What is missed of the complementarity conditions: the excess, or the distance from a bound as
+   !! an excess.
+   pure function natural_residual(self, place, excess) result(residual)
+      type(advances_t), intent(in) :: self
+      real(rk), intent(in) :: place(:)  !< (tips) [m]
+      real(rk), intent(in) :: excess(:)  !< (tips) value there [-]
+      real(rk) :: residual(size(place))
+
+      residual = self%scale*(place - min(self%upper, max(self%lower, place + excess/self%scale)))
+   end function natural_residual
+
+   !> Update of the matrix: the smallest change with which it predicts the measured change of the
+   !! excess, as Broyden's, but relative to its terms: K_eq of a tip depends on its own position more
+   !! than on those of others.
    pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
-      real(rk) :: scaled(size(excess), size(excess))
-      integer :: j
+      real(rk), parameter :: least = 0.05_rk  ! of the terms of a row, over the largest [-]
+      real(rk) :: missed, moved(size(excess)), weight(size(excess))
+      integer :: i
 
       ! The excess at nearly the same position shows nothing but the error of the mesh.
       if (.not. any(abs(self%place - self%best) > 0.5_rk*resolution*self%length)) return
-      associate (length => self%length)
-         do j = 1, size(excess)
-            scaled(:, j) = self%matrix(:, j)*length(j)
-         end do
-         call broyden_update(scaled, (self%place - self%best)/length, excess - self%excess)
-         do j = 1, size(excess)
-            self%matrix(:, j) = scaled(:, j)/length(j)
-         end do
-      end associate
+      moved = self%place - self%best
+      do i = 1, size(excess)
+         associate (row => self%matrix(i, :))
+            weight = abs(row)*self%length
+            weight = max(weight, least*maxval(weight))**2*moved/self%length
+            missed = excess(i) - self%excess(i) - dot_product(row, moved)
+            if (dot_product(weight, moved) > 0.0_rk) then
+               self%matrix(i, :) = row + missed*weight/dot_product(weight, moved)
+            end if
+         end associate
+      end do
    end subroutine update_matrix
 
    !> Solve the linear problem within the trust region around the best position. Tips at an upper

@@ -27,6 +27,7 @@ module twolevel_window
    use fine_tip_interaction, only: tip_probe_t
    use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
    use twolevel_faces, only: coarse_values_t, face_map_t, match_faces
+   use twolevel_held_faces, only: choose_held, hold_faces, release_faces
    use twolevel_window_map, only: clear_edges, window_map_t
    use twolevel_window_path, only: near_ends, restore_arc_lengths, straighten_far, without
    use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
@@ -57,6 +58,7 @@ module twolevel_window
       logical, allocatable :: is_free(:)  !< (tips) free crack ends
       logical, allocatable :: has_focus(:)  !< (tips) with small elements around them
       logical, allocatable :: changes(:)  !< (cells) as tips move; empty: they are too many
+      logical, allocatable :: held(:)  !< (fracture cells) their jump is given (twolevel_held_faces)
       logical :: is_projected = .false.  !< the position in the coarse mesh is known
    end type made_for_t
 
@@ -404,6 +406,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(face_conditions_t) :: conditions
       integer(ik) :: i
+      logical :: again
 
       associate (n => self%model%mesh%n_vertices)
          call self%map%interpolate(coarse, values%nodal(3, :), self%loads%pore_pressure(:n))
@@ -425,12 +428,28 @@ contains
                               scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ, &
                               values%viscous)
       end associate
-      if (.not. same_conditions(self%model, conditions)) then
-         call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
-         if (allocated(error)) return
+      if (self%is_body .and. .not. allocated(self%made%held) .and. &
+          scene%discretization%face_condition == "contact") then
+         self%made%held = choose_held(self%model%mesh, self%faces, coarse, values%law, state, &
+                                      history%contact%slip_before, tips)
       end if
-      call self%model%solve(self%loads, self%displacement, error, history%contact)
-      if (allocated(error)) return
+      do
+         if (allocated(self%made%held)) then
+            call hold_faces(self%made%held, history%contact, conditions, self%loads)
+         end if
+         if (.not. same_conditions(self%model, conditions)) then
+            call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
+            if (allocated(error)) return
+         end if
+         call self%model%solve(self%loads, self%displacement, error, history%contact)
+         if (allocated(error)) return
+         if (.not. allocated(self%made%held)) exit
+         call release_faces(self%model, self%loads, self%displacement, coarse, self%faces, &
+                            self%made%held, again)
+         if (.not. again) exit
+         conditions = self%faces%conditions(self%model%mesh, &
+                                            scene%discretization%face_condition, values%law)
+      end do
       call find_probes(self, error)
       if (allocated(error)) return
       do i = 1, size(self%serves, kind=ik)

@@ -75,6 +75,11 @@ contains
                call archive%set_fault("changes")
             end if
          end if
+         call archive%list("held", made%held, "held ?")
+         call archive%set_extent("held", -1_ik)
+         if (archive%is_loading .and. allocated(made%held)) then
+            if (size(made%held) /= self%mesh%fracture%n_cells) call archive%set_fault("held")
+         end if
          call archive%item("is_projected", made%is_projected)
       end associate
    end subroutine visit_made

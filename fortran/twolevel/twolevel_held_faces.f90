@@ -1,0 +1,152 @@
+!> Faces of a window that stick. As long as their traction stays below the bound of friction, their
+!! jump is the one before the step: as a given jump it is no unknown of contact, and the solution is
+!! that of the law. In a network most faces stick all the time, and the unknowns of contact decide
+!! what a window of the whole body costs.
+module twolevel_held_faces
+   use base_kinds, only: ik, rk
+   use coarse_state, only: state_t
+   use contact_law, only: contact_law_t, state_stick
+   use fine_contact, only: contact_t
+   use fine_faces, only: face_conditions_t, face_jump, faces_at_joints
+   use fine_loads, only: fine_loads_t
+   use fine_mesh, only: fine_mesh_t
+   use fine_model, only: fine_model_t
+   use fine_tip_domain, only: face_traction
+   use mesh_types, only: mesh_t
+   use twolevel_faces, only: face_map_t
+   use twolevel_window_tip, only: window_tip_t
+   implicit none(type, external)
+   private
+
+   public :: choose_held, hold_faces, release_faces
+
+   !> Share of the bound of friction below which the coarse level lets a face be held, and above
+   !! which a held face is released [-].
+   real(rk), parameter :: safe = 0.9_rk, near_slip = 0.99_rk
+
+   !> Coarse cells on either side of one near slip whose faces are not held.
+   integer(ik), parameter :: margin = 2
+
+   !> Share of the faces below which holding them is not worth it [-].
+   real(rk), parameter :: worth = 0.25_rk
+
+contains
+
+   !> Choose the faces to be held on a new mesh: those that the coarse level has far from slip,
+   !! without slip so far. None at the end of a fracture or at a joint, nor near a tip in focus, nor of
+   !! a fracture that closes under pressure or is bonded.
+   pure function choose_held(fine, map, coarse, law, state, slip_before, tips) result(held)
+      type(fine_mesh_t), intent(in) :: fine
+      type(face_map_t), intent(in) :: map
+      type(mesh_t), intent(in) :: coarse
+      type(contact_law_t), intent(in) :: law(:)  !< (coarse fracture cells)
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: slip_before(:, :)  !< (3, fracture cells) [m]
+      type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
+      logical :: held(fine%fracture%n_cells)
+      real(rk), parameter :: negligible = 1.0e-9_rk  ! slip, over the largest [-]
+      logical :: sticks(coarse%fracture%n_cells)
+      integer(ik) :: i, last, t
+
+      held = .false.
+      if (.not. (allocated(state%traction) .and. allocated(state%contact))) return
+      sticks = is_far_from_slip(law, state%traction(1, :, :), state%traction(2, :, :))
+      sticks = sticks .and. all(state%contact == state_stick, dim=1)
+      do t = 1, size(tips)
+         if (.not. tips(t)%has_focus) cycle
+         associate (of => coarse%fracture%cell_fracture)
+            last = findloc(of, tips(t)%fracture, dim=1, back=tips(t)%end == 2)
+            if (last > 0) sticks(last) = .false.
+         end associate
+      end do
+      call widen(coarse, sticks)
+      held = map%is_inside .and. sticks(map%coarse_cell) .and. .not. faces_at_joints(fine) &
+             .and. fine%face_at_tip == 0
+      do i = 1, size(held)
+         held(i) = held(i) .and. all(abs(slip_before(:, i)) <= negligible*maxval(abs(slip_before)))
+      end do
+      if (count(held) < worth*size(held)) held = .false.
+   end function choose_held
+
+   !> Whether both ends of coarse cells are far from slip.
+   pure function is_far_from_slip(law, normal, shear) result(is_far)
+      type(contact_law_t), intent(in) :: law(:)  !< (coarse fracture cells)
+      real(rk), intent(in) :: normal(:, :), shear(:, :)  !< (2, coarse fracture cells) [Pa]
+      logical :: is_far(size(law))
+
+      is_far = all(normal < 0.0_rk .and. &
+                   abs(shear) < safe*spread(law%friction, 1, 2)*abs(normal), dim=1)
+      is_far = is_far .and. .not. (law%compliance > 0.0_rk .or. law%bilateral .or. law%is_bonded())
+   end function is_far_from_slip
+
+   !> Cells next to one that may slip, on its fracture, may slip.
+   pure subroutine widen(coarse, sticks)
+      type(mesh_t), intent(in) :: coarse
+      logical, intent(inout) :: sticks(:)  !< (coarse fracture cells)
+      logical :: may_slip(size(sticks))
+      integer(ik) :: j, k
+
+      may_slip = .not. sticks
+      associate (of => coarse%fracture%cell_fracture)
+         do j = 1, size(sticks)
+            if (.not. may_slip(j)) cycle
+            do k = max(1, j - margin), min(size(sticks), j + margin)
+               if (of(k) == of(j)) sticks(k) = .false.
+            end do
+         end do
+      end associate
+   end subroutine widen
+
+   !> Give the jumps of held faces: those before the step.
+   pure subroutine hold_faces(held, contact, conditions, loads)
+      logical, intent(in) :: held(:)  !< (fracture cells)
+      type(contact_t), intent(inout) :: contact
+      type(face_conditions_t), intent(inout) :: conditions
+      type(fine_loads_t), intent(inout) :: loads
+      real(rk) :: gap, slope
+      integer(ik) :: i, k
+
+      do i = 1, size(held)
+         if (.not. held(i)) cycle
+         conditions%condition(i) = face_jump
+         do k = 1, 3
+            associate (slip => contact%slip_before(k, i))
+               call conditions%law(i)%contact%dilated(slip, sign(1.0_rk, slip), gap, slope)
+               loads%jump(:, k, i) = [slip, gap]
+            end associate
+         end do
+      end do
+   end subroutine hold_faces
+
+   !> Release held faces that a solution has brought near slip, with those around them.
+   pure subroutine release_faces(model, loads, displacement, coarse, map, held, any_released)
+      type(fine_model_t), intent(in) :: model
+      type(fine_loads_t), intent(in) :: loads
+      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
+      type(mesh_t), intent(in) :: coarse
+      type(face_map_t), intent(in) :: map
+      logical, intent(inout) :: held(:)  !< (fracture cells)
+      logical, intent(out) :: any_released
+      logical :: sticks(coarse%fracture%n_cells)
+      real(rk) :: normal, shear, traction(2)
+      integer(ik) :: i
+
+      sticks = .true.
+      do i = 1, size(held)
+         if (.not. held(i)) cycle
+         traction = face_traction(model, loads, displacement, i)
+         associate (tau => model%mesh%face_tangent(:, i))
+            shear = dot_product(tau, traction)
+            normal = tau(1)*traction(2) - tau(2)*traction(1) + loads%fluid_pressure(i)
+         end associate
+         if (normal < 0.0_rk .and. abs(shear) <= near_slip*model%conditions%law(i)%contact%friction &
+             *abs(normal)) cycle
+         sticks(map%coarse_cell(i)) = .false.
+      end do
+      any_released = .not. all(sticks)
+      if (.not. any_released) return
+      call widen(coarse, sticks)
+      held = held .and. sticks(map%coarse_cell)
+   end subroutine release_faces
+
+end module twolevel_held_faces
