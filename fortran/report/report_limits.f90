@@ -111,11 +111,11 @@ module report_limits
       limit_t("pressure beyond the fluid's table", "-", "with a table", 1.0e-3_rk, never, &
          "Distance of the pressure in a fracture from the range of table_pressure, over that "// &
          "range; fluid properties are constant there", "extend the table of the fluid"), &
-      limit_t("fluid of the rock beside its law", "-", "with a fluid law", 0.1_rk, never, &
-         "Relative difference of viscosity over density at a pressure in the rock from that at "// &
-         "reference_pressure, which the rock uses", &
+      limit_t("fluid of the rock beside its law", "-", "with a law", 0.1_rk, never, &
+         "Relative difference of viscosity over density at a pressure or temperature in the "// &
+         "rock from that at reference_pressure and the temperature of &heat, which the rock uses", &
          "use a reference_pressure within the rock's pressures, with the viscosity and "// &
-         "compressibility there"), &
+         "compressibility there; flow in rock of another temperature is wrong by this much"), &
       limit_t("error of growth by the error of K", "%", "fluid and growth", 5.0_rk, never, &
          "Estimated error, by that of K, of the pressure at which a tip grows over that of the "// &
          "loads, or of its position over the length of its fracture; not with law = 'paris'", &

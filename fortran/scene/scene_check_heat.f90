@@ -4,14 +4,19 @@ module scene_check_heat
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_number, only: integer_text
+   use scene_fluid_law, only: viscosity_ratio
    use scene_parameter_table, only: parameters
    use scene_parameters, only: groups
    use scene_sheet, only: refuse, sheet_t
    use scene_types, only: injection_t, scene_t
+   use scene_words, only: real_text, rounded_text
    implicit none(type, external)
    private
 
    public :: check_given_heat, check_heat
+
+   !> Largest relative difference of the viscosity from that of the table, for rounded values [-].
+   real(rk), parameter :: rounding = 0.02_rk
 
 contains
 
@@ -48,7 +53,8 @@ contains
       end do
    end subroutine check_given_heat
 
-   !> Wells that may inject have a temperature, or one per stage.
+   !> Wells that may inject have a temperature, or one per stage; the fluid's table contains all
+   !! temperatures.
    pure subroutine check_heat(sheet, scene, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene
@@ -71,7 +77,53 @@ contains
             if (allocated(error)) return
          end associate
       end do
+      if (allocated(scene%fluid%table_temperature)) call check_table(sheet, scene, error)
    end subroutine check_heat
+
+   !> The temperatures of the fluid's table increase and contain those of the scene, and at that of
+   !! &heat the viscosity of the rock is that of the table.
+   pure subroutine check_table(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: range(2), viscosity
+      integer :: i, k
+
+      i = sheet%find("fluid")
+      associate (heat => scene%heat, fluid => scene%fluid, t => scene%fluid%table_temperature)
+         range = heat%temperature + heat%temperature_per_y &
+                 *([scene%domain%y_min, scene%domain%y_max] - heat%y_datum)
+         range = [minval(range), maxval(range)]
+         associate (given => pack(scene%sides%temperature, scene%sides%temperature_given))
+            range = [min(range(1), minval(given)), max(range(2), maxval(given))]
+         end associate
+         do k = 1, size(scene%injections)
+            associate (given => scene%injections(k)%temperature)
+               if (.not. allocated(scene%injections(k)%temperature)) cycle
+               range = [min(range(1), minval(given)), max(range(2), maxval(given))]
+            end associate
+         end do
+         if (size(fluid%viscosity_at) /= size(t)) then
+            call refuse(error, sheet, i, "viscosity_at", "has "// &
+                        integer_text(size(fluid%viscosity_at))//" values but must have one for "// &
+                        "each table_temperature, "//integer_text(size(t)))
+         else if (size(t) < 2 .or. .not. all(t(2:) > t(:size(t) - 1))) then
+            call refuse(error, sheet, i, "table_temperature", "must have at least two values, "// &
+                        "which increase")
+         else if (range(1) < t(1) .or. range(2) > t(size(t))) then
+            call refuse(error, sheet, i, "table_temperature", "reaches from "//real_text(t(1))// &
+                        " to "//real_text(t(size(t)))//" but must contain the temperatures of "// &
+                        "the scene, "//real_text(range(1))//" to "//real_text(range(2)))
+         else
+            viscosity = fluid%viscosity*viscosity_ratio(fluid, heat%temperature)
+            if (abs(viscosity - fluid%viscosity) > rounding*viscosity) then
+               call refuse(error, sheet, i, "viscosity", "is "//real_text(fluid%viscosity)// &
+                           " but must be that of the table at the temperature of &heat, "// &
+                           rounded_text(viscosity)//", which the rock takes")
+            end if
+         end if
+      end associate
+   end subroutine check_table
 
    !> No fluid of the well can enter the body.
    pure logical function only_extracts(well)

@@ -315,6 +315,8 @@ contains
       call exchange(record, "table_pressure", fluid%table_pressure)
       call exchange(record, "table_viscosity", fluid%table_viscosity)
       call exchange(record, "table_density", fluid%table_density)
+      call exchange(record, "table_temperature", fluid%table_temperature)
+      call exchange(record, "viscosity_at", fluid%viscosity_at)
    end subroutine exchange_fluid
 
    !> Group &domain; the rectangle x_min to y_max bounds every shape.

@@ -96,6 +96,15 @@ module scene_parameter_table
          only_with="heat", meaning="Heat capacity per volume at the reference density"), &
       parameter_t("fluid", "heat_expansion", unit="1/K", absent="none", only_with="heat", &
          meaning="Thermal expansion of volume, in the pores"), &
+      parameter_t("fluid", "table_temperature", kind_reals, "K", absent="one viscosity", &
+         with="viscosity_at", only_with="heat", &
+         meaning="Increasing temperatures of a table of the viscosity in fractures, on the "// &
+                 "scale of &heat. Logarithms are interpolated linearly. The rock uses "// &
+                 "`viscosity`, that of the table at the temperature of &heat"), &
+      parameter_t("fluid", "viscosity_at", kind_reals, "Pa s", absent="one viscosity", &
+         range=positive, with="table_temperature", only_with="heat", &
+         meaning="Viscosities at these temperatures, at reference_pressure; a viscosity_law "// &
+                 "multiplies them"), &
       parameter_t("region", "name", kind_name, need=need_always, &
          meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &

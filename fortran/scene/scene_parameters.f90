@@ -127,7 +127,7 @@ module scene_parameters
       group_t("heat", scenes=in_fluid, &
          meaning="Heat in rock and fractures: conduction, and what the fluid carries; none "// &
                  "without this group. Temperatures act on stresses and pressures by "// &
-                 "heat_expansion, not on viscosity (docs/theory.md)."), &
+                 "heat_expansion, on viscosity by table_temperature."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
          meaning="Stress in the body before loading, in equilibrium with tractions on its "// &

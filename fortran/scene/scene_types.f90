@@ -76,6 +76,8 @@ module scene_types
       real(rk), allocatable :: table_pressure(:)  !< increasing pressures [Pa]
       real(rk), allocatable :: table_viscosity(:)  !< [Pa s]
       real(rk), allocatable :: table_density(:)  !< [kg/m3]
+      real(rk), allocatable :: table_temperature(:)  !< increasing, with viscosity_at [K]
+      real(rk), allocatable :: viscosity_at(:)  !< viscosities at these temperatures [Pa s]
    end type fluid_t
 
    !> One fracture and its law.
