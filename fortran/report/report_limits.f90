@@ -77,7 +77,8 @@ module report_limits
          "separate fractures that are nearly parallel and close, or use smaller cells"), &
       limit_t("disagreement of the stress intensity factors", "-", "always", 0.1_rk, 10.0_rk, &
          "Difference of K by the interaction integral and by displacement correlation, over "// &
-         "the largest K of all tips, or over K_IC if that is larger and tips may grow", &
+         "the largest K of all tips, or over K_IC if that is larger and tips may grow, "// &
+         "or 1 % of that by thermal stress", &
          "use smaller cells around the tip"), &
       limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
          never, &

@@ -32,10 +32,10 @@ contains
             do item = lbound(record%values, 1), ubound(record%values, 1)
                associate (rule => parameters(item))
                   if (rule%only_with == "") cycle
-                  if (record%values(item)%is_set .eqv. sheet%has(trim(rule%only_with))) cycle
+                  if (record%values(item)%is_set .eqv. sheet%has_one(rule%only_with)) cycle
                   if (record%values(item)%is_set) then
                      call refuse(error, sheet, i, trim(rule%name), "is given, but the scene "// &
-                                 "has no group &"//trim(rule%only_with))
+                                 "has no group &"//alternatives(rule%only_with))
                   else if (rule%absent == "no &heat") then
                      call refuse(error, sheet, i, trim(rule%name), "is missing but must be "// &
                                  "given with &"//trim(rule%only_with))
@@ -61,6 +61,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       integer :: i, record
 
+      if (allocated(scene%temperature)) call check_expansion(sheet, scene, error)
       if (.not. allocated(scene%heat)) return
       do i = 1, size(scene%injections)
          record = sheet%find("injection", i)
@@ -79,6 +80,33 @@ contains
       end do
       if (allocated(scene%fluid%table_temperature)) call check_table(sheet, scene, error)
    end subroutine check_heat
+
+   !> Names of groups, by `|`, in words.
+   pure function alternatives(names) result(words)
+      character(len=*), intent(in) :: names
+      character(len=:), allocatable :: words
+      integer :: bar
+
+      bar = index(names, "|")
+      words = trim(names)
+      if (bar > 0) words = names(:bar - 1)//" or &"//trim(names(bar + 1:))
+   end function alternatives
+
+   !> A change of temperature acts on some rock.
+   pure subroutine check_expansion(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: most
+
+      most = scene%material%heat_expansion
+      if (allocated(scene%regions)) then
+         most = max(most, maxval(scene%regions%material%heat_expansion))
+      end if
+      if (most > 0.0_rk) return
+      call refuse(error, sheet, sheet%find("material"), "heat_expansion", "is missing, but "// &
+                  "&temperature takes one above 0 here or in a region")
+   end subroutine check_expansion
 
    !> The temperatures of the fluid's table increase and contain those of the scene, and at that of
    !! &heat the viscosity of the rock is that of the table.

@@ -7,8 +7,8 @@ module scene_exchange
    use base_tolerances, only: round_off
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
-                                    exchange_side, exchange_word, set_names, set_text, &
-                                    to_degrees
+                                    exchange_side, exchange_temperature, exchange_word, &
+                                    set_names, set_text, to_degrees
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
@@ -153,6 +153,8 @@ contains
          n = merge(1, 0, scene%has_fluid())
       case ("heat")
          n = merge(1, 0, allocated(scene%heat))
+      case ("temperature")
+         n = merge(1, 0, allocated(scene%temperature))
       case default
          n = 1
       end select
@@ -247,6 +249,9 @@ contains
          call exchange(record, "temperature_per_y", scene%heat%temperature_per_y)
          call exchange(record, "y_datum", scene%heat%y_datum)
          call exchange(record, "tolerance", scene%heat%tolerance)
+      case ("temperature")
+         if (record%reading) allocate (scene%temperature)
+         call exchange_temperature(record, scene%temperature)
       case ("time")
          call exchange(record, "end", scene%time%end)
          call exchange(record, "step", scene%time%step, nothing=0.0_rk)
