@@ -252,7 +252,9 @@ contains
                                plane_stress=material%plane_stress, &
                                biot=bulk_modulus(material)*material%heat_expansion)
       if (material%plane_stress) then
-         constants%biot = constants%biot*(1.0_rk - 2.0_rk*material%poisson)/(1.0_rk - material%poisson)
+         associate (nu => material%poisson)
+            constants%biot = constants%biot*(1.0_rk - 2.0_rk*nu)/(1.0_rk - nu)
+         end associate
       end if
    end function elasticity
 

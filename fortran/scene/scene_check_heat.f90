@@ -4,6 +4,7 @@ module scene_check_heat
    use base_errors, only: error_t
    use base_kinds, only: rk
    use base_number, only: integer_text
+   use scene_check_geometry, only: contains_point, point_text
    use scene_fluid_law, only: viscosity_ratio
    use scene_parameter_table, only: parameters
    use scene_parameters, only: groups
@@ -78,8 +79,38 @@ contains
             if (allocated(error)) return
          end associate
       end do
+      if (allocated(scene%heat%source_power)) then
+         call check_sources(sheet, scene, error)
+      else if (scene%heat%source_cell_size > 0.0_rk) then
+         call refuse(error, sheet, sheet%find("heat"), "source_cell_size", "is given, but there "// &
+                     "is no source_power")
+      end if
+      if (allocated(error)) return
       if (allocated(scene%fluid%table_temperature)) call check_table(sheet, scene, error)
    end subroutine check_heat
+
+   !> Sources of heat have places in the body.
+   pure subroutine check_sources(sheet, scene, error)
+      type(sheet_t), intent(in) :: sheet
+      type(scene_t), intent(in) :: scene
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+
+      associate (x => scene%heat%source_x, y => scene%heat%source_y, n => size( &
+                 scene%heat%source_power))
+         if (size(x) /= n .or. size(y) /= n) then
+            call refuse(error, sheet, sheet%find("heat"), "source_power", "has "// &
+                        integer_text(n)//" values, but source_x and source_y must have as many")
+            return
+         end if
+         do i = 1, n
+            if (contains_point(scene%domain, x(i), y(i))) cycle
+            call refuse(error, sheet, sheet%find("heat"), "source_x", "and source_y have "// &
+                        point_text(x(i), y(i))//", which must lie in the body")
+            return
+         end do
+      end associate
+   end subroutine check_sources
 
    !> Names of groups, by `|`, in words.
    pure function alternatives(names) result(words)

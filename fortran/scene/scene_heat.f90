@@ -13,6 +13,10 @@ module scene_heat
       real(rk) :: temperature_per_y = 0.0_rk  !< [K/m]
       real(rk) :: y_datum = 0.0_rk  !< [m]
       real(rk) :: tolerance = 1.0e-3_rk  !< of a substep in time, relative [-]
+      ! Sources of heat at points of the rock, as electric heaters; unallocated: none.
+      real(rk), allocatable :: source_x(:), source_y(:)  !< [m]
+      real(rk), allocatable :: source_power(:)  !< [W/m]
+      real(rk) :: source_cell_size = 0.0_rk  !< of cells there; 0: no smaller ones [m]
    end type heat_t
 
    !> Change of temperature in a scene without a fluid, at load factor 1.

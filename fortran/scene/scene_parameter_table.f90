@@ -296,6 +296,15 @@ module scene_parameter_table
       parameter_t("heat", "y_datum", unit="m", default="0.0", meaning="Level of temperature"), &
       parameter_t("heat", "tolerance", default="1.0e-3", range=share, &
          meaning="Error in time of a substep of the heat, relative to the heat moved so far"), &
+      parameter_t("heat", "source_power", kind_reals, "W/m", absent="no source", with="source_x", &
+         meaning="Power of sources of heat at points of the rock, without fluid; negative: it "// &
+                 "is drawn"), &
+      parameter_t("heat", "source_x", kind_reals, "m", absent="no source", with="source_y", &
+         meaning="x of these points"), &
+      parameter_t("heat", "source_y", kind_reals, "m", absent="no source", with="source_power", &
+         meaning="y of the same"), &
+      parameter_t("heat", "source_cell_size", unit="m", absent="as elsewhere", range=positive, &
+         meaning="Size of cells at the sources, which grows from there"), &
       parameter_t("temperature", "change", unit="K", default="0.0", &
          meaning="Change at x_datum and y_datum; negative: colder"), &
       parameter_t("temperature", "change_per_x", unit="K/m", default="0.0", &

@@ -72,7 +72,12 @@ program test_scene_heat
    call refuse_table("50.0, 200.0", "2e-3, 1e-3", "6: &fluid: table_temperature reaches from "// &
                      "50.0 to 200.0 but must contain the temperatures of the scene, 20.0 to 150.0")
    call refuse_table("20.0, 200.0", "4e-3, 2e-3", "5: &fluid: viscosity is 0.001 but must be "// &
-                     "that of the table at the temperature of &heat, 0.002425, which the rock takes")
+                     "that of the table at the temperature of &heat, 0.002425, which the "// &
+                     "rock takes")
+   call refuse(10, "&heat temperature=150.0 source_power=1.0, 2.0 source_x=1.0 source_y=0.5 /", &
+               ":10: &heat: source_power has 2 values, but source_x and source_y must have as many")
+   call refuse(10, "&heat temperature=150.0 source_power=1.0 source_x=1.0 source_y=1.5 /", &
+               ":10: &heat: source_x and source_y have (1.0, 1.5), which must lie in the body")
    call put_changed(path, good, 9, "&injection fracture='f1' rate=-1.0e-9 /", 9, &
                     "&injection fracture='f1' rate=-1.0e-9 /")
    call read_scene(path, scene, error)
