@@ -82,8 +82,8 @@ contains
       if (allocated(scene%heat%source_power)) then
          call check_sources(sheet, scene, error)
       else if (scene%heat%source_cell_size > 0.0_rk) then
-         call refuse(error, sheet, sheet%find("heat"), "source_cell_size", "is given, but there "// &
-                     "is no source_power")
+         call refuse(error, sheet, sheet%find("heat"), "source_cell_size", "is given, but "// &
+                     "there is no source_power")
       end if
       if (allocated(error)) return
       if (allocated(scene%fluid%table_temperature)) call check_table(sheet, scene, error)
