@@ -38,6 +38,7 @@ install(DIRECTORY inputs docs DESTINATION share/wingcrack)
 install(
   FILES README.md CHANGELOG.md LICENSE CITATION.cff requirements.txt requirements_study.txt
         requirements_maps.txt requirements_maps_gis.txt requirements_movies.txt
+        requirements_water.txt
   DESTINATION share/wingcrack
 )
 

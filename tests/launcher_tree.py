@@ -166,7 +166,7 @@ def make_tree(folder: Path, packages: str = "", requirements: str = "") -> Tree:
     for use in ("ranks", "tests", "browser"):
         (root / "tools" / f"system_packages_{use}.txt").write_text("")
     (root / "requirements.txt").write_text(requirements)
-    for use in ("developer", "study", "maps", "maps_gis", "docs", "browser"):
+    for use in ("developer", "study", "water", "maps", "maps_gis", "docs", "browser"):
         (root / f"requirements_{use}.txt").write_text("")
     (root / "CMakeLists.txt").write_text(_PROJECT)
     (root / "cmake" / "assemble.sh").write_text(_ASSEMBLE)

@@ -33,7 +33,7 @@ prepare() {
 # the documentation too.
 prepare_developer() {
     requirement_lists+=("$root/requirements_developer.txt" "$root/requirements_study.txt"
-        "$root/requirements_maps.txt" "$root/requirements_maps_gis.txt" "$root/requirements_docs.txt")
+        "$root/requirements_water.txt" "$root/requirements_maps.txt" "$root/requirements_maps_gis.txt" "$root/requirements_docs.txt")
     prepare
 }
 
@@ -59,6 +59,12 @@ prepare_ranks() {
 # prepare_study: see to what studies take, beside the rest.
 prepare_study() {
     requirement_lists+=("$root/requirements_study.txt")
+    prepare "$solver_target"
+}
+
+# prepare_water: see to what properties of water take, beside the rest.
+prepare_water() {
+    requirement_lists+=("$root/requirements_water.txt")
     prepare "$solver_target"
 }
 

@@ -28,6 +28,7 @@ prepare() {
 }
 
 prepare_study() { need requirements_study.txt dask distributed pyarrow pydantic scipy; }
+prepare_water() { need requirements_water.txt iapws; }
 prepare_maps() { need requirements_maps.txt shapely; }
 prepare_ranks() { fail "$exit_usage" '--ranks needs the folder of the sources'; }
 

@@ -282,6 +282,8 @@ contains
                                                                  scene%growth%intensities), &
                                                            scene%growth%enabled))
          if (scene%discretization%chosen) write (unit, "(2a)") "sizes:        ", sizes_text(scene)
+         if (allocated(scene%fluid%table_temperature)) write (unit, "(a,es9.3,a)") &
+            "viscosity:    by temperature in fractures, in rock ", scene%fluid%viscosity, " Pa s"
          call find_regime(scene, toughness, leakoff, well)
          if (well > 0) write (unit, "(3a,es9.3,3a)") "regime:       ", &
             regime_words(toughness), ", K_m = ", toughness, " (well '", &

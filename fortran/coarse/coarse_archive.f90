@@ -93,6 +93,7 @@ contains
       call archive%list("skin", cells%skin, "fcells ?")
       call archive%list("injection", cells%injection, "fcells")
       call archive%list("pressure_in_situ", cells%pressure_in_situ, "fcells ?")
+      call archive%list("viscosity_ratio", cells%viscosity_ratio, "fcells ?")
       call archive%leave()
    end subroutine visit_cells
 

@@ -167,7 +167,7 @@ contains
       do end = 1, 2
          call conducting_aperture(eq%cells%residual_aperture(cells(end)), &
                                   eq%cells%roughness(cells(end)), opening, aperture, slope)
-         resistance = 12.0_rk*eq%paths%settings%viscosity*length(end)/aperture**3*eq%unit/eq%dt
+         resistance = 12.0_rk*eq%viscosity_at(cells(end))*length(end)/aperture**3*eq%unit/eq%dt
          eq%residual(row) = eq%residual(row) + resistance*x(row)
          call eq%slopes%add(row, row, resistance)
          do other = 1, 2
@@ -280,7 +280,7 @@ contains
          opening = weight(1)*eq%opening(x, cells(1)) + weight(2)*eq%opening(x, cells(2))
          call conducting_aperture(eq%cells%residual_aperture(cell), eq%cells%roughness(cell), &
                                   opening, aperture, slope)
-         resistance = 12.0_rk*eq%paths%settings%viscosity*length/aperture**3*eq%unit/eq%dt
+         resistance = 12.0_rk*eq%viscosity_at(cell)*length/aperture**3*eq%unit/eq%dt
          by_pressure = [1.0_rk, -fluid%pressure_slope]
          by_jump = -1.5_rk*resistance*x(row)/aperture*slope*weight/eq%stiffness
          ends_in_joint = .not. eq%paths%joints%is_outlet(eq%paths%joints%joint(b))

@@ -80,6 +80,7 @@ module coarse_fractures
       procedure :: fluid_at
       procedure :: unknown_of_fluid
       procedure :: in_situ_at
+      procedure :: viscosity_at
       procedure :: find_thickness
    end type fracture_system_t
 
@@ -355,6 +356,17 @@ contains
       pressure = 0.0_rk
       if (allocated(self%cells%pressure_in_situ)) pressure = self%cells%pressure_in_situ(cell)
    end function in_situ_at
+
+   !> Viscosity in a cell, without its change by pressure [Pa s].
+   pure real(rk) function viscosity_at(self, cell) result(viscosity)
+      class(fracture_system_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      viscosity = self%paths%settings%viscosity
+      if (allocated(self%cells%viscosity_ratio)) then
+         viscosity = viscosity*self%cells%viscosity_ratio(cell)
+      end if
+   end function viscosity_at
 
    !> mu/(mu_0 r) of the fluid law in a cell, for the flow between its middle and a well at its end,
    !! and the derivative by the unknown of the pressure.

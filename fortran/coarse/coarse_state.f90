@@ -31,6 +31,8 @@ module coarse_state
       real(rk), allocatable :: injection(:)  !< Q prescribed for the present step [m2/s]
       !> (n) pressure in situ, to which pressures are relative (coarse_in_situ); unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
+      !> (n) viscosity at the cell's temperature over that of the scene; unallocated: 1 [-]
+      real(rk), allocatable :: viscosity_ratio(:)
    end type fracture_cells_t
 
    real(rk), parameter :: farthest = 4.0_rk  !< extrapolation, over the last step's length [-]

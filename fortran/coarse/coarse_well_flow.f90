@@ -319,7 +319,7 @@ contains
 
       call conducting_aperture(eq%cells%residual_aperture(i), eq%cells%roughness(i), &
                                eq%opening(x, i), aperture, slope)
-      resistance = 6.0_rk*eq%paths%settings%viscosity*eq%condensed%length(i)/aperture**3
+      resistance = 6.0_rk*eq%viscosity_at(i)*eq%condensed%length(i)/aperture**3
       if (allocated(eq%paths%settings%fluid_law)) then
          call eq%find_thickness(x, i, thickness, unused)
          resistance = resistance*thickness

@@ -12,7 +12,9 @@ module fine_elasticity
    type :: elasticity_t
       real(rk) :: young = 0.0_rk  !< Young's modulus [Pa]
       real(rk) :: poisson = 0.0_rk  !< Poisson's ratio [-]
-      real(rk) :: biot = 0.0_rk  !< Biot's coefficient of the in-plane stress [-]
+      !> Biot's coefficient of the in-plane stress [-]; in bodies without a fluid K_dr b_s in the
+      !! plane, with temperatures as heat_pressure of fine_loads [Pa/K]
+      real(rk) :: biot = 0.0_rk
       logical :: plane_stress = .false.  !< else plane strain
    contains
       procedure :: shear_modulus

@@ -21,8 +21,8 @@ module fine_loads
       real(rk) :: body_force(2) = 0.0_rk  !< uniform [N/m3]
       real(rk), allocatable :: initial_stress(:, :)  !< (xx yy xy, n_vertices) in situ [Pa]
       real(rk), allocatable :: pore_pressure(:)  !< (n_vertices) in the matrix [Pa]
-      !> (corners, n_cells) pressures with the stress of the temperatures, linear in each element;
-      !! unallocated: no thermal stress [Pa]
+      !> (corners, n_cells) pressures with the stress of the temperatures [Pa], or temperatures
+      !! (fine_elasticity) [K], linear in each element; unallocated: no thermal stress
       real(rk), allocatable :: heat_pressure(:, :)
       real(rk), allocatable :: traction(:, :)  !< (2, fracture cells) contact f_tau, f_n [Pa]
       real(rk), allocatable :: fluid_pressure(:)  !< (fracture cells) [Pa]

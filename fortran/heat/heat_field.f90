@@ -54,7 +54,9 @@ contains
                field%unknowns(2, layer_block(mesh, l)) = 0.0_rk
             end associate
          end do
-         field%near = inverted(mesh%face_nodes(:, mesh%layer_face(:layers%n)), mesh%n_nodes)
+         ! Without layers there is no list of their faces.
+         field%near = inverted(mesh%face_nodes(:, [(mesh%layer_face(l), l=1, layers%n)]), &
+                               mesh%n_nodes)
          largest = maxval(abs(temperature))
          field%least = 0.02_rk*max(abs(means), 1.0e-3_rk*largest)
          allocate (field%found(mesh%n_cells), source=1.0_rk)

@@ -11,7 +11,7 @@ module heat_model
    use algebra_mumps, only: mumps_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_plane, only: norm2
+   use base_plane, only: barycentric, norm2
    use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, local_system_t, share_t
    use coarse_joints, only: joints_t
@@ -103,6 +103,7 @@ contains
       call number_unknowns(self, joints)
       call conduct(self, error)
       if (allocated(error)) return
+      call place_sources(self)
       call link(self, connections, joints)
    end subroutine set_mesh
 
@@ -235,6 +236,24 @@ contains
       self%col = self%col(:n)
       self%conduction = self%conduction(:n)
    end subroutine conduct
+
+   !> Sources of heat, each in the cell around it.
+   pure subroutine place_sources(self)
+      class(heat_model_t), intent(inout) :: self
+      real(rk) :: inside(self%mesh%n_cells)
+      integer(ik) :: c, i
+
+      if (.not. allocated(self%heat%source_power)) return
+      do i = 1, size(self%heat%source_power, kind=ik)
+         associate (mesh => self%mesh, at => [self%heat%source_x(i), self%heat%source_y(i)])
+            do c = 1, mesh%n_cells
+               inside(c) = minval(barycentric(mesh%xy(:, mesh%cell_nodes(:, c)), at))
+            end do
+         end associate
+         c = maxloc(inside, dim=1, kind=ik)
+         self%known(c) = self%known(c) - self%heat%source_power(i)
+      end do
+   end subroutine place_sources
 
    !> The unknowns around a vertex.
    pure function around_vertex(self, region) result(around)

@@ -266,6 +266,9 @@ contains
       by_wells = 0.0_rk
       by_sides = -substep%dt*boundary_outflow(heat%mesh, heat%regions, heat%regions%flux, &
                                               heat%scalars(substep%temperature))
+      if (allocated(heat%heat%source_power)) then
+         by_sides = by_sides + substep%dt*sum(heat%heat%source_power)
+      end if
       state%moved = state%moved + abs(by_sides)
       do k = 1, size(heat%externals, kind=ik)
          associate (external => heat%externals(k), &
@@ -303,7 +306,7 @@ contains
       state%last = substep%dt
       state%temperature = substep%temperature
       state%capacity = substep%capacity
-      if (any(abs(heat%sides%heat_flux) > 0.0_rk)) return
+      if (any(abs(heat%sides%heat_flux) > 0.0_rk) .or. allocated(heat%heat%source_power)) return
       state%beyond_range = max(state%beyond_range, state%range(1) - minval(state%temperature), &
                                maxval(state%temperature) - state%range(2))
    end subroutine accept

@@ -25,6 +25,7 @@ module mechanics_body
    use report_corners, only: joints_of_scene, kinks_of_scene
    use report_scene, only: follow_outlines, interface_distance, keep_off, place_rocks, &
                            regions_of_other_rock, set_own_sizes
+   use scene_fluid_law, only: bulk_modulus
    use scene_outline, only: outline_of_scene, outline_t, sides_of_scene
    use scene_types, only: material_t, scene_t
    implicit none(type, external)
@@ -248,7 +249,13 @@ contains
       type(elasticity_t) :: constants
 
       constants = elasticity_t(young=material%young, poisson=material%poisson, &
-                               plane_stress=material%plane_stress)
+                               plane_stress=material%plane_stress, &
+                               biot=bulk_modulus(material)*material%heat_expansion)
+      if (material%plane_stress) then
+         associate (nu => material%poisson)
+            constants%biot = constants%biot*(1.0_rk - 2.0_rk*nu)/(1.0_rk - nu)
+         end associate
+      end if
    end function elasticity
 
    !> Number of the element around the tips from its name.

@@ -1,6 +1,6 @@
 !> Conditions of the body from the scene: the contact law and prescribed slip of the fracture faces,
-!! and supports and loads: prescribed displacements, tractions, forces, gravity and the stress in
-!! situ.
+!! and supports and loads: prescribed displacements, tractions, forces, gravity, the stress in
+!! situ and temperatures.
 !!
 !! New faces, due to growth, have the contact law of their fracture. Next to a prescribed slip,
 !! which is defined for the initial fracture, they touch without friction, and they may open even if
@@ -11,6 +11,7 @@ module mechanics_faces
    use base_tolerances, only: same_place
    use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, fine_boundary_t, &
                             free_boundary, hold_side, nearest_node, stand_on_springs
+   use fine_element, only: collapsed_rule
    use fine_faces, only: face_conditions_t, face_contact, loaded_everywhere
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_mesh, only: fine_mesh_t
@@ -18,6 +19,7 @@ module mechanics_faces
    use mesh_types, only: network_t
    use report_scene, only: law_of_fracture
    use scene_outline, only: sides_of_scene
+   use scene_heat, only: temperature_t
    use scene_sides, only: boundary_side_t
    use scene_types, only: fracture_t, in_situ_t, scene_t
    implicit none(type, external)
@@ -193,6 +195,9 @@ contains
       loads%fluid_pressure = factor*face_pressure(scene, fine)
       loads%body_force = scene%material%density*scene%gravity
       call add_in_situ(scene%in_situ, fine, loads)
+      if (allocated(scene%temperature)) then
+         loads%heat_pressure = factor*linear_parts(fine, scene%temperature)
+      end if
       do side = 1, size(sides, kind=ik)
          associate (given => sides(side))
             if (any(abs(given%traction) > 0.0_rk)) then
@@ -218,6 +223,59 @@ contains
          end associate
       end do
    end function body_loads
+
+   !> Temperatures at the corners of each element, of the linear field with the same integrals
+   !! against linear functions: a front may be thinner than the elements.
+   pure function linear_parts(fine, temperature) result(corner)
+      type(fine_mesh_t), intent(in) :: fine
+      type(temperature_t), intent(in) :: temperature  !< at load factor 1
+      real(rk) :: corner(3, fine%n_cells)  !< [K]
+      integer(ik), parameter :: n = 4  ! points in each direction of a part
+      integer, parameter :: most = 24  ! parts of an edge
+      real(rk) :: edge, lambda(3), moment(3), points(3, n*n), weights(n*n), xy(2, 3)
+      integer(ik) :: c, i, j, point
+      integer :: parts
+
+      call collapsed_rule(1_ik, n, n, points, weights)
+      do c = 1, fine%n_cells
+         xy = fine%xy(:, fine%cell_nodes(:3, c))
+         parts = 1
+         if (temperature%face_depth > 0.0_rk) then
+            edge = sqrt(maxval(sum((xy - cshift(xy, 1, 2))**2, dim=1)))
+            parts = int(min(real(most, rk), 1.0_rk + 2.0_rk*edge/temperature%face_depth))
+         end if
+         moment = 0.0_rk
+         do i = 0, parts - 1
+            do j = 0, 2*(parts - 1 - i)
+               do point = 1, n*n
+                  lambda = part_place(points(:, point), i, j, parts)
+                  moment = moment + weights(point)*lambda*temperature%at(matmul(xy, lambda))
+               end do
+            end do
+         end do
+         moment = 2.0_rk*moment/parts**2
+         corner(:, c) = 12.0_rk*moment - 3.0_rk*sum(moment)
+      end do
+   end function linear_parts
+
+   !> A point of one of the equal parts of a triangle: of a row i, the first of which lies along the
+   !! side opposite to corner 3, and of its parts j, every second one of which is turned.
+   pure function part_place(of_part, i, j, parts) result(lambda)
+      real(rk), intent(in) :: of_part(3)  !< area coordinates in the part [-]
+      integer(ik), intent(in) :: i, j
+      integer, intent(in) :: parts  !< of an edge
+      real(rk) :: lambda(3)  !< [-]
+
+      lambda(2) = real(j/2, rk)
+      lambda(3) = real(i, rk)
+      if (mod(j, 2_ik) == 0) then
+         lambda(2:) = lambda(2:) + of_part(2:)
+      else
+         lambda(2:) = lambda(2:) + 1.0_rk - of_part(2:)
+      end if
+      lambda(2:) = lambda(2:)/parts
+      lambda(1) = 1.0_rk - lambda(2) - lambda(3)
+   end function part_place
 
    !> Add the stress in situ, and the tractions on the outer boundary that balance it.
    pure subroutine add_in_situ(in_situ, fine, loads)

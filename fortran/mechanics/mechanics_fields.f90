@@ -123,11 +123,15 @@ contains
       real(rk), intent(in) :: lambda(3), area_coordinates(3)  !< [-]
       real(rk) :: stress(3)
       type(elasticity_t) :: rock
-      real(rk) :: tensor(2, 2)
+      real(rk) :: temperature, tensor(2, 2)
 
       rock = body%model%rocks%in_cell(cell)
+      temperature = 0.0_rk
+      if (allocated(body%loads%heat_pressure)) then
+         temperature = dot_product(body%loads%heat_pressure(:, cell), area_coordinates)
+      end if
       tensor = rock%total_stress( &
-               body%model%displacement_gradient(body%displacement, cell, lambda), 0.0_rk)
+               body%model%displacement_gradient(body%displacement, cell, lambda), temperature)
       stress = [tensor(1, 1), tensor(2, 2), tensor(1, 2)] &
                + matmul(body%loads%initial_stress(:, body%mesh%cell_nodes(:, cell)), &
                         area_coordinates)

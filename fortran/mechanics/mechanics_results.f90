@@ -153,9 +153,23 @@ contains
          end if
          if (self%scene%growth%intensities) then
             call watch%see_tips(self%tip, self%scene%material%toughness, &
-                                self%scene%growth%enabled, when)
+                                self%scene%growth%enabled, when, thermal_scale(self))
          end if
       end associate
    end subroutine watch_body
+
+   !> A small share of the K of a crack under the thermal stress of held rock: in free rock changes
+   !! of temperature may leave none [Pa m^1/2].
+   pure real(rk) function thermal_scale(self) result(scale)
+      class(loaded_body_t), intent(in) :: self
+      real(rk), parameter :: share = 0.01_rk
+
+      scale = 0.0_rk
+      associate (body => self%body)
+         if (.not. allocated(body%loads%heat_pressure)) return
+         scale = share*maxval(body%model%rocks%elasticity%biot) &
+                 *maxval(abs(body%loads%heat_pressure))*sqrt(sum(body%model%mesh%face_length))
+      end associate
+   end function thermal_scale
 
 end module mechanics_results

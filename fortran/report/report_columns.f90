@@ -147,7 +147,7 @@ module report_columns
       column_t("heat_by_wells_j", "J/m", with_heat, &
          "Heat that wells have supplied so far", of_heat), &
       column_t("heat_by_sides_j", "J/m", with_heat, &
-         "Heat into the body across its outer boundary so far", of_heat), &
+         "Heat into the body across its outer boundary so far, and from sources", of_heat), &
       column_t("heat_error_relative", "-", with_heat, &
          "Numerical error of the balance of heat so far, relative to the heat moved", an_error)]
 

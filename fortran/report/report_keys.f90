@@ -80,7 +80,7 @@ module report_keys
          "heat_error_relative of the last row of history.csv", an_error), &
       column_t("heat_beyond_range_k", "K", with_heat, &
          "Largest excess of a temperature over the range of those before the first step, of "// &
-         "sides and of wells; 0 with a heat_flux", an_error), &
+         "sides and of wells; 0 with a heat_flux or a source", an_error), &
       column_t("newton_iterations", "-", always, "Iterations of the contact problem", counted), &
       column_t("newton_iterations.total", "-", always, &
          "All iterations, including cut steps", counted), &

@@ -77,7 +77,8 @@ module report_limits
          "separate fractures that are nearly parallel and close, or use smaller cells"), &
       limit_t("disagreement of the stress intensity factors", "-", "always", 0.1_rk, 10.0_rk, &
          "Difference of K by the interaction integral and by displacement correlation, over "// &
-         "the largest K of all tips, or over K_IC if that is larger and tips may grow", &
+         "the largest K of all tips, or over K_IC if that is larger and tips may grow, "// &
+         "or 1 % of that by thermal stress", &
          "use smaller cells around the tip"), &
       limit_t("estimated error of a stress intensity factor", "-", with_growth, 5.0e-2_rk, &
          never, &
@@ -111,11 +112,11 @@ module report_limits
       limit_t("pressure beyond the fluid's table", "-", "with a table", 1.0e-3_rk, never, &
          "Distance of the pressure in a fracture from the range of table_pressure, over that "// &
          "range; fluid properties are constant there", "extend the table of the fluid"), &
-      limit_t("fluid of the rock beside its law", "-", "with a fluid law", 0.1_rk, never, &
-         "Relative difference of viscosity over density at a pressure in the rock from that at "// &
-         "reference_pressure, which the rock uses", &
+      limit_t("fluid of the rock beside its law", "-", "with a law", 0.1_rk, never, &
+         "Relative difference of viscosity over density at a pressure or temperature in the "// &
+         "rock from that at reference_pressure and the temperature of &heat, which the rock uses", &
          "use a reference_pressure within the rock's pressures, with the viscosity and "// &
-         "compressibility there"), &
+         "compressibility there; flow in rock of another temperature is wrong by this much"), &
       limit_t("error of growth by the error of K", "%", "fluid and growth", 5.0_rk, never, &
          "Estimated error, by that of K, of the pressure at which a tip grows over that of the "// &
          "loads, or of its position over the length of its fracture; not with law = 'paris'", &

@@ -74,8 +74,11 @@ contains
          associate (own => scene%regions(i)%material, all => scene%material)
             is_other(i) = any(abs([own%young - all%young, own%poisson - all%poisson, &
                                    own%biot - all%biot]) > 0.0_rk)
-            if (scene%has_fluid()) is_other(i) = is_other(i) .or. &
-                                                 abs(own%porosity - all%porosity) > 0.0_rk
+            if (scene%has_fluid()) then
+               is_other(i) = is_other(i) .or. abs(own%porosity - all%porosity) > 0.0_rk
+            else
+               is_other(i) = is_other(i) .or. abs(own%heat_expansion - all%heat_expansion) > 0.0_rk
+            end if
          end associate
       end do
       ! Next to another region a region of the scene's rock has an interface too.

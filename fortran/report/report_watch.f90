@@ -77,12 +77,13 @@ contains
    end subroutine see
 
    !> Check the stress intensity factors of all tips against their limits.
-   pure subroutine see_tips(self, tips, toughness, may_grow, when)
+   pure subroutine see_tips(self, tips, toughness, may_grow, when, least)
       class(watch_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
       logical, intent(in) :: may_grow  !< the scene lets tips grow
       character(len=*), intent(in) :: when
+      real(rk), intent(in), optional :: least  !< a smaller K is none [Pa m^1/2]
       real(rk) :: difference(size(tips)), errors(size(tips)), scale
       integer(ik) :: i
 
@@ -95,6 +96,7 @@ contains
          scale = maxval(hypot(k%k1, k%k2), mask=.not. tips%arrested)
       end associate
       if (may_grow) scale = max(scale, toughness)
+      if (present(least)) scale = max(scale, least)
       i = worst_place(difference)
       if (.not. difference(i) <= 0.0_rk) then
          call self%see(limit_k_methods, difference(i)/scale, when, tips(i)%xy)

@@ -7,8 +7,8 @@ module scene_exchange
    use base_tolerances, only: round_off
    use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
-                                    exchange_side, exchange_word, set_names, set_text, &
-                                    to_degrees
+                                    exchange_side, exchange_temperature, exchange_word, &
+                                    set_names, set_text, to_degrees
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
@@ -153,6 +153,8 @@ contains
          n = merge(1, 0, scene%has_fluid())
       case ("heat")
          n = merge(1, 0, allocated(scene%heat))
+      case ("temperature")
+         n = merge(1, 0, allocated(scene%temperature))
       case default
          n = 1
       end select
@@ -247,6 +249,13 @@ contains
          call exchange(record, "temperature_per_y", scene%heat%temperature_per_y)
          call exchange(record, "y_datum", scene%heat%y_datum)
          call exchange(record, "tolerance", scene%heat%tolerance)
+         call exchange(record, "source_x", scene%heat%source_x)
+         call exchange(record, "source_y", scene%heat%source_y)
+         call exchange(record, "source_power", scene%heat%source_power)
+         call exchange(record, "source_cell_size", scene%heat%source_cell_size, nothing=0.0_rk)
+      case ("temperature")
+         if (record%reading) allocate (scene%temperature)
+         call exchange_temperature(record, scene%temperature)
       case ("time")
          call exchange(record, "end", scene%time%end)
          call exchange(record, "step", scene%time%step, nothing=0.0_rk)
@@ -315,6 +324,8 @@ contains
       call exchange(record, "table_pressure", fluid%table_pressure)
       call exchange(record, "table_viscosity", fluid%table_viscosity)
       call exchange(record, "table_density", fluid%table_density)
+      call exchange(record, "table_temperature", fluid%table_temperature)
+      call exchange(record, "viscosity_at", fluid%viscosity_at)
    end subroutine exchange_fluid
 
    !> Group &domain; the rectangle x_min to y_max bounds every shape.

@@ -2,6 +2,7 @@
 !! sheet and the components of a scene, in both directions.
 module scene_exchange_values
    use base_kinds, only: ik, lk, radians, rk
+   use scene_heat, only: temperature_t
    use scene_sheet, only: parameter_index, record_t
    use scene_sides, only: boundary_side_t, of_inflow, of_normal_traction, of_pressure, &
                           of_shear_traction, of_x_displacement, of_x_traction, of_y_displacement, &
@@ -13,8 +14,8 @@ module scene_exchange_values
    private
 
    public :: exchange, exchange_material, exchange_part, exchange_point_load, exchange_region
-   public :: exchange_restraint, exchange_side, exchange_word, not_given, set_names, set_text
-   public :: to_degrees
+   public :: exchange_restraint, exchange_side, exchange_temperature, exchange_word, not_given
+   public :: set_names, set_text, to_degrees
 
    !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's
    !! component; else from the component into the sheet. A component that equals `nothing`, or a
@@ -372,5 +373,25 @@ contains
       call exchange(record, "x_force", point_load%force(1))
       call exchange(record, "y_force", point_load%force(2))
    end subroutine exchange_point_load
+
+   !> Group &temperature.
+   pure subroutine exchange_temperature(record, temperature)
+      type(record_t), intent(inout) :: record
+      type(temperature_t), intent(inout) :: temperature
+      real(rk) :: inward_deg
+
+      inward_deg = to_degrees(temperature%face_inward)
+      call exchange(record, "change", temperature%change)
+      call exchange(record, "change_per_x", temperature%per_metre(1))
+      call exchange(record, "change_per_y", temperature%per_metre(2))
+      call exchange(record, "x_datum", temperature%datum(1))
+      call exchange(record, "y_datum", temperature%datum(2))
+      call exchange(record, "face_change", temperature%face_change, nothing=0.0_rk)
+      call exchange(record, "face_depth", temperature%face_depth, nothing=0.0_rk)
+      call exchange(record, "face_x", temperature%face(1))
+      call exchange(record, "face_y", temperature%face(2))
+      call exchange(record, "face_inward_deg", inward_deg)
+      temperature%face_inward = inward_deg*radians
+   end subroutine exchange_temperature
 
 end module scene_exchange_values

@@ -19,7 +19,7 @@ module scene_fluid_law
    private
 
    public :: bulk_modulus, fluid_law_t, has_law, least_compressibility, new_fluid_law, skempton
-   public :: storage, strained_storage
+   public :: storage, strained_storage, viscosity_ratio
 
    !> Range of an exponential law, as a logarithm of its change: values remain finite in every
    !! iteration [-].
@@ -152,12 +152,20 @@ contains
       end select
    end function log_viscosity
 
-   !> Value of a table at a pressure: linear between its pressures, constant beyond them [unit of
-   !! y].
+   !> Viscosity at a temperature over that of the scene [-].
+   elemental real(rk) function viscosity_ratio(fluid, temperature) result(ratio)
+      type(fluid_t), intent(in) :: fluid
+      real(rk), intent(in) :: temperature  !< on the scale of the scene [K]
+
+      ratio = exp(interpolated(fluid%table_temperature, log(fluid%viscosity_at), temperature)) &
+              /fluid%viscosity
+   end function viscosity_ratio
+
+   !> Value of a table: linear between its places, constant beyond them [unit of y].
    pure real(rk) function interpolated(x, y, at) result(value)
-      real(rk), intent(in) :: x(:)  !< increasing pressures [Pa]
+      real(rk), intent(in) :: x(:)  !< increasing pressures [Pa] or temperatures [K]
       real(rk), intent(in) :: y(:)  !< [any unit]
-      real(rk), intent(in) :: at  !< [Pa]
+      real(rk), intent(in) :: at  !< [Pa] or [K]
       integer(ik) :: k
 
       k = count(x <= at, kind=ik)

@@ -56,7 +56,7 @@ module scene_parameter_table
          range=positive, scenes=in_fluid, only_with="heat", &
          meaning="Heat conductivity, with the pore fluid"), &
       parameter_t("material", "heat_expansion", unit="1/K", absent="none", &
-         range=at_least_zero, scenes=in_fluid, only_with="heat", &
+         range=at_least_zero, only_with="heat|temperature", &
          meaning="Thermal expansion of volume of the solid, three times that of length"), &
       parameter_t("fluid", "compressibility", unit="1/Pa", need=need_always, range=at_least_zero, &
          meaning="Compressibility c_p"), &
@@ -96,6 +96,15 @@ module scene_parameter_table
          only_with="heat", meaning="Heat capacity per volume at the reference density"), &
       parameter_t("fluid", "heat_expansion", unit="1/K", absent="none", only_with="heat", &
          meaning="Thermal expansion of volume, in the pores"), &
+      parameter_t("fluid", "table_temperature", kind_reals, "K", absent="one viscosity", &
+         with="viscosity_at", only_with="heat", &
+         meaning="Increasing temperatures of a table of the viscosity in fractures, with its "// &
+                 "logarithm linear in between. Rock keeps `viscosity`, that at the "// &
+                 "temperature of &heat"), &
+      parameter_t("fluid", "viscosity_at", kind_reals, "Pa s", absent="one viscosity", &
+         range=positive, with="table_temperature", only_with="heat", &
+         meaning="Viscosities at these temperatures, at reference_pressure; a viscosity_law "// &
+                 "multiplies them"), &
       parameter_t("region", "name", kind_name, need=need_always, &
          meaning="Name, different from that of every other region"), &
       parameter_t("region", "shape", kind_choice, default="'polygon'", &
@@ -150,7 +159,7 @@ module scene_parameter_table
          derived=.true., range=positive, scenes=in_fluid, only_with="heat", &
          meaning="Heat conductivity"), &
       parameter_t("region", "heat_expansion", unit="1/K", absent="that of &material", &
-         derived=.true., range=at_least_zero, scenes=in_fluid, only_with="heat", &
+         derived=.true., range=at_least_zero, only_with="heat|temperature", &
          meaning="Thermal expansion of volume of the solid")]
 
    type(parameter_t), parameter :: fracture_parameters(*) = [ &
@@ -287,6 +296,31 @@ module scene_parameter_table
       parameter_t("heat", "y_datum", unit="m", default="0.0", meaning="Level of temperature"), &
       parameter_t("heat", "tolerance", default="1.0e-3", range=share, &
          meaning="Error in time of a substep of the heat, relative to the heat moved so far"), &
+      parameter_t("heat", "source_power", kind_reals, "W/m", absent="no source", with="source_x", &
+         meaning="Power of sources of heat at points of the rock, without fluid; negative: it "// &
+                 "is drawn"), &
+      parameter_t("heat", "source_x", kind_reals, "m", absent="no source", with="source_y", &
+         meaning="x of these points"), &
+      parameter_t("heat", "source_y", kind_reals, "m", absent="no source", with="source_power", &
+         meaning="y of the same"), &
+      parameter_t("heat", "source_cell_size", unit="m", absent="as elsewhere", range=positive, &
+         meaning="Size of cells at the sources, which grows from there"), &
+      parameter_t("temperature", "change", unit="K", default="0.0", &
+         meaning="Change at x_datum and y_datum; negative: colder"), &
+      parameter_t("temperature", "change_per_x", unit="K/m", default="0.0", &
+         meaning="Its gradient in x"), &
+      parameter_t("temperature", "change_per_y", unit="K/m", default="0.0", &
+         meaning="Its gradient in y"), &
+      parameter_t("temperature", "x_datum", unit="m", default="0.0", meaning="Place of change"), &
+      parameter_t("temperature", "y_datum", unit="m", default="0.0", meaning="The same in y"), &
+      parameter_t("temperature", "face_change", unit="K", absent="no face", with="face_depth", &
+         meaning="Change of a plane face, in addition"), &
+      parameter_t("temperature", "face_depth", unit="m", absent="no face", range=positive, &
+         with="face_change", meaning="Depth of its front, 2 sqrt(D t): heat diffusivity, time"), &
+      parameter_t("temperature", "face_x", unit="m", default="0.0", meaning="x of a point of it"), &
+      parameter_t("temperature", "face_y", unit="m", default="0.0", meaning="y of the same"), &
+      parameter_t("temperature", "face_inward_deg", unit="degree", default="0.0", &
+         meaning="Direction from the face into the rock, counter-clockwise from the x axis"), &
       parameter_t("time", "end", unit="s", need=need_always, range=positive, &
          meaning="End of the run"), &
       parameter_t("time", "step", unit="s", range=positive, at_most="end", &

@@ -62,7 +62,7 @@ module scene_parameters
       character(len=32) :: choices = ""
       character(len=160) :: meaning = ""
       logical :: per_entry = .false.  !< a list by entries of a well, and so not by its stages
-      character(len=12) :: only_with = ""  !< group that a scene with this name must have
+      character(len=16) :: only_with = ""  !< groups, by `|`, of which the scene must have one
       ! Relations to other names of its group:
       character(len=28) :: of = ""  !< choice of the name, as `law=slip`; empty: every choice
       character(len=20) :: with = ""  !< name that must be given with this one
@@ -127,7 +127,11 @@ module scene_parameters
       group_t("heat", scenes=in_fluid, &
          meaning="Heat in rock and fractures: conduction, and what the fluid carries; none "// &
                  "without this group. Temperatures act on stresses and pressures by "// &
-                 "heat_expansion, not on viscosity (docs/theory.md)."), &
+                 "heat_expansion, on viscosity by table_temperature."), &
+      group_t("temperature", scenes=in_mechanics, &
+         meaning="Change of temperature of a body without a fluid, times the load factor: "// &
+                 "linear in x and y, and that of a plane face which has changed at once, "// &
+                 "face_change erfc(distance/face_depth). It acts by heat_expansion of the rock."), &
       group_t("time", implied=.true., scenes=in_fluid, meaning="Time steps."), &
       group_t("in_situ", implied=.true., &
          meaning="Stress in the body before loading, in equilibrium with tractions on its "// &

@@ -41,7 +41,8 @@ module scene_plausible
                          of_dry = 26, of_overpressure = 27, of_viscous = 28, &
                          of_surplus = 29, of_friction_there = 30, of_wide = 31, &
                          of_sealed = 32, of_would_grow = 33, of_thickness = 34, &
-                         of_no_growth = 35, of_moved = 36, of_next = 37
+                         of_no_growth = 35, of_moved = 36, of_next = 37, &
+                         of_front = 38
 
    ! The table keeps its own layout.
    !&<
@@ -139,7 +140,9 @@ module scene_plausible
          "out for a well in the rock"), &
       doubt_t("injection", "next distance", "m", &
          "of another fracture within 5 % of that of the nearest, likewise", &
-         "two fractures are about equally near, and the nearest is fed; give its name")]
+         "two fractures are about equally near, and the nearest is fed; give its name"), &
+      doubt_t("temperature", "face_depth", "m", "below size_boundary, without &adaptive", &
+         "elements at the face are wider than the front, which the stated errors do not contain")]
    !&>
 
    !> Distance below which an end reaches a target (twolevel_segments) [increments].
@@ -168,6 +171,12 @@ contains
       if (has_fluid) call doubt_column(scene, list)
       if (has_fluid .and. scene%growth%enabled) call doubt_ends(scene, list)
       if (allocated(scene%regions)) call doubt_regions(scene, list)
+      if (allocated(scene%temperature)) then
+         associate (depth => scene%temperature%face_depth)
+            call add(list, depth > 0.0_rk .and. depth < scene%discretization%size_boundary &
+                     .and. .not. scene%adaptive%enabled, of_front, depth)
+         end associate
+      end if
       if (scene%has_points()) then
          associate (surplus => surplus_restraints(scene))
             call add(list, surplus > 0 .and. size(scene%restraints) > 0, of_surplus, &

@@ -39,6 +39,7 @@ module scene_sheet
    contains
       procedure :: find
       procedure :: has
+      procedure :: has_one
    end type sheet_t
 
 contains
@@ -164,6 +165,17 @@ contains
 
       has = self%find(name) > 0
    end function has
+
+   !> There is a group of one of these names, by `|`.
+   pure logical function has_one(self, names)
+      class(sheet_t), intent(in) :: self
+      character(len=*), intent(in) :: names
+      integer :: bar
+
+      bar = index(names, "|")
+      has_one = self%has(trim(names(bar + 1:)))
+      if (bar > 0 .and. .not. has_one) has_one = self%has(names(:bar - 1))
+   end function has_one
 
    !> Path of the file that contains a group.
    pure function path_of(sheet, record) result(path)

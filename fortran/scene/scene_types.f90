@@ -2,7 +2,7 @@
 module scene_types
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
-   use scene_heat, only: heat_t
+   use scene_heat, only: heat_t, temperature_t
    use scene_sides, only: boundary_side_t
    implicit none(type, external)
    private
@@ -76,6 +76,8 @@ module scene_types
       real(rk), allocatable :: table_pressure(:)  !< increasing pressures [Pa]
       real(rk), allocatable :: table_viscosity(:)  !< [Pa s]
       real(rk), allocatable :: table_density(:)  !< [kg/m3]
+      real(rk), allocatable :: table_temperature(:)  !< increasing, with viscosity_at [K]
+      real(rk), allocatable :: viscosity_at(:)  !< viscosities at these temperatures [Pa s]
    end type fluid_t
 
    !> One fracture and its law.
@@ -303,6 +305,7 @@ module scene_types
       type(injection_t), allocatable :: injections(:)
       type(initial_t) :: initial
       type(heat_t), allocatable :: heat  !< unallocated: none
+      type(temperature_t), allocatable :: temperature  !< without a fluid; unallocated: no change
       type(time_t) :: time
       type(discretization_t) :: discretization
       type(growth_t) :: growth

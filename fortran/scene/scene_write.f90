@@ -44,7 +44,7 @@ contains
             associate (parameter => parameters(item), value => sheet%records(i)%values(item))
                if (.not. applies(parameter%scenes, scene%has_fluid())) cycle
                if (parameter%only_with /= "") then
-                  if (.not. sheet%has(trim(parameter%only_with))) cycle
+                  if (.not. sheet%has_one(parameter%only_with)) cycle
                end if
                if (value%is_set) then
                   call put_value(lines, parameter, value)

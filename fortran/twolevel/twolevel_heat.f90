@@ -15,6 +15,7 @@ module twolevel_heat
    use mesh_types, only: mesh_map_t
    use report_rows, only: heat_row_t, summary_t, well_row_t
    use report_simulation, only: snapshot_t
+   use scene_fluid_law, only: viscosity_ratio
    use scene_types, only: injection_t, scene_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_problem, only: coarse_problem_t
@@ -51,6 +52,7 @@ contains
       allocate (problem%heat)
       call problem%heat%set_mesh(problem%mesh, scene, problem%model%connections, &
                                  problem%model%joints, first_substep(scene), error)
+      if (.not. allocated(error)) call set_viscosity(scene, problem%heat%initial, problem)
    end subroutine set_heat
 
    !> Advance heat by an accepted step of the coarse level; before the first one, begin.
@@ -104,7 +106,7 @@ contains
       type(state_t) :: after
       logical :: is_known
 
-      if (.not. acts(problem)) return
+      if (.not. acts(scene, problem)) return
       is_known = all(abs(problem%heat_span - [state%time, dt]) <= 0.0_rk)
       if (.not. is_known .and. allocated(now%rate) .and. now%next >= dt) then
          now%acting = now%temperature + dt*now%rate - problem%heat%initial
@@ -119,7 +121,7 @@ contains
          end if
          now%acting = problem%heat_after%temperature - problem%heat%initial
       end if
-      call act(problem, now)
+      call act(scene, problem, now)
    end subroutine predict_heat
 
    !> Compare the temperatures that acted in a try of a step with those that its flows give. Where
@@ -135,7 +137,7 @@ contains
       type(heat_state_t) :: then
 
       is_settled = .true.
-      if (.not. acts(problem)) return
+      if (.not. acts(scene, problem)) return
       then = now
       call begin_heat(scene, before, problem, then)
       call advance(scene, before%time, after, problem, then, error)
@@ -146,25 +148,50 @@ contains
       end associate
    end subroutine settle_heat
 
-   !> Whether temperatures act on stress or fluid.
-   pure logical function acts(problem)
+   !> Whether temperatures act on stress, fluid in the rock or viscosity.
+   pure logical function acts(scene, problem)
+      type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
 
       acts = allocated(problem%heat)
-      if (acts) acts = any(abs([problem%model%rock%heat_stress, &
-                                problem%model%rock%heat_content]) > 0.0_rk)
+      if (acts) acts = expands(problem) .or. allocated(scene%fluid%table_temperature)
    end function acts
 
+   !> Whether temperatures act on stress or fluid in the rock.
+   pure logical function expands(problem)
+      type(coarse_problem_t), intent(in) :: problem
+
+      expands = any(abs([problem%model%rock%heat_stress, problem%model%rock%heat_content]) > 0.0_rk)
+   end function expands
+
+   !> Set the viscosity in the fracture cells.
+   pure subroutine set_viscosity(scene, temperature, problem)
+      type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: temperature(:)  !< of the unknowns of heat, less that of &heat [K]
+      type(coarse_problem_t), intent(inout) :: problem
+
+      if (.not. allocated(scene%fluid%table_temperature)) return
+      associate (heat => problem%heat)
+         problem%model%cells%viscosity_ratio = &
+            viscosity_ratio(scene%fluid, heat%heat%temperature &
+                            + temperature(heat%first_cell:heat%first_joint - 1))
+      end associate
+   end subroutine set_viscosity
+
    !> Let the temperatures of a state act that acted when it was found.
-   subroutine act(problem, now)
+   subroutine act(scene, problem, now)
+      type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(inout) :: problem
       type(heat_state_t), intent(in) :: now
 
       if (.not. allocated(now%acting)) then
          if (allocated(problem%model%rock%temperature)) deallocate (problem%model%rock%temperature)
+         if (allocated(now%temperature)) call set_viscosity(scene, now%temperature, problem)
          return
       end if
       associate (heat => problem%heat)
+         call set_viscosity(scene, heat%initial + now%acting, problem)
+         if (.not. expands(problem)) return
          associate (capacity => heat%rock_capacity())
             problem%model%rock%temperature = heat%of_cells(capacity*now%acting(:size(capacity))) &
                                              /heat%of_cells(capacity)
@@ -226,6 +253,7 @@ contains
       end associate
       if (allocated(levels%heat%temperature)) then
          call transfer_heat(before%heat, problem%heat, map, faces, filled, levels%heat)
+         call set_viscosity(scene, levels%heat%temperature, problem)
       end if
       problem%heat_span = before%heat_span
       problem%heat_after = before%heat_after

@@ -7,6 +7,7 @@ module twolevel_limits
    use growth_tip, only: tip_t
    use mesh_builder, only: mesh_quality
    use mesh_geometry, only: cell_centre, fracture_cell_centre
+   use scene_fluid_law, only: viscosity_ratio
    use scene_types, only: scene_t
    use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
                             limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
@@ -84,6 +85,15 @@ contains
       end if
       if (allocated(problem%model%settings%fluid_law)) then
          call watch_fluid(watch, scene, problem, state, when)
+      end if
+      if (allocated(scene%fluid%table_temperature) .and. &
+          allocated(problem%heat_after%temperature)) then
+         associate (t => scene%heat%temperature + problem%heat%cell_means(problem%heat_after))
+            associate (differs => abs(viscosity_ratio(scene%fluid, t) - 1.0_rk))
+               i = worst_place(differs)
+               call watch%see(limit_fluid_in_rock, differs(i), when, cell_centre(problem%mesh, i))
+            end associate
+         end associate
       end if
       call watch%see(limit_pressure_stiffness, pressure/scene%material%young, when, xy)
       scale = pressure_scale(scene)

@@ -396,7 +396,7 @@ contains
    end function joint_pressure
 
    !> Ratio of the viscosity in the fracture cells to that of the scene, where the viscosity depends
-   !! on pressure [-].
+   !! on pressure or temperature [-].
    pure function thickness(self, state)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
@@ -405,6 +405,9 @@ contains
       thickness = 1.0_rk
       if (allocated(self%model%settings%fluid_law)) then
          thickness = self%model%settings%fluid_law%thickness_at(self%fracture_pressure(state))
+      end if
+      if (allocated(self%model%cells%viscosity_ratio)) then
+         thickness = thickness*self%model%cells%viscosity_ratio
       end if
    end function thickness
 

@@ -179,7 +179,7 @@ contains
             if (allocated(archive%fault)) return
          end if
          call visit_step_values(archive, "step", model)
-         if (archive%is_loading) call act(problem, self%now%heat)
+         if (archive%is_loading) call act(self%scene, problem, self%now%heat)
          call visit_factors(archive, "factors", model, problem%mesh, error)
          if (allocated(error)) return
          call visit_values(archive, "values", problem%values)

@@ -153,6 +153,13 @@ contains
       call set_own_sizes(scene, spec)
       call shape_body(scene, spec)
       if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
+      if (.not. allocated(scene%heat)) return
+      if (.not. scene%heat%source_cell_size > 0.0_rk) return
+      associate (heat => scene%heat)
+         spec%refined = transpose(reshape([heat%source_x, heat%source_y], &
+                                          [size(heat%source_x), 2]))
+         spec%refined_size = heat%source_cell_size
+      end associate
    end function coarse_spec
 
    !> Contact law and residual aperture of the fracture cells of the scene.

@@ -189,7 +189,9 @@ contains
             call summary%use_feature("heat: conduction, and carried by the fluid")
             call summary%note(any(self%problem%model%rock%heat_stress > 0.0_rk), "thermal stress", &
                               "no thermal stress: heat_expansion is not given")
-            call summary%leave_out_feature("viscosity by temperature")
+            call summary%note(allocated(scene%fluid%table_temperature), &
+                              "viscosity by temperature in fractures; the rock keeps one", &
+                              "viscosity by temperature: no table_temperature")
          end if
          if (scene%discretization%chosen) then
             call summary%use_feature("default sizes: "//sizes_text(scene))

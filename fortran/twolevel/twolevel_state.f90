@@ -243,7 +243,7 @@ contains
          call self%windows%coarse_changed()
          call self%reference%coarse_changed()
       end if
-      call act(self%problem, self%now%heat)
+      call act(self%scene, self%problem, self%now%heat)
    end subroutine put_back
 
    !> Copy of all quantities that a step changes.

@@ -38,7 +38,7 @@ contains
       logical, intent(in) :: may_jump
       integer(ik), allocatable :: free(:)
       real(rk) :: gain(size(self%tip)), length, pressure(size(self%before%pressure)), toughness
-      real(rk) :: viscous(size(self%tip))
+      real(rk) :: viscosity, viscous(size(self%tip))
       type(solid_t) :: solid
       integer(ik) :: cell, i
 
@@ -58,8 +58,11 @@ contains
                       - self%problem%mesh%fracture%cell_s(1, cell))
          solid = beside(self%problem%model%rock, self%problem%mesh, cell)
          toughness = self%rules%toughness*self%tip(i)%drive%resistance
-         viscous(i) = viscous_parameter(self%scene%fluid%viscosity, gain(i)/dt, &
-                                        solid%crack_modulus(), toughness)
+         viscosity = self%scene%fluid%viscosity
+         associate (cells => self%problem%model%cells)
+            if (allocated(cells%viscosity_ratio)) viscosity = viscosity*cells%viscosity_ratio(cell)
+         end associate
+         viscous(i) = viscous_parameter(viscosity, gain(i)/dt, solid%crack_modulus(), toughness)
          if (cell <= size(pressure)) then
             viscous(i) = leaking_parameter(viscous(i), carter_coefficient(self%scene, &
                                                                           pressure(cell)), &

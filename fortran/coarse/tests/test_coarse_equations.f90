@@ -39,6 +39,7 @@ program test_coarse_equations
    call compare_slopes(.true., 3)
    call checks%is_true(all(has_occurred), "cells stick, slip and are open")
    call test_fluid_laws()
+   call test_viscosity_of_cells()
    call test_exchange_along_fractures()
    call test_moving_tip(0.0_rk)
    call test_moving_tip(7.0_rk)
@@ -328,6 +329,29 @@ contains
       end associate
       deallocate (model%settings%fluid_law, model%cells%pressure_in_situ)
    end subroutine test_fluid_laws
+
+   !> Viscosities of the cells: derivatives, and twice the viscosity in all of them is twice that of
+   !! the fluid for the flow along fractures.
+   subroutine test_viscosity_of_cells()
+      type(equations_t) :: by_cells, by_fluid
+      real(rk), allocatable :: x(:)
+      integer(ik), allocatable :: contact(:, :)
+      integer(ik) :: i, k
+
+      model%cells%viscosity_ratio = [(0.3_rk*i, i=1, mesh%fracture%n_cells)]
+      call compare_slopes(.false., 1)
+      call some_unknowns(2, x)
+      model%cells%viscosity_ratio = 2.0_rk
+      call equations_at(x, .false., by_cells, contact)
+      deallocate (model%cells%viscosity_ratio)
+      model%settings%viscosity = 2.0_rk*model%settings%viscosity
+      call equations_at(x, .false., by_fluid, contact)
+      model%settings%viscosity = 0.5_rk*model%settings%viscosity
+      associate (at => by_fluid%layout%at_flow([(k, k=1, by_fluid%layout%n_flows)]))
+         call checks%is_close(maxval(abs(by_cells%residual(at) - by_fluid%residual(at))), 0.0_rk, &
+                              0.0_rk, "flow at another viscosity")
+      end associate
+   end subroutine test_viscosity_of_cells
 
    !> What flows along a fracture leaves one balance and enters the next; the other ends are closed.
    subroutine test_exchange_along_fractures()

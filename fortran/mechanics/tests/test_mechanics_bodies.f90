@@ -3,9 +3,11 @@
 program test_mechanics_bodies
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
+   use base_plane, only: triangle_area
    use base_timers, only: timers_t
    use mechanics_fields, only: cell_stress
    use mechanics_simulation, only: mechanics_simulation_t
+   use scene_heat, only: temperature_t
    use scene_namelist, only: resolve_defaults
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: boundary_part_t, fracture_t, restraint_t, scene_t
@@ -22,6 +24,7 @@ program test_mechanics_bodies
    call check_disc()
    call check_rim()
    call check_arcs()
+   call check_temperature()
    call checks%finish()
 
 contains
@@ -194,6 +197,66 @@ contains
       call checks%is_close(largest_error(simulation, exact)/maxval(abs(exact)), 0.0_rk, round_off, &
                            "pure shear")
    end subroutine check_pure_shear
+
+   !> A linear change of temperature strains a free body without stress, also next to a crack: u has
+   !! the strain e = (1 + nu) b_s/3 theta, and in plane stress b_s/3 theta. A uniform one in a held
+   !! body gives the stress -K_dr b_s theta; a front has its heat, however thin.
+   subroutine check_temperature()
+      real(rk), parameter :: bulk = young/(3.0_rk*(1.0_rk - 2.0_rk*poisson)), expansion = 3.0e-5_rk
+      type(scene_t) :: scene
+      type(mechanics_simulation_t) :: simulation
+      real(rk), allocatable :: exact(:, :), stress(:, :)
+      real(rk) :: scale
+      integer :: k
+
+      scene = bare_scene("rectangle")
+      scene%domain%x_max = 1.0_rk
+      scene%domain%y_max = 1.0_rk
+      scene%discretization%size_boundary = 0.3_rk
+      scene%material%heat_expansion = expansion
+      scene%restraints = [restraint_t(displacement_given=[.true., .true.]), &
+                          restraint_t(x=1.0_rk, displacement_given=[.false., .true.])]
+      do k = 1, 2
+         scene%temperature = temperature_t(change=-50.0_rk, per_metre=[20.0_rk, -30.0_rk], &
+                                           datum=[0.5_rk, 0.25_rk])
+         scale = expansion/3.0_rk
+         if (k == 1) scale = (1.0_rk + poisson)*scale
+         scene%material%plane_stress = k == 2
+         call solve(scene, simulation, "linear temperature")
+         exact = 0.0_rk*simulation%body%displacement
+         associate (x => simulation%body%model%mesh%xy(1, :), &
+                    y => simulation%body%model%mesh%xy(2, :), t => scene%temperature)
+            associate (at_origin => t%at([0.0_rk, 0.0_rk]), g => t%per_metre)
+               exact(1, :) = at_origin*x + 0.5_rk*g(1)*(x**2 - y**2) + g(2)*x*y
+               exact(2, :) = at_origin*y + 0.5_rk*g(2)*(y**2 - x**2) + g(1)*x*y
+               ! No displacement in y at the second restraint.
+               exact(1, :) = exact(1, :) - 0.5_rk*g(2)*y
+               exact(2, :) = exact(2, :) + 0.5_rk*g(2)*x
+            end associate
+         end associate
+         exact = scale*exact
+         call checks%is_close(largest_error(simulation, exact)/maxval(abs(exact)), 0.0_rk, &
+                              round_off, "linear temperature in a free body")
+      end do
+      scene%material%plane_stress = .false.
+      scene%temperature = temperature_t(change=-50.0_rk)
+      scene%sides%displacement_given(1) = .true.
+      scene%sides%displacement_given(2) = .true.
+      deallocate (scene%restraints)
+      allocate (scene%restraints(0))
+      call solve(scene, simulation, "held")
+      stress = cell_stress(simulation%body)
+      call checks%is_close(maxval(abs(stress(:2, :)/(50.0_rk*bulk*expansion) - 1.0_rk)), 0.0_rk, &
+                           round_off, "tension of a held body that is cooled")
+      scene%temperature = temperature_t(face_change=-50.0_rk, face=[1.0_rk, 0.0_rk], &
+                                        face_inward=pi, face_depth=0.05_rk)
+      call solve(scene, simulation, "front")
+      associate (mesh => simulation%body%model%mesh, t => simulation%body%loads%heat_pressure)
+         call checks%is_close(sum([(triangle_area(mesh%xy(:, mesh%cell_nodes(:3, k))) &
+                                    *sum(t(:, k))/3.0_rk, k=1, mesh%n_cells)]), &
+                              -50.0_rk*0.05_rk/sqrt(pi), 1.0e-4_rk, "heat drawn through a face")
+      end associate
+   end subroutine check_temperature
 
    !> Pressure all round a disc: u_r = -p (1 + nu)(1 - 2 nu) r/E in plane strain.
    subroutine check_disc()

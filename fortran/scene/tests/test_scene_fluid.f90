@@ -3,7 +3,7 @@
 program test_scene_fluid
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use scene_fluid_law, only: fluid_law_t, has_law, new_fluid_law
+   use scene_fluid_law, only: fluid_law_t, has_law, new_fluid_law, viscosity_ratio
    use scene_namelist, only: read_scene
    use scene_test_files, only: delete_file, put_changed, put_lines
    use scene_types, only: fluid_t, scene_t
@@ -118,6 +118,11 @@ contains
       call law%potential_at(1.0e7_rk, above, mobility)
       call checks%is_close(above, 0.0_rk, 1.0e-8_rk, "no potential at the reference pressure")
       call checks%is_close(mobility, 1.0_rk, 1.0e-13_rk, "nor another mobility")
+      fluid%table_temperature = [300.0_rk, 400.0_rk, 450.0_rk]
+      fluid%viscosity_at = [2.0e-3_rk, 1.0e-3_rk, 0.5e-3_rk]
+      call checks%is_close(viscosity_ratio(fluid, 350.0_rk), sqrt(2.0_rk), 1.0e-14_rk, &
+                           "viscosity between two temperatures")
+      call checks%is_close(viscosity_ratio(fluid, 500.0_rk), 0.5_rk, 1.0e-14_rk, "and beyond them")
       do i = -2, 14
          p = 4.1e6_rk*i + 1.0e5_rk
          call law%potential_at(p + step, above, unused)

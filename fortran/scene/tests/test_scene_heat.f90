@@ -65,6 +65,19 @@ program test_scene_heat
    call refuse(10, "&heat temperature=150.0 tolerance=2.0 /", &
                ":10: &heat: tolerance is 2.0 but must be a finite number "// &
                "greater than 0.0 and at most 1.0")
+   call refuse_table("20.0, 200.0", "2e-3, 1e-3, 5e-4", "6: &fluid: viscosity_at has 3 values "// &
+                     "but must have one for each table_temperature, 2")
+   call refuse_table("20.0, 20.0", "2e-3, 1e-3", "6: &fluid: table_temperature must have at "// &
+                     "least two values, which increase")
+   call refuse_table("50.0, 200.0", "2e-3, 1e-3", "6: &fluid: table_temperature reaches from "// &
+                     "50.0 to 200.0 but must contain the temperatures of the scene, 20.0 to 150.0")
+   call refuse_table("20.0, 200.0", "4e-3, 2e-3", "5: &fluid: viscosity is 0.001 but must be "// &
+                     "that of the table at the temperature of &heat, 0.002425, which the "// &
+                     "rock takes")
+   call refuse(10, "&heat temperature=150.0 source_power=1.0, 2.0 source_x=1.0 source_y=0.5 /", &
+               ":10: &heat: source_power has 2 values, but source_x and source_y must have as many")
+   call refuse(10, "&heat temperature=150.0 source_power=1.0 source_x=1.0 source_y=1.5 /", &
+               ":10: &heat: source_x and source_y have (1.0, 1.5), which must lie in the body")
    call put_changed(path, good, 9, "&injection fracture='f1' rate=-1.0e-9 /", 9, &
                     "&injection fracture='f1' rate=-1.0e-9 /")
    call read_scene(path, scene, error)
@@ -73,6 +86,17 @@ program test_scene_heat
    call checks%finish()
 
 contains
+
+   subroutine refuse_table(temperatures, viscosities, words)
+      character(len=*), intent(in) :: temperatures, viscosities, words
+
+      call put_lines(path, [character(len=100) :: good(:4), &
+                            "&fluid compressibility=4e-10 viscosity=1e-3 heat_capacity=4e6", &
+                            "table_temperature="//temperatures//" viscosity_at="//viscosities// &
+                            " /", good(6:)])
+      call read_scene(path, scene, error)
+      call checks%fails_with(error, path//":"//words//doc, words)
+   end subroutine refuse_table
 
    subroutine refuse(line, text, words)
       integer, intent(in) :: line

@@ -56,6 +56,15 @@ program test_scene_mechanics
    call refuse(5, "&restraint x=2 y=0 /", ":5: &restraint: has no component", &
                and_4="&side name='left' x_displacement=0 y_displacement=0 /")
    call refuse(8, "&load from=2 to=2 /", ":8: &load: to is 2.0 but must differ from from, 2.0")
+   call refuse(2, "&material young=1e9 poisson=0.2 toughness=1e6 heat_expansion=3e-5 /", &
+               ":2: &material: heat_expansion is given, but the scene has no group &heat or "// &
+               "&temperature")
+   call refuse(8, "&temperature change=-5 /", ":2: &material: heat_expansion is missing, but "// &
+               "&temperature takes one above 0 here or in a region")
+   call refuse(8, "&temperature face_change=-5 /", "face_depth")
+   call refuse(2, "&material young=1e9 poisson=0.2 toughness=1e6 heat_expansion=3e-5 /", "", &
+               accepted=.true., and_4=trim(good(4))//" &temperature change=-5 face_change=-9 "// &
+               "face_depth=2 /")
    call accept("a load that falls", 8, "&load from=2 to=-1 /")
    call accept("a load that goes to and fro", 8, "&load factors=0 1 0.4 -0.5 steps=3 /")
    call accept("to and fro from elsewhere", 8, "&load factors=0.5 from=-1 control='dead' /")

@@ -16,6 +16,7 @@ from wingcrack.scenes.namelist import Value, group_text
 from wingcrack.scenes.new import KINDS as FOLDER
 from wingcrack.scenes.new import annotated
 from wingcrack.scenes.solver import call, check
+from wingcrack.scenes.water import water
 
 
 def test_every_kind_has_a_file_and_every_file_is_a_kind() -> None:
@@ -55,6 +56,28 @@ def test_a_name_that_the_solver_does_not_know_is_refused() -> None:
         annotated("&material\n  yung = 1.0\n/\n")
     with pytest.raises(SceneError, match="knows no group &rock"):
         annotated("&rock\n/\n")
+
+
+@needs_solver
+def test_water(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Values by which IAPWS lets programs be checked; the solver takes the scene."""
+    pytest.importorskip("iapws", reason="iapws is not installed (requirements_water.txt)")
+    capacity = water(80e6, 300.0, [300.0])["heat_capacity"]
+    assert capacity == pytest.approx(4.01008987e6 / 0.971180894e-3 * 1e-3, rel=1e-5)
+    assert water(2.15e6, 298.15)["viscosity"] == pytest.approx(889.7351e-6, rel=1e-4)
+    scene = tmp_path / "heat.nml"
+    assert main(["new", "heat", "--water", "423.15", "--out", str(scene)]) == 0
+    is_good, words = check(scene)
+    assert is_good, words
+    fluid = f90nml.read(scene)["fluid"]
+    assert fluid["table_temperature"] == pytest.approx([333.15 + 10 * k for k in range(11)])
+    assert fluid["viscosity_at"][9] == fluid["viscosity"]
+    assert f90nml.read(scene)["heat"]["temperature"] == 423.15
+    refused = {"mechanics": "has no fluid", "heat": "is not liquid"}
+    for kind, words in refused.items():
+        out = str(tmp_path / "no.nml")
+        assert main(["new", kind, "--water", "700", "--out", out]) == 2
+        assert words in capsys.readouterr().err
 
 
 def test_groups_read_back_as_they_were(tmp_path: Path) -> None:

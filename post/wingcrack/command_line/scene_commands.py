@@ -15,6 +15,7 @@ KINDS = {
     "wells": "two wells in stages, up to pressures, in fractured rock",
     "mechanics": "no fluid: a crack grows under tension",
     "column": "no fractures: consolidation of a column",
+    "heat": "cold water from well to well through hot rock",
 }
 ENDINGS = (".csv", ".txt", ".geojson", ".json", ".wkt", ".msh", ".geo",
            ".shp", ".gpkg", ".dxf", ".fgb", ".gml", ".kml")  # fmt: skip
@@ -88,6 +89,13 @@ _COMMON = (  # of what makes scenes of fractures
     "wingcrack.scenes.new:new",
     Parameter("kind", "[KIND]", default="injection"),
     Parameter("--out", "FILE", "the file to write (default: KIND.nml)", Path),
+    Parameter(
+        "--water",
+        "KELVIN",
+        "the fluid is water in rock of this temperature, at the pressure of the scene: properties"
+        " by the IAPWS; with &heat the viscosity follows temperature",
+        values.positive,
+    ),
     _OVERWRITE,
     about="kinds:\n"
     + "".join(f"  {kind:<11}{words}\n" for kind, words in KINDS.items())

@@ -87,13 +87,17 @@ def _comment(text: str, indent: str) -> list[str]:
     return [*lines, line]
 
 
-def new_scene(kind: str, name: str) -> str:
+def new_scene(kind: str, name: str, water: float | None = None) -> str:
     """Text of a new scene.
 
     `kind`: one of the files in the folder ``kinds``. `name`: what the scene is called, after its
-    file.
+    file. `water`: the fluid is water, in rock of this temperature [K].
     """
     text = (KINDS / f"{kind}.nml").read_text(encoding="utf-8")
+    if water is not None:
+        from wingcrack.scenes.water import with_water
+
+        text = with_water(text, water)
     head, _, rest = text.partition("&scene\n")
     rest = rest.replace(f"  name = '{kind}'\n", f"  name = '{name}'\n", 1)
     return head + annotated(f"&scene\n{rest}").lstrip("\n")
@@ -102,7 +106,7 @@ def new_scene(kind: str, name: str) -> str:
 def new(given: SimpleNamespace) -> int:
     """Write the scene; give the exit status: 0 done, 2 bad input, 3 lacking solver."""
     try:
-        text = new_scene(given.kind, given.out.stem)
+        text = new_scene(given.kind, given.out.stem, given.water)
         given.out.write_text(text, encoding="utf-8")
     except OSError as reason:
         said = f"{given.out}: it cannot be written: {reason.strerror}"
