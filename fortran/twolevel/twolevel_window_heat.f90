@@ -6,7 +6,7 @@
 !! nodal forces, of strains that are linear in straight elements, are those of the front itself.
 module twolevel_window_heat
    use base_kinds, only: ik, rk
-   use base_plane, only: barycentric, left_part, triangle_area
+   use base_plane, only: barycentric, cross, left_part, triangle_area
    use coarse_rock, only: solid_t
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
@@ -21,15 +21,20 @@ module twolevel_window_heat
 
 contains
 
-   !> Set the pressures in the elements of a window.
+   !> Set the pressures in the elements of a window, unless they are known.
    subroutine warm_window(problem, fine, map, loads)
       type(coarse_problem_t), intent(in) :: problem
       type(fine_mesh_t), intent(in) :: fine
-      type(window_map_t), intent(in) :: map
+      type(window_map_t), intent(inout) :: map
       type(fine_loads_t), intent(inout) :: loads
+      logical :: is_known
       integer(ik) :: c
 
       if (.not. (allocated(problem%heat) .and. allocated(problem%model%rock%temperature))) return
+      is_known = allocated(loads%heat_pressure) .and. allocated(map%temperature)
+      if (is_known) is_known = all(abs(map%temperature - problem%heat_field%acting) <= 0.0_rk)
+      if (is_known) return
+      map%temperature = problem%heat_field%acting
       if (.not. allocated(loads%heat_pressure)) allocate (loads%heat_pressure(3, fine%n_cells))
       do c = 1, fine%n_cells
          associate (nodes => fine%cell_nodes(:3, c))
@@ -48,40 +53,49 @@ contains
       integer(ik), intent(in) :: corner_cells(3)  !< coarse cells there
       real(rk) :: corner(3)
       real(rk), parameter :: most = 0.9_rk  ! of the area that counts as held
-      real(rk) :: area, moment(3)
+      real(rk) :: area, inside(3), moment(3)
       real(rk), allocatable :: part(:, :)
       integer(ik), allocatable :: cells(:)
-      integer(ik) :: c, i, k, next
+      integer(ik) :: i, j, k, next
+      logical :: crosses(3)
 
+      if (all(corner_cells == corner_cells(1))) then
+         corner = linear(integrals(problem, xy, xy, corner_cells(1)), triangle_area(xy))
+         return
+      end if
       moment = 0.0_rk
       area = 0.0_rk
       cells = corner_cells
       i = 0
       do while (i < size(cells))
          i = i + 1
-         c = cells(i)
-         associate (mesh => problem%mesh)
+         associate (mesh => problem%mesh, c => cells(i))
             if (any(cells(:i - 1) == c)) cycle
             part = xy
-            if (any(corner_cells /= c)) then
-               associate (at => mesh%xy(:, mesh%cell_nodes(:, c)))
-                  do k = 1, 3
-                     part = left_part(part, at(:, [k, modulo(k, 3_ik) + 1]))
-                  end do
-               end associate
-            end if
+            associate (at => mesh%xy(:, mesh%cell_nodes(:, c)))
+               do k = 1, 3
+                  associate (from => at(:, k), to => at(:, modulo(k, 3_ik) + 1))
+                     inside = [(cross(to - from, xy(:, j) - from), j=1, 3)]
+                     crosses(k) = any(inside < 0.0_rk)
+                     if (.not. crosses(k)) cycle
+                     if (all(inside <= 0.0_rk)) exit
+                     part = left_part(part, reshape([from, to], [2, 2]))
+                  end associate
+               end do
+            end associate
+            if (k <= 3 .or. size(part, 2) < 3) cycle
             do k = 2, size(part, 2, kind=ik) - 1
                associate (triangle => part(:, [1_ik, k, k + 1]))
                   moment = moment + integrals(problem, xy, triangle, c)
                   area = area + triangle_area(triangle)
                end associate
             end do
-            if (size(part, 2) < 3 .or. all(corner_cells == c)) cycle
-            do k = 1, 3
-               next = sum(mesh%face_cells(:, mesh%cell_faces(k, c))) - c
-               if (next > 0 .and. all(cells /= next)) cells = [cells, next]
-            end do
          end associate
+         do k = 1, 3
+            if (.not. crosses(k)) cycle
+            next = sum(problem%mesh%face_cells(:, problem%mesh%cell_faces(k, cells(i)))) - cells(i)
+            if (next > 0 .and. all(cells /= next)) cells = [cells, next]
+         end do
       end do
       if (.not. area > most*triangle_area(xy)) then
          moment = 0.0_rk
@@ -90,7 +104,19 @@ contains
          end do
          area = triangle_area(xy)
       end if
-      corner = (12.0_rk*moment - 3.0_rk*sum(moment))/area
+      corner = linear(moment, area)
+
+   contains
+
+      !> At the corners, from its integrals with their area coordinates.
+      pure function linear(of, over)
+         real(rk), intent(in) :: of(3)  !< [Pa m2]
+         real(rk), intent(in) :: over  !< [m2]
+         real(rk) :: linear(3)
+
+         linear = (12.0_rk*of - 3.0_rk*sum(of))/over
+      end function linear
+
    end function linear_part
 
    !> Integrals of the pressure in a coarse cell over a triangle, each weighted with an area
