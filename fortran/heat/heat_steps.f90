@@ -298,8 +298,11 @@ contains
       class(heat_model_t), intent(in) :: heat
       type(substep_t), intent(in) :: substep
       type(heat_state_t), intent(inout) :: state
+      real(rk) :: rate(heat%n)
 
-      state%rate = (substep%temperature - state%temperature)/substep%dt
+      rate = (substep%temperature - state%temperature)/substep%dt
+      if (allocated(state%rate)) state%bend = (rate - state%rate)/(substep%dt + state%last)
+      state%rate = rate
       state%last = substep%dt
       state%temperature = substep%temperature
       state%capacity = substep%capacity
