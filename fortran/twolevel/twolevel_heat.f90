@@ -187,6 +187,9 @@ contains
          if (allocated(problem%model%rock%temperature)) deallocate (problem%model%rock%temperature)
          return
       end if
+      if (allocated(problem%model%rock%temperature) .and. allocated(problem%heat_field%acting)) then
+         if (all(abs(problem%heat_field%acting - now%acting) <= 0.0_rk)) return
+      end if
       associate (heat => problem%heat)
          associate (capacity => heat%rock_capacity())
             problem%model%rock%temperature = heat%of_cells(capacity*now%acting(:size(capacity))) &

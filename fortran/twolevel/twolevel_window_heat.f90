@@ -6,7 +6,7 @@
 !! nodal forces, of strains that are linear in straight elements, are those of the front itself.
 module twolevel_window_heat
    use base_kinds, only: ik, rk
-   use base_plane, only: cross, triangle_area
+   use base_plane, only: triangle_area
    use coarse_rock, only: solid_t
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
@@ -109,15 +109,15 @@ contains
       real(rk), intent(out) :: inside(3, 3)
       real(rk), intent(out) :: part(3, 9)  !< area coordinates of its corners
       integer(ik), intent(out) :: n  !< number of its corners
-      real(rk) :: before(3, 9), here, there
+      real(rk) :: along(2), before(3, 9), from(2), here, there
       integer(ik) :: j, k, m, next
 
       n = 0
       associate (nodes => mesh%cell_nodes(:, cell))
          do k = 1, 3
-            associate (from => mesh%xy(:, nodes(k)), to => mesh%xy(:, nodes(modulo(k, 3_ik) + 1)))
-               inside(:, k) = [(cross(to - from, xy(:, j) - from), j=1, 3)]
-            end associate
+            from = mesh%xy(:, nodes(k))
+            along = mesh%xy(:, nodes(modulo(k, 3_ik) + 1)) - from
+            inside(:, k) = along(1)*(xy(2, :) - from(2)) - along(2)*(xy(1, :) - from(1))
          end do
       end associate
       if (any(all(inside <= 0.0_rk, dim=1))) return
