@@ -178,35 +178,37 @@ contains
    end subroutine integrate
 
    !> Error of K_I by the temperatures of coarse cells next to a tip whose faces have another
-   !! temperature than the rock before. With a front of the time t round the tip of a long crack,
+   !! temperature than the rock before. With a front of the age t round the tip of a long crack,
    !! K_I = 0.76 s (D t)^(1/4), s the thermal stress of the faces; measured, cells of the size h
-   !! leave at most 0.06 h/(2 sqrt(D t)) of this wrong (docs/theory.md) [Pa m^1/2].
-   pure real(rk) function heat_error(problem, fracture, end, time) result(error)
+   !! leave at most 0.06 h/(2 sqrt(D t)) of this wrong (docs/theory.md). sqrt(pi D t) is the
+   !! temperature of the last face over its slope into the rock, or if that is longer than the face,
+   !! its square over the length of the face: wide fronts are steep at the tip [Pa m^1/2].
+   pure real(rk) function heat_error(problem, fracture, end) result(error)
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture, end  !< of the tip
-      real(rk), intent(in) :: time  !< [s]
-      real(rk), parameter :: whole = 0.76_rk, part = 0.03_rk*whole
-      real(rk) :: root
-      integer(ik) :: t
+      real(rk), parameter :: pi = acos(-1.0_rk), whole = 0.76_rk, part = 0.03_rk*whole
+      real(rk) :: root, thickness
+      integer(ik) :: l, t
       type(solid_t) :: solid
 
       error = 0.0_rk
       if (.not. (allocated(problem%heat) .and. allocated(problem%model%rock%temperature))) return
       associate (mesh => problem%heat%mesh, layers => problem%heat%layers, &
-                 rock => problem%heat%rock, field => problem%heat_field)
+                 field => problem%heat_field)
          t = findloc(mesh%fracture%tip_fracture == fracture .and. &
                      mesh%fracture%tip_end == end, .true., dim=1)
-         if (t == 0 .or. layers%n == 0 .or. .not. time > 0.0_rk) return
-         associate (near => field%near%of(mesh%fracture%tip_node(t)))
-            if (size(near) == 0) return
-            associate (l => near(1), c => layers%cell(near(1)))
-               if (layers%at(1, l) == 0) return
-               root = sqrt(sqrt(time*rock%mobility_at(c)/rock%storage(min(int(c), &
-                                                                          size(rock%storage)))))
+         if (t == 0) return
+         if (field%near%length(mesh%fracture%tip_node(t)) == 0) return
+         l = field%near%at(mesh%fracture%tip_node(t), 1_ik)
+         associate (c => layers%cell(l), h => face_length(mesh, mesh%layer_face(l)))
+            associate (profile => field%profile(field%around%first(c) - 1 &
+                                                + field%around%place(c, l)))
+               if (.not. abs(profile%slopes(1)) > 0.0_rk) return
+               thickness = abs(profile%values(1)/profile%slopes(1))
+               root = sqrt(thickness*max(1.0_rk, thickness/h)/sqrt(pi))
                solid = problem%model%rock%solid_at(c)
                error = solid%heat_stress*2.0_rk*solid%shear/(solid%lame + 2.0_rk*solid%shear) &
-                       *abs(field%unknowns(3, layers%at(1, l)/3)) &
-                       *min(whole*root, part*face_length(mesh, mesh%layer_face(l))/root)
+                       *abs(profile%values(1))*min(whole*root, part*h/root)
             end associate
          end associate
       end associate
