@@ -58,8 +58,8 @@ module coarse_layer_profiles
 
 contains
 
-   !> The pressure at a point, by the nearest of some layers whose profiles reach it; elsewhere it is
-   !! left as it is.
+   !> The pressure at a point, by the nearest of some layers whose profiles reach it; elsewhere it
+   !! is left as it is.
    pure subroutine find_pressure(layers, among, mesh, tips, unknowns, inner, xy, cell, at_nodes, &
                                  pressure)
       type(layers_t), intent(in) :: layers

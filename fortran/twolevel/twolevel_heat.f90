@@ -122,9 +122,9 @@ contains
       call act(problem, now)
    end subroutine predict_heat
 
-   !> The rise after a step by the rates, if these hardly change: if a substep of heat may be as long
-   !! as the step, or by the change of the rates in the last two of them, as far as this moves a
-   !! small share of the heat (measured: a quarter of it is wrong at most).
+   !> The rise after a step by the rates, if these hardly change: by their change in the last two
+   !! substeps, if this moves a small share of the heat (measured: a quarter of it is wrong at
+   !! most), or where a substep may be as long as the step.
    pure subroutine extrapolate(heat, dt, now, rise)
       type(heat_model_t), intent(in) :: heat
       real(rk), intent(in) :: dt  !< [s]
