@@ -2,7 +2,7 @@
 module coarse_layer_profiles
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
-   use base_plane, only: norm2
+   use base_plane, only: norm2, turned_left
    use coarse_layers, only: layers_t
    use coarse_layout, only: layer_block
    use mesh_geometry, only: cell_centre
@@ -10,8 +10,34 @@ module coarse_layer_profiles
    implicit none(type, external)
    private
 
-   public :: find_pressure, kept_faces_t, no_profiles, profiles_of, profiles_t, return_excess
-   public :: set_apart, take_profiles
+   public :: find_pressure, kept_faces_t, no_profiles, profile_t, profiles_of, profiles_t
+   public :: return_excess, set_apart, take_profiles
+
+   !> The pressure before a face with a layer, not farther from it than the height of its cell.
+   !! Beyond the last node of the chain it is an exponential curve, with the slope of the chain
+   !! there, to the pressure of the farthest node of the point's cell: exact where the pressure is
+   !! linear.
+   !!
+   !! At tips the profile of the last face goes round the tip. Near a tip the pressure differs from
+   !! that of the faces by A xi, xi**2 = (r + x)/2, with the distance r from the tip and x ahead of
+   !! it. Its mean slope before the last face, of length L, is A/sqrt(L): the depth in the profile
+   !! is sqrt(L) xi.
+   type :: profile_t
+      real(rk) :: start(2) = 0.0_rk  !< an end of the face, a tip if it has one [m]
+      real(rk) :: ahead(2) = 0.0_rk, normal(2) = 0.0_rk  !< unit vectors
+      real(rk) :: length = 0.0_rk, height = 0.0_rk  !< of face and cell [m]
+      logical :: at_tip = .false.
+      ! In one cell: nodes, from the face to the farthest corner
+      real(rk), allocatable :: places(:)  !< [m]
+      real(rk), allocatable :: values(:)  !< [Pa]
+      real(rk), allocatable :: slopes(:)  !< [Pa/m]
+      real(rk) :: rate = 0.0_rk  !< of the exponential curve [-]
+   contains
+      procedure :: place
+      procedure :: set_values
+      procedure :: depth
+      procedure :: pressure_at
+   end type profile_t
 
    !> Pressures in the layers, for their transfer to another mesh.
    type :: profiles_t
@@ -32,15 +58,8 @@ module coarse_layer_profiles
 
 contains
 
-   !> The pressure at a point that lies before a face with one of some layers, not farther from it
-   !! than the height of its cell; elsewhere it is left as it is. Beyond the last node of the chain
-   !! it is an exponential curve, with the slope of the chain there, to the pressure of the farthest
-   !! node of the point's cell: exact where the pressure is linear.
-   !!
-   !! At tips the profile of the last face goes round the tip. Near a tip the pressure differs from
-   !! that of the faces by A xi, xi**2 = (r + x)/2, with the distance r from the tip and x ahead of
-   !! it. Its mean slope before the last face, of length L, is A/sqrt(L): the depth in the profile
-   !! is sqrt(L) xi.
+   !> The pressure at a point, by the nearest of some layers whose profiles reach it; elsewhere it
+   !! is left as it is.
    pure subroutine find_pressure(layers, among, mesh, tips, unknowns, inner, xy, cell, at_nodes, &
                                  pressure)
       type(layers_t), intent(in) :: layers
@@ -53,119 +72,161 @@ contains
       integer(ik), intent(in) :: cell  !< in which the point lies, or next to it
       real(rk), intent(in) :: at_nodes(3)  !< pressures at the nodes of this cell [Pa]
       real(rk), intent(inout) :: pressure  !< [Pa]
-      real(rk), parameter :: small = 0.01_rk  ! gap of the last two places
-      real(rk) :: ahead(2), at_face, corners(2, 3), depth, depths(3), height, length, nearest
-      real(rk) :: normal(2), start(2)
-      integer(ik) :: end, far, i, k, l
-      logical :: at_tip
+      type(profile_t) :: profile
+      real(rk) :: depth, nearest
+      integer(ik) :: i
 
       nearest = huge(1.0_rk)
-      corners = mesh%xy(:, mesh%cell_nodes(:, cell))
       do i = 1, size(among, kind=ik)
-         l = among(i)
-         associate (nodes => mesh%face_nodes(:, mesh%layer_face(l)), chain => layers%chain(l), &
-                    n => layers%chain(l)%n)
-            end = merge(2, 1, any(tips == nodes(2)))
-            at_tip = any(tips == nodes(end))
-            start = mesh%xy(:, nodes(end))
-            ahead = start - mesh%xy(:, nodes(3 - end))
-            length = norm2(ahead)
-            ahead = ahead/length
-            normal = [-ahead(2), ahead(1)]
-            depth = dot_product(cell_centre(mesh, layers%cell(l)) - start, normal)
-            if (depth < 0.0_rk) normal = -normal
-            height = 3.0_rk*abs(depth)
-            if (dot_product(xy - start, normal) < 0.0_rk) cycle
-            if (dot_product(xy - start, ahead) < -length) cycle
-            if (dot_product(xy - start, ahead) > 0.0_rk .and. .not. at_tip) cycle
-            depth = depth_of(xy)
-            if (depth > min(height, nearest)) cycle
-            nearest = depth
-            depths = [(depth_of(corners(:, k)), k=1, 3)]
-            far = maxloc(depths, dim=1)
-            at_face = layers%given(l)
-            if (layers%at(1, l) > 0) at_face = unknowns(3, layers%at(1, l)/3)
-            if (at_tip) then
-               depth = round_tip(xy)
-               depths(far) = max(round_tip(corners(:, far)), (1.0_rk + small)*chain%place(n))
-            end if
-            pressure = along_chain([0.0_rk, chain%place, depths(far)], &
-                                   [at_face, inner(:n - 1, l), unknowns(1, layer_block(mesh, l)), &
-                                    at_nodes(far)], min(depth, depths(far)))
-         end associate
+         call profile%place(layers, among(i), mesh, tips)
+         depth = profile%depth(xy)
+         if (depth > min(profile%height, nearest)) cycle
+         nearest = depth
+         call profile%set_values(layers, among(i), unknowns, inner, &
+                                 mesh%xy(:, mesh%cell_nodes(:, cell)), at_nodes)
+         pressure = profile%pressure_at(xy, depth)
       end do
-
-   contains
-
-      !> Distance of a point from the face, or from its tip, if it lies ahead of that [m].
-      pure real(rk) function depth_of(point)
-         real(rk), intent(in) :: point(2)  !< [m]
-
-         depth_of = dot_product(point - start, normal)
-         if (at_tip .and. dot_product(point - start, ahead) > 0.0_rk) then
-            depth_of = norm2(point - start)
-         end if
-      end function depth_of
-
-      !> Depth in the profile of the face at a tip [m].
-      pure real(rk) function round_tip(point)
-         real(rk), intent(in) :: point(2)  !< [m]
-
-         associate (from_tip => point - start)
-            round_tip = sqrt(0.5_rk*length*max(0.0_rk, norm2(from_tip) &
-                                               + dot_product(from_tip, ahead)))
-         end associate
-      end function round_tip
-
    end subroutine find_pressure
 
-   !> Between nodes by cubics without overshoot (slopes by harmonic means of those of the secants),
-   !! exponentially between the last two.
-   pure real(rk) function along_chain(place, value, at) result(found)
-      real(rk), intent(in) :: place(:)  !< [m]
-      real(rk), intent(in) :: value(:)  !< [Pa]
-      real(rk), intent(in) :: at  !< between the first and the last place [m]
-      integer(ik) :: k, m
-      real(rk) :: rate, secant(size(place) - 1), t
+   !> Place the profile of a layer.
+   pure subroutine place(self, layers, layer, mesh, tips)
+      class(profile_t), intent(inout) :: self
+      type(layers_t), intent(in) :: layers
+      integer(ik), intent(in) :: layer
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: tips(:)  !< nodes at these tips
+      real(rk) :: depth
+      integer(ik) :: end
 
-      m = size(place, kind=ik)
-      k = max(1_ik, min(count(place <= at, kind=ik), m - 1))
-      t = (at - place(k))/(place(k + 1) - place(k))
-      secant = (value(2:) - value(:m - 1))/(place(2:) - place(:m - 1))
-      if (k == m - 1) then
-         if (abs(secant(k)) > 0.0_rk) then
-            rate = decay_rate(slope_at(k)/secant(k))
-            if (abs(rate) > sqrt(epsilon(1.0_rk))) then
-               t = (1.0_rk - exp(-rate*t))/(1.0_rk - exp(-rate))
-            end if
+      associate (nodes => mesh%face_nodes(:, mesh%layer_face(layer)))
+         end = merge(2, 1, any(tips == nodes(2)))
+         self%at_tip = any(tips == nodes(end))
+         self%start = mesh%xy(:, nodes(end))
+         self%ahead = self%start - mesh%xy(:, nodes(3 - end))
+      end associate
+      self%length = norm2(self%ahead)
+      self%ahead = self%ahead/self%length
+      self%normal = turned_left(self%ahead)
+      depth = dot_product(cell_centre(mesh, layers%cell(layer)) - self%start, self%normal)
+      if (depth < 0.0_rk) self%normal = -self%normal
+      self%height = 3.0_rk*abs(depth)
+   end subroutine place
+
+   !> Set the nodes of a profile in a cell.
+   pure subroutine set_values(self, layers, layer, unknowns, inner, corners, at_nodes)
+      class(profile_t), intent(inout) :: self
+      type(layers_t), intent(in) :: layers
+      integer(ik), intent(in) :: layer
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks)
+      real(rk), intent(in) :: inner(:, :)  !< (n_nodes - 1, n) [Pa]
+      real(rk), intent(in) :: corners(2, 3)  !< of the cell [m]
+      real(rk), intent(in) :: at_nodes(3)  !< pressures there [Pa]
+      real(rk), parameter :: small = 0.01_rk  ! gap of the last two places
+      real(rk) :: at_face, depths(3)
+      integer(ik) :: far, k
+
+      at_face = layers%given(layer)
+      if (layers%at(1, layer) > 0) at_face = unknowns(3, layers%at(1, layer)/3)
+      depths = [(distance(self, corners(:, k)), k=1, 3)]
+      far = maxloc(depths, dim=1)
+      associate (chain => layers%chain(layer), n => layers%chain(layer)%n)
+         if (self%at_tip) then
+            depths(far) = max(round_tip(self, corners(:, far)), (1.0_rk + small)*chain%place(n))
          end if
-         found = (1.0_rk - t)*value(k) + t*value(k + 1)
-      else
+         self%places = [0.0_rk, chain%place(:n), depths(far)]
+         self%values = [at_face, inner(:n - 1, layer), unknowns(1, (layers%at(2, layer) + 2)/3), &
+                        at_nodes(far)]
+      end associate
+      call set_slopes(self)
+   end subroutine set_values
+
+   !> Depth of a point in the profile; beyond its height where it does not lie before the face [m].
+   pure real(rk) function depth(self, xy)
+      class(profile_t), intent(in) :: self
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk) :: along
+
+      depth = huge(1.0_rk)
+      along = dot_product(xy - self%start, self%ahead)
+      if (dot_product(xy - self%start, self%normal) < 0.0_rk) return
+      if (along < -self%length .or. (along > 0.0_rk .and. .not. self%at_tip)) return
+      depth = distance(self, xy)
+   end function depth
+
+   !> Distance of a point from the face, or from its tip, if it lies ahead of that [m].
+   pure real(rk) function distance(self, xy)
+      type(profile_t), intent(in) :: self
+      real(rk), intent(in) :: xy(2)  !< [m]
+
+      distance = dot_product(xy - self%start, self%normal)
+      if (.not. self%at_tip) return
+      if (dot_product(xy - self%start, self%ahead) > 0.0_rk) distance = norm2(xy - self%start)
+   end function distance
+
+   !> Depth in the profile of the face at a tip [m].
+   pure real(rk) function round_tip(self, xy)
+      type(profile_t), intent(in) :: self
+      real(rk), intent(in) :: xy(2)  !< [m]
+
+      associate (from_tip => xy - self%start)
+         round_tip = sqrt(0.5_rk*self%length*max(0.0_rk, norm2(from_tip) &
+                                                 + dot_product(from_tip, self%ahead)))
+      end associate
+   end function round_tip
+
+   !> Pressure at a point: between nodes by cubics without overshoot, exponentially between the last
+   !! two.
+   pure real(rk) function pressure_at(self, xy, depth) result(found)
+      class(profile_t), intent(in) :: self
+      real(rk), intent(in) :: xy(2)  !< [m]
+      real(rk), intent(in) :: depth  !< of the point [m]
+      integer(ik) :: k, m
+      real(rk) :: at, t
+
+      associate (place => self%places, value => self%values, slope => self%slopes)
+         m = size(place, kind=ik)
+         at = depth
+         if (self%at_tip) at = round_tip(self, xy)
+         at = min(at, place(m))
+         k = max(1_ik, min(count(place <= at, kind=ik), m - 1))
          associate (h => place(k + 1) - place(k))
-            found = value(k) + h*t*(secant(k) + (1.0_rk - t) &
-                                    *((1.0_rk - t)*(slope_at(k) - secant(k)) &
-                                      - t*(slope_at(k + 1) - secant(k))))
+            t = (at - place(k))/h
+            if (k == m - 1) then
+               if (abs(self%rate) > sqrt(epsilon(1.0_rk))) then
+                  t = (1.0_rk - exp(-self%rate*t))/(1.0_rk - exp(-self%rate))
+               end if
+               found = (1.0_rk - t)*value(k) + t*value(k + 1)
+            else
+               associate (secant => (value(k + 1) - value(k))/h)
+                  found = value(k) + h*t*(secant + (1.0_rk - t)*((1.0_rk - t)*(slope(k) - secant) &
+                                                                 - t*(slope(k + 1) - secant)))
+               end associate
+            end if
          end associate
-      end if
+      end associate
+   end function pressure_at
 
-   contains
+   !> Slopes at the nodes but the last one: harmonic means of those of the secants.
+   pure subroutine set_slopes(self)
+      type(profile_t), intent(inout) :: self
+      real(rk) :: secant(size(self%places) - 1)
+      integer(ik) :: i, m
 
-      !> Slope at node i.
-      pure real(rk) function slope_at(i) result(slope)
-         integer(ik), intent(in) :: i
-
-         slope = secant(max(1_ik, i - 1))
-         if (i == 1 .or. i == m) return
-         if (i == m - 1) return  ! the last secant is long
-         slope = 0.0_rk
-         if (secant(i - 1)*secant(i) <= 0.0_rk) return
-         associate (before => place(i) - place(i - 1), after => place(i + 1) - place(i))
-            slope = 3.0_rk*(before + after)/((before + 2.0_rk*after)/secant(i - 1) &
-                                             + (2.0_rk*before + after)/secant(i))
+      m = size(self%places, kind=ik)
+      secant = (self%values(2:) - self%values(:m - 1))/(self%places(2:) - self%places(:m - 1))
+      self%slopes = [secant(1), secant(:m - 2)]  ! at m - 1: the last secant is long
+      do i = 2, m - 2
+         self%slopes(i) = 0.0_rk
+         if (secant(i - 1)*secant(i) <= 0.0_rk) cycle
+         associate (before => self%places(i) - self%places(i - 1), &
+                    after => self%places(i + 1) - self%places(i))
+            self%slopes(i) = 3.0_rk*(before + after)/((before + 2.0_rk*after)/secant(i - 1) &
+                                                      + (2.0_rk*before + after)/secant(i))
          end associate
-      end function slope_at
-
-   end function along_chain
+      end do
+      self%rate = 0.0_rk
+      if (abs(secant(m - 1)) > 0.0_rk) self%rate = decay_rate(self%slopes(m - 1)/secant(m - 1))
+   end subroutine set_slopes
 
    !> The rate u at which (1 - exp(-u t))/(1 - exp(-u)) has a slope at t = 0, u/(1 - exp(-u)).
    pure real(rk) function decay_rate(slope) result(u)

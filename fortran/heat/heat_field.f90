@@ -4,7 +4,7 @@ module heat_field
    use base_lists, only: inverted, lists_t
    use base_plane, only: barycentric, triangle_area
    use coarse_diffusion, only: corner_gradient, region_fluxes
-   use coarse_layer_profiles, only: find_pressure
+   use coarse_layer_profiles, only: profile_t
    use coarse_layout, only: at_component, layer_block
    use heat_model, only: heat_model_t
    use mesh_geometry, only: cell_area, cell_centre
@@ -14,8 +14,11 @@ module heat_field
    public :: heat_field_t, moments, new_field
 
    type :: heat_field_t
+      real(rk), allocatable :: acting(:)  !< (unknowns) temperatures of the field [K]
       real(rk), allocatable :: nodal(:)  !< (nodes) without the profiles [K]
       type(lists_t) :: near  !< layers at each node
+      type(lists_t) :: around  !< those at the nodes of each cell, and
+      type(profile_t), allocatable :: profile(:)  !< (items) their profiles in it [K]
       real(rk), allocatable :: least(:)  !< (cells) what matters in the mean of each [K]
       !> (cells) what the mean temperature leaves of the profiles, whose integral is not found where
       !! a front is very thin [-]
@@ -42,6 +45,7 @@ contains
       integer(ik) :: c, k, l
 
       associate (mesh => heat%mesh, layers => heat%layers)
+         field%acting = temperature
          field%nodal = nodal_values(heat, temperature)
          field%unknowns = reshape(merge(temperature(max(heat%of_scalar, 1_ik)), 0.0_rk, &
                                         heat%of_scalar > 0), [3, size(heat%of_scalar)/3])
@@ -57,6 +61,7 @@ contains
          ! Without layers there is no list of their faces.
          field%near = inverted(mesh%face_nodes(:, [(mesh%layer_face(l), l=1, layers%n)]), &
                                mesh%n_nodes)
+         call set_profiles(heat, field)
          largest = maxval(abs(temperature))
          field%least = 0.02_rk*max(abs(means), 1.0e-3_rk*largest)
          allocate (field%found(mesh%n_cells), source=1.0_rk)
@@ -74,6 +79,38 @@ contains
          end do
       end associate
    end function new_field
+
+   !> Set the profiles around each cell.
+   pure subroutine set_profiles(heat, field)
+      class(heat_model_t), intent(in) :: heat
+      type(heat_field_t), intent(inout) :: field
+      integer(ik), allocatable :: among(:)
+      integer(ik) :: c, i, k, n
+
+      associate (mesh => heat%mesh, near => field%near, around => field%around)
+         n = sum([((near%length(mesh%cell_nodes(k, c)), k=1, 3), c=1, mesh%n_cells)])
+         allocate (around%first(mesh%n_cells + 1), around%item(n), field%profile(n))
+         n = 0
+         do c = 1, mesh%n_cells
+            around%first(c:c + 1) = n + 1
+            associate (nodes => mesh%cell_nodes(:, c))
+               if (all([(near%length(nodes(k)), k=1, 3)] == 0)) cycle
+               among = [(near%of(nodes(k)), k=1, 3)]
+               do i = 1, size(among, kind=ik)
+                  if (any(among(:i - 1) == among(i))) cycle
+                  n = n + 1
+                  around%item(n) = among(i)
+                  associate (profile => field%profile(n))
+                     call profile%place(heat%layers, among(i), mesh, mesh%fracture%tip_node)
+                     call profile%set_values(heat%layers, among(i), field%unknowns, field%inner, &
+                                             mesh%xy(:, nodes), field%nodal(nodes))
+                  end associate
+               end do
+            end associate
+            around%first(c + 1) = n + 1
+         end do
+      end associate
+   end subroutine set_profiles
 
    !> Temperatures at nodes: the mean of what the multi-point fluxes extrapolate from the cells, or
    !! with layers from the rests of them.
@@ -120,17 +157,15 @@ contains
       real(rk), parameter :: whole(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3])
       real(rk) :: plain(3)  ! without profiles
       real(rk) :: smallest  ! part, over the triangle
-      integer(ik), allocatable :: among(:)  ! layers
       integer(ik) :: k
 
       associate (nodes => heat%mesh%cell_nodes(:, cell))
          plain = [(dot_product(field%nodal(nodes), barycentric(heat%mesh%xy(:, nodes), xy(:, k))), &
                    k=1, 3)]
-         among = [(field%near%of(nodes(k)), k=1, 3)]
       end associate
       moment = (sum(plain) + plain)/12.0_rk + field%lack(cell)/3.0_rk
       smallest = 0.25_rk**most*cell_area(heat%mesh, cell)/max(tiny(1.0_rk), triangle_area(xy))
-      if (size(among) > 0) call add_part(whole, [(beyond(whole(:, k)), k=1, 3)], 0)
+      if (field%around%length(cell) > 0) call add_part(whole, [(beyond(whole(:, k)), k=1, 3)], 0)
 
    contains
 
@@ -167,16 +202,22 @@ contains
       real(rk) function beyond(share)
          real(rk), intent(in) :: share(3)  !< area coordinates [-]
          real(rk), parameter :: inwards = 1.0e-6_rk
-         real(rk) :: here, there
+         real(rk) :: at(3), depth, nearest, point(2)
+         integer(ik) :: best, i
 
-         associate (at => share + inwards*(1.0_rk/3.0_rk - share))
-            here = dot_product(plain, at)
-            there = here
-            call find_pressure(heat%layers, among, heat%mesh, heat%mesh%fracture%tip_node, &
-                               field%unknowns, field%inner, matmul(xy, at), cell, &
-                               field%nodal(heat%mesh%cell_nodes(:, cell)), there)
-            beyond = there - here
-         end associate
+         at = share + inwards*(1.0_rk/3.0_rk - share)
+         point = matmul(xy, at)
+         nearest = huge(1.0_rk)
+         best = 0
+         do i = field%around%first(cell), field%around%last(cell)
+            depth = field%profile(i)%depth(point)
+            if (depth > min(field%profile(i)%height, nearest)) cycle
+            nearest = depth
+            best = i
+         end do
+         beyond = 0.0_rk
+         if (best > 0) beyond = field%profile(best)%pressure_at(point, nearest) &
+         & - dot_product(plain, at)
       end function beyond
 
    end function moments

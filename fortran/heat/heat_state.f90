@@ -14,6 +14,8 @@ module heat_state
       real(rk), allocatable :: capacity(:)  !< (unknowns) with the fluid that is there now [J/(m K)]
       !> (unknowns) of the last substep; unallocated before the first [K/s]
       real(rk), allocatable :: rate(:)
+      !> (unknowns) half its change per time, in the last two of them; unallocated: unknown [K/s2]
+      real(rk), allocatable :: bend(:)
       !> (unknowns) rise that acted in the last step; unallocated: none did [K]
       real(rk), allocatable :: acting(:)
       !> (wells) of what flows out of the body, else into it, in the last step [K]
@@ -52,11 +54,13 @@ contains
       call archive%list("temperature", self%temperature, "heat ?")
       call archive%list("capacity", self%capacity, "heat ?")
       call archive%list("rate", self%rate, "heat ?")
+      call archive%list("bend", self%bend, "heat ?")
       call archive%list("acting", self%acting, "heat ?")
       call archive%list("well_temperature", self%well_temperature, "all_wells ?")
       call archive%agree("heat", [allocated(self%temperature), allocated(self%capacity), &
                                   allocated(self%well_temperature)])
       if (allocated(self%rate)) call archive%agree("heat", [.true., allocated(self%temperature)])
+      if (allocated(self%bend)) call archive%agree("heat", [.true., allocated(self%rate)])
       call archive%item("last", self%last)
       call archive%item("next", self%next)
       call archive%item("stored", self%stored)

@@ -82,9 +82,8 @@ contains
       type(substep_t), intent(inout) :: substep
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: iterations = 25
-      real(rk), parameter :: converged = 1.0e-10_rk
-      real(rk), allocatable :: values(:), x(:, :)
-      real(rk) :: change
+      real(rk), parameter :: converged = 1.0e-12_rk  ! change of the limited terms
+      real(rk), allocatable :: limited_before(:), values(:), x(:, :)
       integer :: k
 
       call assemble(heat, state, substep, values)
@@ -93,13 +92,18 @@ contains
       allocate (x(heat%n, 1))
       substep%temperature = state%temperature
       do k = 1, iterations
-         x(:, 1) = (substep%rhs + limited_terms(heat, substep))/substep%diagonal
+         associate (limited => limited_terms(heat, substep)/substep%diagonal)
+            if (k > 1) then
+               if (all(abs(limited - limited_before) <= converged*(state%range(2) &
+                                                                   - state%range(1)))) return
+            end if
+            x(:, 1) = substep%rhs/substep%diagonal + limited
+            limited_before = limited
+         end associate
          call heat%matrix%solve(x, error)
          if (allocated(error)) return
-         change = maxval(abs(state%temperature + x(:, 1) - substep%temperature))
          substep%temperature = state%temperature + x(:, 1)
          if (.not. any(heat%links%is_limited)) return
-         if (.not. change > converged*(state%range(2) - state%range(1))) return
       end do
    end subroutine solve
 
@@ -301,8 +305,11 @@ contains
       class(heat_model_t), intent(in) :: heat
       type(substep_t), intent(in) :: substep
       type(heat_state_t), intent(inout) :: state
+      real(rk) :: rate(heat%n)
 
-      state%rate = (substep%temperature - state%temperature)/substep%dt
+      rate = (substep%temperature - state%temperature)/substep%dt
+      if (allocated(state%rate)) state%bend = (rate - state%rate)/(substep%dt + state%last)
+      state%rate = rate
       state%last = substep%dt
       state%temperature = substep%temperature
       state%capacity = substep%capacity

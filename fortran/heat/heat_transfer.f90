@@ -69,6 +69,7 @@ contains
       state%by_sides = state%by_sides + supplied
       state%capacity = capacity
       if (allocated(state%rate)) state%rate = after(rate, :)
+      if (allocated(state%bend)) deallocate (state%bend)
       if (allocated(state%acting)) deallocate (state%acting)  ! found again for the next step
    end subroutine transfer_heat
 

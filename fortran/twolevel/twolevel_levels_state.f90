@@ -120,9 +120,9 @@ contains
                                   now%fluid%outflow, now%fluid%prefilled, now%fluid%mass_error]), &
                  part_t("wells", [numbers(now%given), some_truths(now%at_limit)]), &
                  part_t("heat", [numbers(now%heat%temperature), numbers(now%heat%capacity), &
-                                 numbers(now%heat%rate), numbers(now%heat%acting), &
-                                 numbers(now%heat%well_temperature), now%heat%last, &
-                                 now%heat%next, now%heat%stored, &
+                                 numbers(now%heat%rate), numbers(now%heat%bend), &
+                                 numbers(now%heat%acting), numbers(now%heat%well_temperature), &
+                                 now%heat%last, now%heat%next, now%heat%stored, &
                                  now%heat%by_wells, now%heat%by_sides, now%heat%moved, &
                                  now%heat%beyond_range, now%heat%range])]
       end associate

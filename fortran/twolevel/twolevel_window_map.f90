@@ -28,6 +28,7 @@ module twolevel_window_map
       !> (n_nodes) coarse cell that contains the node; 0 at other nodes
       integer(ik), allocatable :: coarse_cell(:)
       real(rk), allocatable :: weight(:, :)  !< (3, n_nodes) weights of the nodes of the coarse cell
+      real(rk), allocatable :: temperature(:)  !< acting ones that the loads are for [K]
    contains
       procedure :: find
       procedure :: interpolate
@@ -153,6 +154,7 @@ contains
       integer(ik) :: c, k, v
 
       if (allocated(self%weight)) deallocate (self%weight, self%coarse_cell)
+      if (allocated(self%temperature)) deallocate (self%temperature)
       allocate (inside(2, fine%n_nodes))
       allocate (self%weight(3, fine%n_nodes), source=0.0_rk)
       allocate (self%coarse_cell(fine%n_nodes), source=0_ik)

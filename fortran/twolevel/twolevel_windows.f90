@@ -271,7 +271,7 @@ contains
             associate (t => window%serves(i), tip => front%tip(window%serves(i)))
                if (.not. window%served(i)%is_evaluated) cycle
                seen(t)%found%k1_error = seen(t)%found%k1_error &
-                                        + heat_error(problem, tip%fracture, tip%end, state%time)
+                                        + heat_error(problem, tip%fracture, tip%end)
                seen(t)%back_stress = back_stress_of(problem, state, tip%fracture, tip%end, &
                                                     tip%layer_age)
                tip%intensity = seen(t)%with_coarse_error(window%crack_modulus(window%at(i)))
