@@ -50,7 +50,7 @@ module growth_advances
       real(rk), allocatable, private :: length(:)  !< distance between the bounds [m]
       !> distance from the upper bound within which a tip is put onto the bound [m]
       real(rk), allocatable, private :: sliver(:)
-      !> (tips) scale of the natural residual: the steepest estimate of the excess' fall so far [1/m]
+      !> (tips) scale of the natural residual: the steepest fall of the excess so far [1/m]
       real(rk), allocatable, private :: scale(:)
       real(rk), allocatable, private :: best(:)  !< position with the least residual so far [m]
       real(rk), allocatable, private :: excess(:)  !< value at `best` [-]
@@ -213,7 +213,7 @@ contains
    end function natural_residual
 
    !> Update of the matrix: the smallest change with which it predicts the measured change of the
-   !! excess, as Broyden's, but relative to its terms: K_eq of a tip depends on its own position more
+   !! excess, as Broyden's, but relative to its terms: K_eq of a tip depends more on its own position
    !! than on those of others.
    pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self

@@ -32,8 +32,8 @@ module twolevel_held_faces
 
 contains
 
-   !> Choose the faces to be held on a new mesh: those that the coarse level has far from slip,
-   !! without slip so far. None at the end of a fracture or at a joint, nor near a tip in focus, nor of
+   !> Choose the faces to be held on a new mesh: those without slip so far that the coarse level has
+   !! far from slip. None at the end of a fracture or at a joint, nor near a tip in focus, nor of
    !! a fracture that closes under pressure or is bonded.
    pure function choose_held(fine, map, coarse, law, state, slip_before, tips) result(held)
       type(fine_mesh_t), intent(in) :: fine
@@ -139,8 +139,9 @@ contains
             shear = dot_product(tau, traction)
             normal = tau(1)*traction(2) - tau(2)*traction(1) + loads%fluid_pressure(i)
          end associate
-         if (normal < 0.0_rk .and. abs(shear) <= near_slip*model%conditions%law(i)%contact%friction &
-             *abs(normal)) cycle
+         associate (bound => model%conditions%law(i)%contact%friction*abs(normal))
+            if (normal < 0.0_rk .and. abs(shear) <= near_slip*bound) cycle
+         end associate
          sticks(map%coarse_cell(i)) = .false.
       end do
       any_released = .not. all(sticks)
