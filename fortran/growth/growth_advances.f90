@@ -212,9 +212,9 @@ contains
       residual = self%scale*(place - min(self%upper, max(self%lower, place + excess/self%scale)))
    end function natural_residual
 
-   !> Update of the matrix: the smallest change with which it predicts the measured change of the
-   !! excess, as Broyden's, but relative to its terms: K_eq of a tip depends more on its own position
-   !! than on those of others.
+   !> Update of the matrix: the smallest change, relative to its terms, with which it predicts the
+   !! measured change of the excess. K_eq of a tip depends more on its own position than on those of
+   !! others; Broyden's change, the smallest in absolute terms, does not know this.
    pure subroutine update_matrix(self, excess)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) excess at `place` [-]
