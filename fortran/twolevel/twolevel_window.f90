@@ -251,7 +251,8 @@ contains
 
       call self%set_rock(scene, .false., error)
       if (allocated(error)) return
-      self%model%changes = self%made%changes
+      ! A stored window that is to be meshed again has a mesh only.
+      if (allocated(self%made)) self%model%changes = self%made%changes
       associate (fracture => self%mesh%fracture, tip => tips(self%serves))
          self%at = [(findloc(fracture%tip_fracture == tip(i)%fracture .and. &
                              fracture%tip_end == tip(i)%end, .true., dim=1), i=1, size(tip))]
