@@ -98,8 +98,8 @@ module scene_parameter_table
          meaning="Thermal expansion of volume, in the pores"), &
       parameter_t("fluid", "table_temperature", kind_reals, "K", absent="one viscosity", &
          with="viscosity_at", only_with="heat", &
-         meaning="Increasing temperatures of a table of the viscosity in fractures, with its "// &
-                 "logarithm linear in between. Rock keeps `viscosity`, that at the "// &
+         meaning="Increasing temperatures of a table of the viscosity in fractures, its "// &
+                 "logarithm linear in between. Rock keeps `viscosity`, as at the "// &
                  "temperature of &heat"), &
       parameter_t("fluid", "viscosity_at", kind_reals, "Pa s", absent="one viscosity", &
          range=positive, with="table_temperature", only_with="heat", &

@@ -72,7 +72,8 @@ contains
    subroutine check_others(item)
       type(parameter_t), intent(in) :: item
       character(len=:), allocatable :: name
-      integer :: other
+      integer, parameter :: most_together = 3
+      integer :: k, other
 
       name = trim(item%group)//" "//trim(item%name)
       call checks%is_true(item%need /= need_choice .or. item%of /= "", name//" has a choice")
@@ -83,8 +84,14 @@ contains
                                    "|"//choice_value(item)//"|") > 0, name//" has one of its words")
       end if
       if (item%with /= "") then
+         ! What must be given together refers one to the next, and the last to the first.
          other = index_of(item%group, item%with)
-         call checks%is_true(parameters(other)%with == item%name, name//" and its pair")
+         do k = 2, most_together
+            if (parameters(other)%with /= item%name) then
+               other = index_of(item%group, parameters(other)%with)
+            end if
+         end do
+         call checks%is_true(parameters(other)%with == item%name, name//" and those with it")
       end if
       if (item%at_most /= "") then
          other = index_of(item%group, item%at_most)

@@ -352,6 +352,11 @@ contains
       s%in_situ%stress(3) = 1.0e6_rk
       s%initial%pressure = 7.9e6_rk
       call expect(s, "&initial: pressure is 1.788e7 Pa: fractures", "a principal stress", .true.)
+      s = sound()
+      s%discretization%size_boundary = 0.1_rk
+      allocate (s%temperature)
+      s%temperature%face_depth = 1.0e-3_rk
+      call expect(s, "&temperature: face_depth is 0.001 m: elements at the face", "a thin front")
    end subroutine test_column
 
 end program test_scene_plausible
