@@ -237,20 +237,24 @@ def test_another_stage_and_end_are_as_if_they_had_been_there_from_the_start(
 
 
 def test_another_end_is_as_if_it_had_been_there_from_the_start(tmp_path: Path) -> None:
-    """With a tolerance and growth: the continued run keeps the first step of its start."""
-    scene = GROWING.replace("end = 7200.0, step = 3600.0", "end = 7200.0") + EVERY_STATE
+    """With a tolerance and growth: the continued run keeps the first step of its start.
+
+    No step before the last one is tried that reaches the end, as one after 3600 s would up to
+    7200 s.
+    """
+    scene = GROWING.replace("end = 7200.0, step = 3600.0", "end = 9000.0") + EVERY_STATE
     (tmp_path / "base.nml").write_text(scene)
     base, longer = tmp_path / "base", tmp_path / "longer"
     assert solver("run", tmp_path / "base.nml", "--out", base, "--quiet").returncode == 0
     # The last step was shortened to reach the end.
     (base / "checkpoint_old.bin").rename(base / "checkpoint.bin")
     for words in (
-        ("--restart", base, "--end", "8000.0", "--out", longer),
+        ("--restart", base, "--end", "9800.0", "--out", longer),
         (longer / "scene.nml", "--out", tmp_path / "whole"),
     ):
         done = solver("run", *words, "--quiet")
         assert done.returncode == 0, done.stderr
-    assert wingcrack.open(longer).scene["time.first"] == pytest.approx(7200.0e-7)
+    assert wingcrack.open(longer).scene["time.first"] == pytest.approx(9000.0e-7)
     assert_same(longer, tmp_path / "whole")
 
 
