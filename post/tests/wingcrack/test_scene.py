@@ -88,6 +88,13 @@ def test_fortran_double_precision_exponent(tmp_path: Path) -> None:
     assert scene.toughness_pa_sqrtm == 1.5e6
 
 
+def test_the_body_as_window_has_no_edge(tmp_path: Path) -> None:
+    for words, edge in (("'body'", None), ("0.5", 0.5)):
+        scene = read_scene(_scene(tmp_path, f"&fluid /\n&fine window = {words} /"))
+        assert scene is not None
+        assert scene.window_m == edge
+
+
 def test_bad_number_is_located(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"scene\.nml: 'high' for toughness in &material is no"):
         read_scene(_scene(tmp_path, "&material toughness = high /"))

@@ -137,6 +137,7 @@ def read_scene(path: Path) -> Scene | None:
     ]
     load, load_name = _load(path, groups)
     outline = _outline(path, first["domain"]) if "domain" in first else None
+    has_windows = "fluid" in first and _text(first.get("fine", {}), "window") != "body"
     along_x, along_y = (
         number("material", key) or number("material", "permeability")
         for key in ("permeability_xx", "permeability_yy")
@@ -159,7 +160,7 @@ def read_scene(path: Path) -> Scene | None:
         thickness_m=number("scene", "thickness") or 1.0,
         control=control_of(groups),
         drive=drive_of(groups),
-        window_m=number("fine", "window") if "fluid" in first else None,
+        window_m=number("fine", "window") if has_windows else None,
     )
 
 
