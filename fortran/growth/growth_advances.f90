@@ -38,7 +38,7 @@ module growth_advances
 
    !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
    !! tolerance [-].
-   real(rk), parameter :: most_over = 3.0_rk
+   real(rk), parameter :: most_over = 2.0_rk
 
    !> State of the iteration.
    type :: advances_t
