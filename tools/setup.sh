@@ -62,7 +62,7 @@ prepare_study() {
     prepare "$solver_target"
 }
 
-# prepare_water: see to what properties of water take, beside the rest.
+# prepare_water: see to what properties of water take, as well.
 prepare_water() {
     requirement_lists+=("$root/requirements_water.txt")
     prepare "$solver_target"

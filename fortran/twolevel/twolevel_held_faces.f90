@@ -100,7 +100,7 @@ contains
    !> Give the jumps of held faces: those before the step.
    pure subroutine hold_faces(held, contact, conditions, loads)
       logical, intent(in) :: held(:)  !< (fracture cells)
-      type(contact_t), intent(inout) :: contact
+      type(contact_t), intent(in) :: contact  !< with the slip before the step
       type(face_conditions_t), intent(inout) :: conditions
       type(fine_loads_t), intent(inout) :: loads
       real(rk) :: gap, slope
