@@ -18,7 +18,7 @@ module twolevel_held_faces
    implicit none(type, external)
    private
 
-   public :: choose_held, hold_faces, release_faces
+   public :: choose_held, hold_faces, is_far_from_slip, release_faces
 
    !> Share of the bound of friction below which the coarse level lets a face be held, and above
    !! which a held face is released [-].

@@ -179,7 +179,8 @@ contains
                        tip%found%k1_error, tip%found%k2_error, tip%found%g_domain, tip%lacking, &
                        tip%uncertain, tip%compared, tip%compared_at, tip%of_elements, &
                        tip%of_edge, tip%passing, tip%back_stress, tip%jump_then, tip%place_then, &
-                       truths([tip%is_compared, tip%was_undrained, tip%has_focus])]
+                       truths([tip%is_compared, tip%was_undrained, tip%has_focus, &
+                                       tip%is_needed])]
             end associate
          end do
       end if

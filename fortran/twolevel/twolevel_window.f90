@@ -9,13 +9,10 @@ module twolevel_window
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric
-   use contact_law, only: is_same
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
    use fine_elasticity, only: elasticity_t
-   use fine_contact, only: contact_t, transfer_contact
-   use fine_faces, only: face_conditions_t
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_model, only: fine_model_t
    use growth_network, only: end_pieces
@@ -23,13 +20,13 @@ module twolevel_window
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use report_scene, only: place_rocks, regions_of_other_rock, shape_body
-   use fine_tip_intensity, only: probe_of_tip, tip_intensity
+   use fine_tip_intensity, only: probe_of_tip
    use fine_tip_interaction, only: tip_probe_t
-   use fine_tip_types, only: frame_of_tip, intensity_t, tip_frame_t
+   use fine_tip_types, only: frame_of_tip, tip_frame_t
    use twolevel_faces, only: coarse_values_t, face_map_t, match_faces
-   use twolevel_held_faces, only: choose_held, hold_faces, release_faces
    use twolevel_window_map, only: clear_edges, window_map_t
-   use twolevel_window_path, only: near_ends, restore_arc_lengths, straighten_far, without
+   use twolevel_window_path, only: near_ends, numbers_without, restore_fractures, straighten_far, &
+                                   without
    use twolevel_window_spec, only: constants_of_rock, focus, grow_away, tip_place, window_spec
    use twolevel_window_sides, only: window_sides, window_sides_t
    use twolevel_window_tip, only: window_tip_t
@@ -38,9 +35,6 @@ module twolevel_window
    private
 
    public :: window_t
-
-   !> Error of K of a tip without focus, over the difference of two methods [-].
-   real(rk), parameter :: without_focus = 2.0_rk
 
    !> How far from the last segments of paths nodes move with the tips, over the length of the
    !! segment, and largest share of the elements that change for others not to be eliminated again
@@ -116,7 +110,8 @@ module twolevel_window
       procedure :: intensities_with
       procedure :: curved_edge
       procedure :: holds
-      procedure :: lacks_focus
+      procedure :: is_too_coarse
+      procedure :: has_fracture
       procedure :: displacement_at
       procedure :: visit
    end type window_t
@@ -134,6 +129,46 @@ module twolevel_window
          type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
          type(error_t), allocatable, intent(out) :: error
       end subroutine visit
+   end interface
+
+   interface
+      !> Load the window with the state of the coarse level, solve, and evaluate its tips in question.
+      module subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
+         implicit none(type, external)
+         class(window_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+         type(mesh_t), intent(in) :: coarse
+         type(coarse_values_t), intent(in) :: values
+         type(state_t), intent(in) :: state
+         type(window_tip_t), intent(inout) :: tips(:)
+         type(window_history_t), intent(inout) :: history
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine find_intensities
+
+      !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on sides
+      !! of the body those that the scene prescribes. Zero at other nodes.
+      pure module function curved_edge(self, coarse, displacement, gradient) result(edge)
+         implicit none(type, external)
+         class(window_t), intent(in) :: self
+         type(mesh_t), intent(in) :: coarse
+         real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
+         real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
+         real(rk), allocatable :: edge(:, :)  !< (2, n_nodes) [m]
+      end function curved_edge
+
+      !> K_I and K_II under the loads of the last solution with other displacements on the edge, or
+      !! another pressure in the rock. The window does not change.
+      module subroutine intensities_with(self, history, k, error, edge, pressure)
+         implicit none(type, external)
+         class(window_t), intent(inout) :: self
+         type(window_history_t), intent(in) :: history
+         real(rk), intent(inout) :: k(:, :)  !< (2, tips) set for the tips served [Pa m^1/2]
+         type(error_t), allocatable, intent(out) :: error
+         !> (2, n_nodes) used where displacements are prescribed [m]
+         real(rk), intent(in), optional :: edge(:, :)
+         !> (coarse cells) pressure, constant in each cell [Pa]
+         real(rk), intent(in), optional :: pressure(:)
+      end subroutine intensities_with
    end interface
 
 contains
@@ -170,6 +205,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(mesh_spec_t) :: spec
       type(network_t) :: far_straight
+      logical :: is_needed(size(network%first) - 1)
 
       if (allocated(self%made)) deallocate (self%made)
       self%element_size = self%coarser*minval(tips(self%serves)%element_size(scene))
@@ -185,31 +221,56 @@ contains
       allocate (self%made)
       self%made%network = network
       self%made%has_focus = tips%has_focus
-      call straighten_far(network, spec, self%is_body, far_straight, self%made%kept)
+      is_needed = .not. self%is_body .or. .not. any(tips%is_needed)
+      is_needed(pack(tips%fracture, tips%is_needed)) = .true.
+      call straighten_far(network, spec, self%is_body, is_needed, far_straight, self%made%kept)
+      call leave_out(network, self%made%kept, spec)
       call build_mesh(spec, far_straight, self%mesher, self%mesh, error)
       if (allocated(error)) return
-      call find_changes(self, scene, far_straight, tips)
+      call find_changes(self, scene, network, far_straight, tips)
       self%has_moved = .false.
       self%follows_other = .false.
-      call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
+      call restore_fractures(network, far_straight, self%made%kept, self%mesh%fracture)
       call self%set_up(scene, tips, error)
    end subroutine build
 
+   !> Remove from a specification what belongs to fractures without vertices in the mesh.
+   pure subroutine leave_out(network, kept, spec)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: kept(:)  !< vertices in the mesh
+      type(mesh_spec_t), intent(inout) :: spec
+      integer(ik), allocatable :: stay(:)
+      integer(ik) :: i, number(size(network%first) - 1)
+
+      number = numbers_without(network, kept)
+      if (all(number > 0)) return
+      stay = pack([(i, i=1, size(number, kind=ik))], number > 0)
+      spec%end_radius = spec%end_radius(:, stay)
+      if (allocated(spec%own_size)) spec%own_size = spec%own_size(stay)
+      stay = pack([(i, i=1, size(spec%refined, 2, kind=ik))], &
+                  [(any(abs(network%xy(1, kept) - spec%refined(1, i)) <= 0.0_rk .and. &
+                        abs(network%xy(2, kept) - spec%refined(2, i)) <= 0.0_rk), &
+                    i=1, size(spec%refined, 2, kind=ik))])
+      spec%refined = spec%refined(:, stay)
+   end subroutine leave_out
+
    !> Find the elements that change as tips in focus move along path segments.
-   subroutine find_changes(self, scene, network, tips)
+   subroutine find_changes(self, scene, network, simple, tips)
       class(window_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network  !< in the mesh
+      type(network_t), intent(in) :: network
+      type(network_t), intent(in) :: simple  !< in the mesh
       type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
       type(window_tip_t), allocatable :: moving(:)
       real(rk) :: piece(2, size(network%first) - 1)
-      integer(ik) :: i
+      integer(ik) :: i, number(size(network%first) - 1)
 
       piece = end_pieces(network)
+      number = numbers_without(network, self%made%kept)
       moving = pack(tips(self%serves), tips(self%serves)%has_focus .or. .not. self%is_body)
       moving = pack(moving, [(piece(moving(i)%end, moving(i)%fracture) <= longer &
                               *scene%increment_of(moving(i)%fracture), i=1, size(moving))])
-      self%made%changes = near_ends(self%mesh, network, moving%fracture, moving%end, reach)
+      self%made%changes = near_ends(self%mesh, simple, number(moving%fracture), moving%end, reach)
       if (count(self%made%changes) <= most_change*self%mesh%n_cells) return
       deallocate (self%made%changes)
       allocate (self%made%changes(0))
@@ -236,7 +297,7 @@ contains
       self%has_moved = .true.
       call move_tips(as_made, far_straight, reach, self%mesher, self%mesh, refusal)
       if (allocated(refusal)) return
-      call restore_arc_lengths(network, far_straight, self%made%kept, self%mesh%fracture)
+      call restore_fractures(network, far_straight, self%made%kept, self%mesh%fracture)
       call self%set_up(scene, tips, error)
       is_done = .not. allocated(error)
    end subroutine follow
@@ -262,16 +323,6 @@ contains
       if (any(self%sides%of%changes())) self%force_in_situ = self%loads%force
       call self%sides%add_loads(self%model%mesh, self%loads%force)
    end subroutine set_up
-
-   !> Update the time-dependent values of the sides.
-   pure subroutine follow_sides(self, scene)
-      class(window_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-
-      call self%sides%change(scene)
-      self%loads%force = self%force_in_situ
-      call self%sides%add_loads(self%model%mesh, self%loads%force)
-   end subroutine follow_sides
 
    !> Set the loads by the state in situ and by weight. The tractions in equilibrium with the stress
    !! in situ act where no displacement is prescribed.
@@ -395,154 +446,29 @@ contains
       self%served%is_evaluated = is_evaluated
    end subroutine choose_tips
 
-   !> Load the window with the state of the coarse level, solve, and evaluate its tips in question.
-   subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
-      class(window_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
-      type(state_t), intent(in) :: state
-      type(window_tip_t), intent(inout) :: tips(:)
-      type(window_history_t), intent(inout) :: history
-      type(error_t), allocatable, intent(out) :: error
-      type(face_conditions_t) :: conditions
-      integer(ik) :: i
-      logical :: again
-
-      associate (n => self%model%mesh%n_vertices)
-         call self%map%interpolate(coarse, values%nodal(3, :), self%loads%pore_pressure(:n))
-      end associate
-      if (any(self%sides%of%changes())) call follow_sides(self, scene)
-      self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
-                                                          values%gradient)
-      if (self%undrained) then
-         self%loads%pore_pressure = scene%initial%pressure
-         if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
-      end if
-      if (.not. allocated(self%served)) call self%choose_tips(self%at > 0)
-      if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
-         call remember_contact(self, state, history)
-      end if
-      associate (face_condition => scene%discretization%face_condition)
-         conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
-         call self%faces%load(self%model%mesh, face_condition, state, &
-                              scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ, &
-                              values%viscous)
-      end associate
-      if (self%is_body .and. .not. allocated(self%made%held) .and. &
-          scene%discretization%face_condition == "contact") then
-         self%made%held = choose_held(self%model%mesh, self%faces, coarse, values%law, state, &
-                                      history%contact%slip_before, tips)
-      end if
-      do
-         if (allocated(self%made%held)) then
-            call hold_faces(self%made%held, history%contact, conditions, self%loads)
-         end if
-         if (.not. same_conditions(self%model, conditions)) then
-            call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
-            if (allocated(error)) return
-         end if
-         call self%model%solve(self%loads, self%displacement, error, history%contact)
-         if (allocated(error)) return
-         if (.not. allocated(self%made%held)) exit
-         call release_faces(self%model, self%loads, self%displacement, coarse, self%faces, &
-                            self%made%held, again)
-         if (.not. again) exit
-         conditions = self%faces%conditions(self%model%mesh, &
-                                            scene%discretization%face_condition, values%law)
-      end do
-      call find_probes(self, error)
-      if (allocated(error)) return
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => tips(self%serves(i)))
-            if (.not. self%served(i)%is_evaluated) cycle
-            call tip_intensity(self%model, self%loads, self%displacement, self%served(i)%probe, &
-                               tip%found, error)
-            if (allocated(error)) return
-            ! Both methods see the same elements, which are twice as large as usual.
-            if (self%is_body .and. .not. tip%has_focus) then
-               tip%found%k1_error = without_focus*tip%found%k1_error
-               tip%found%k2_error = without_focus*tip%found%k2_error
-            end if
-         end associate
-      end do
-   end subroutine find_intensities
-
-   !> Compute the interaction integrals of the tips in question that are not known.
-   subroutine find_probes(self, error)
-      class(window_t), intent(inout) :: self
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: i
-
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => self%served(i))
-            if (tip%has_probe .or. .not. tip%is_evaluated) cycle
-            call probe_of_tip(self%model, self%at(i), tip%probe, error)
-            if (allocated(error)) return
-            tip%has_probe = .true.
-         end associate
-      end do
-   end subroutine find_probes
-
-   !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on sides
-   !! of the body those that the scene prescribes. Zero at other nodes.
-   pure function curved_edge(self, coarse, displacement, gradient) result(edge)
-      class(window_t), intent(in) :: self
-      type(mesh_t), intent(in) :: coarse
-      real(rk), intent(in) :: displacement(:, :)  !< (2, coarse nodes) [m]
-      real(rk), intent(in) :: gradient(:, :, :)  !< (2, 2, coarse nodes) [-]
-      real(rk), allocatable :: edge(:, :)  !< (2, n_nodes) [m]
-
-      edge = self%map%curved_edge(self%model%mesh, coarse, displacement, gradient)
-      call self%sides%take_given(self%model%mesh, edge)
-   end function curved_edge
-
-   !> K_I and K_II under the loads of the last solution with other displacements on the edge, or
-   !! another pressure in the rock. The window does not change.
-   subroutine intensities_with(self, history, k, error, edge, pressure)
-      class(window_t), intent(inout) :: self
-      type(window_history_t), intent(in) :: history
-      real(rk), intent(inout) :: k(:, :)  !< (2, tips) set for the tips served [Pa m^1/2]
-      type(error_t), allocatable, intent(out) :: error
-      !> (2, n_nodes) used where displacements are prescribed [m]
-      real(rk), intent(in), optional :: edge(:, :)
-      !> (coarse cells) pressure, constant in each cell [Pa]
-      real(rk), intent(in), optional :: pressure(:)
-      type(fine_loads_t) :: loads
-      type(contact_t) :: contact
-      type(intensity_t) :: result
-      real(rk), allocatable :: displacement(:, :)
-      integer(ik) :: i
-
-      loads = self%loads
-      if (present(edge)) loads%boundary_displacement = edge
-      if (present(pressure)) then
-         loads%pore_pressure(:self%model%mesh%n_vertices) = &
-            pressure(self%map%coarse_cell(:self%model%mesh%n_vertices))
-      end if
-      contact = history%contact
-      call self%model%solve(loads, displacement, error, contact)
-      if (allocated(error)) return
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => self%serves(i))
-            if (.not. self%served(i)%is_evaluated) cycle
-            call tip_intensity(self%model, loads, displacement, self%served(i)%probe, result, &
-                               error, quickly=.true.)
-            if (allocated(error)) return
-            k(:, tip) = [result%k1, result%k2]
-         end associate
-      end do
-   end subroutine intensities_with
-
-   !> Whether the mesh is that of the body, and the elements around some tips are too large.
-   pure logical function lacks_focus(self, tips)
+   !> Whether the mesh is that of the body, and the elements around some tips are too large, or a
+   !! fracture is missing.
+   pure logical function is_too_coarse(self, tips)
       class(window_t), intent(in) :: self
       type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
 
-      lacks_focus = self%is_body .and. allocated(self%made)
-      if (lacks_focus) lacks_focus = any(tips(self%serves)%has_focus .and. &
-                                         .not. self%made%has_focus(self%serves))
-   end function lacks_focus
+      is_too_coarse = self%is_body .and. allocated(self%made)
+      if (is_too_coarse) is_too_coarse = any(tips(self%serves)%has_focus .and. &
+                                             .not. self%made%has_focus(self%serves)) .or. &
+                                         any(tips%is_needed .and. &
+                                             .not. self%has_fracture(tips%fracture))
+   end function is_too_coarse
+
+   !> Whether fractures are in the mesh.
+   pure function has_fracture(self, fracture) result(has)
+      class(window_t), intent(in) :: self
+      integer(ik), intent(in) :: fracture(:)  !< their numbers in the network
+      logical :: has(size(fracture))
+      integer(ik) :: number(size(self%made%network%first) - 1)
+
+      number = numbers_without(self%made%network, self%made%kept)
+      has = number(fracture) > 0
+   end function has_fracture
 
    !> Whether points lie in the window, edges included.
    pure logical function holds(self, points)
@@ -580,32 +506,5 @@ contains
          end do
       end associate
    end subroutine displacement_at
-
-   !> Set the contact on a new mesh: that of the previous mesh, and outside of it that of the coarse
-   !! level.
-   subroutine remember_contact(self, state, history)
-      class(window_t), intent(in) :: self
-      type(state_t), intent(in) :: state
-      type(window_history_t), intent(inout) :: history
-      type(contact_t) :: contact
-
-      contact = self%faces%history(self%model%mesh, state)
-      if (allocated(history%mesh)) then
-         call transfer_contact(history%mesh, history%contact, self%model%mesh, contact)
-         deallocate (history%mesh)
-      end if
-      history%contact = contact
-   end subroutine remember_contact
-
-   !> Whether the model's matrix is that of these conditions.
-   pure function same_conditions(model, conditions) result(same)
-      type(fine_model_t), intent(in) :: model
-      type(face_conditions_t), intent(in) :: conditions
-      logical :: same
-
-      same = model%ready
-      if (same) same = all(model%conditions%condition == conditions%condition)
-      if (same) same = all(is_same(model%conditions%law%contact, conditions%law%contact))
-   end function same_conditions
 
 end module twolevel_window

@@ -3,7 +3,8 @@
 !! elements are larger than that, vertices that lie almost on a straight line are omitted.
 !!
 !! This changes neither joints nor the points where fractures cross the window's edge, and positions
-!! along the fractures keep their arc lengths, which the coarse level uses.
+!! along the fractures keep their arc lengths, which the coarse level uses. Whole fractures may be
+!! left out (twolevel_still_fractures); the others keep their numbers.
 module twolevel_window_path
    use base_kinds, only: ik, rk
    use base_plane, only: crosses, norm2, point_distance
@@ -12,7 +13,7 @@ module twolevel_window_path
    implicit none(type, external)
    private
 
-   public :: near_ends, restore_arc_lengths, straighten_far, without
+   public :: near_ends, numbers_without, restore_fractures, straighten_far, without
 
    !> Largest distance of a removed vertex from the straight line, over the size of the elements
    !! there [-].
@@ -21,10 +22,11 @@ module twolevel_window_path
 contains
 
    !> Remove the vertices that the window does not need.
-   pure subroutine straighten_far(network, spec, is_body, simple, kept)
+   pure subroutine straighten_far(network, spec, is_body, is_needed, simple, kept)
       type(network_t), intent(in) :: network
       type(mesh_spec_t), intent(in) :: spec  !< with its foci and sizes
       logical, intent(in) :: is_body  !< the window has no edge that fractures cross
+      logical, intent(in) :: is_needed(:)  !< (fractures) others are left out
       type(network_t), intent(out) :: simple
       !> (vertices of simple) their numbers in the network
       integer(ik), allocatable, intent(out) :: kept(:)
@@ -34,6 +36,8 @@ contains
       keeps = .true.
       do f = 1, size(network%first, kind=ik) - 1
          last = network%first(f)
+         if (.not. is_needed(f)) keeps(last:network%first(f + 1) - 1) = .false.
+         if (.not. is_needed(f)) cycle
          do v = last + 1, network%first(f + 1) - 2
             keeps(v) = .not. is_dispensable(network, spec, is_body, last, v)
             if (keeps(v)) last = v
@@ -68,19 +72,36 @@ contains
       is_near = [(any(node_is_near(mesh%cell_nodes(:, c))), c=1, mesh%n_cells)]
    end function near_ends
 
-   !> Network with a selection of its vertices.
+   !> Network with a selection of its vertices, and of the fractures that have some of them.
    pure function without(network, kept) result(simple)
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: kept(:)  !< vertices to keep, in ascending order
       type(network_t) :: simple
-      integer(ik) :: f
+      integer(ik) :: first(size(network%first)), f
+      logical :: stays(size(network%first) - 1)
 
-      simple = network
+      first = [(1 + count(kept < network%first(f), kind=ik), f=1, size(first, kind=ik))]
+      stays = numbers_without(network, kept) > 0
       simple%xy = network%xy(:, kept)
-      do f = 1, size(network%first, kind=ik)
-         simple%first(f) = 1 + count(kept < network%first(f), kind=ik)
-      end do
+      simple%first = [pack(first(:size(stays)), stays), first(size(first))]
+      simple%s_start = pack(network%s_start, stays)
+      if (allocated(network%names)) simple%names = pack(network%names, stays)
    end function without
+
+   !> Number of each fracture in a network without some vertices; 0 for one that it does not have.
+   pure function numbers_without(network, kept) result(number)
+      type(network_t), intent(in) :: network
+      integer(ik), intent(in) :: kept(:)  !< vertices kept
+      integer(ik) :: f, n, number(size(network%first) - 1)
+
+      n = 0
+      number = 0
+      do f = 1, size(number, kind=ik)
+         if (.not. any(kept >= network%first(f) .and. kept < network%first(f + 1))) cycle
+         n = n + 1
+         number(f) = n
+      end do
+   end function numbers_without
 
    !> Whether a straight line from the vertex `last` to the one after v is accurate enough.
    pure logical function is_dispensable(network, spec, is_body, last, v)
@@ -153,12 +174,14 @@ contains
       meets_other = .false.
    end function meets_other
 
-   !> Set the arc lengths of the fracture cells to those of the whole network.
-   pure subroutine restore_arc_lengths(network, simple, kept, fractures)
+   !> Set the numbers of the fractures and the arc lengths of their cells to those of the whole
+   !! network.
+   pure subroutine restore_fractures(network, simple, kept, fractures)
       type(network_t), intent(in) :: network, simple
       integer(ik), intent(in) :: kept(:)  !< as from straighten_far
       type(fracture_mesh_t), intent(inout) :: fractures  !< in the mesh of `simple`
       real(rk) :: whole(size(network%xy, 2)), short(size(simple%xy, 2))
+      integer(ik), allocatable :: whole_number(:)
       integer(ik) :: cell, end, v
 
       if (size(kept) == size(network%xy, 2)) return
@@ -176,7 +199,11 @@ contains
             end do
          end associate
       end do
-   end subroutine restore_arc_lengths
+      whole_number = pack([(v, v=1, size(network%first, kind=ik) - 1)], &
+                          numbers_without(network, kept) > 0)
+      fractures%cell_fracture = whole_number(fractures%cell_fracture)
+      fractures%tip_fracture = whole_number(fractures%tip_fracture)
+   end subroutine restore_fractures
 
    !> Arc lengths of all vertices [m].
    pure function arc_lengths(network) result(s)

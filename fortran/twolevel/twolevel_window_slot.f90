@@ -74,14 +74,15 @@ contains
          call slot%window%take_plan(slot%kept)
       end if
       associate (window => slot%window)
-         follows = allocated(window%made) .and. .not. window%lacks_focus(seen)
+         follows = allocated(window%made) .and. .not. window%is_too_coarse(seen)
          if (follows) follows = all(tips%is_free .eqv. window%made%is_free)
          if (follows) call follow_tips(slot, scene, network, seen, follows, error)
          if (.not. (follows .or. allocated(error))) then
             call window%build(scene, network, seen, is_beside_body, error)
          end if
          if (allocated(error)) return
-         if (any(tips(window%serves)%is_free .and. window%at == 0)) then
+         if (any(tips(window%serves)%is_free .and. window%at == 0 .and. &
+                 window%has_fracture(tips(window%serves)%fracture))) then
             call raise_error(error, "evaluate", "a window does not contain its tip")
             return
          end if

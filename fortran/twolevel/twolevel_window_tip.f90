@@ -31,6 +31,8 @@ module twolevel_window_tip
       !> In the body as window its surroundings have elements as small as those of its own window:
       !! it is, or has been, near its toughness
       logical :: has_focus = .false.
+      !> The body as window has its fracture, which moves or has moved, or comes near that
+      logical :: is_needed = .false.
       logical :: can_withdraw(2) = .false.  !< this refinement can still be taken back
       logical :: was_withdrawn(2) = .false.  !< it has been taken back
       !> intensities of the last solution, without the error by the coarse level

@@ -21,6 +21,7 @@ module twolevel_windows
    use growth_front, only: front_state_t
    use twolevel_back_stress, only: back_stress_of
    use twolevel_problem, only: coarse_problem_t
+   use twolevel_still_fractures, only: find_needed
    use twolevel_window, only: window_t
    use twolevel_window_heat, only: heat_error, warm_window
    use twolevel_window_slot, only: renew, slot_t
@@ -96,6 +97,7 @@ contains
          known%tip(i)%end = tips(i)%end
       end do
       known%tip%has_focus = size(tips) <= few
+      known%tip%is_needed = size(tips) <= few
       do i = 1, n_windows
          allocate (self%slot(i)%window)
          associate (window => self%slot(i)%window)
@@ -152,12 +154,14 @@ contains
       integer(ik) :: w
 
       call find_focus(front%tip, scene%material%toughness, known%tip)
+      call find_needed(scene, front, problem, state, known%tip)
       is_due = [(any(active(self%slot(w)%window%serves)), w=1, size(self%slot))]
       call evaluate_windows(self, scene, front, is_due, problem, state, known, error)
       if (allocated(error)) return
       ! Tips that have come near their toughness, in the body as window.
       call find_focus(front%tip, scene%material%toughness, known%tip)
-      is_due = is_due .and. [(self%slot(w)%window%lacks_focus(known%tip), w=1, size(self%slot))]
+      call find_needed(scene, front, problem, state, known%tip)
+      is_due = is_due .and. [(self%slot(w)%window%is_too_coarse(known%tip), w=1, size(self%slot))]
       if (.not. any(is_due)) return
       call evaluate_windows(self, scene, front, is_due, problem, state, known, error)
    end subroutine evaluate
@@ -247,7 +251,7 @@ contains
       integer(ik) :: i
 
       if (has_to_be_meshed(self%slot(w)%window, front%tip) .or. &
-          self%slot(w)%window%lacks_focus(known%tip)) then
+          self%slot(w)%window%is_too_coarse(known%tip)) then
          call renew(self%slot(w), scene, front%network, front%tip, self%is_beside_body, known%tip, &
                     known%history(w), error)
          if (allocated(error)) return

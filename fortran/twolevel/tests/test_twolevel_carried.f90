@@ -33,6 +33,7 @@ program test_twolevel_carried
    call test_few()
    call test_near_toughness()
    call test_focus()
+   call test_still()
    call test_cell_length()
    call test_reopening()
    call test_same_jump()
@@ -42,12 +43,13 @@ program test_twolevel_carried
 contains
 
    !> A network of fractures with a well each, in its initial state.
-   subroutine start(simulation, n, toughness, is_body, cell)
+   subroutine start(simulation, n, toughness, is_body, cell, n_rough)
       type(two_levels_t), intent(inout) :: simulation
       integer, intent(in) :: n  !< fractures
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       logical, intent(in) :: is_body  !< one window
       real(rk), intent(in), optional :: cell  !< length of the fracture cells [m]
+      integer, intent(in), optional :: n_rough  !< number of the last fractures, which stick
       real(rk), parameter :: x(5) = [0.5_rk, 1.4_rk, 1.0_rk, 0.6_rk, 1.5_rk]
       real(rk), parameter :: y(5) = [0.5_rk, 0.5_rk, 1.0_rk, 1.4_rk, 1.3_rk]
       real(rk), parameter :: half(5) = [0.15_rk, 0.2_rk, 0.1_rk, 0.2_rk, 0.12_rk]
@@ -70,6 +72,7 @@ contains
                               y(i) + along(2)*[-1.0_rk, 1.0_rk], 0.3_rk, 0.01_rk)
          end associate
       end do
+      if (present(n_rough)) scene%fractures(n - n_rough + 1:)%friction = 1.4_rk
       scene%injections = [(injection_t(fracture=int(i, ik), rate=[rates(i)*half(i)]), i=1, n)]
       call simulation%begin(scene, timers, error)
       call checks%no_error(error, "begin")
@@ -225,6 +228,31 @@ contains
          end associate
       end do
    end subroutine test_focus
+
+   !> The body as window leaves out fractures that stick far from slip, until they are needed: K of
+   !! the others differs by no more than from another mesh.
+   subroutine test_still()
+      type(two_levels_t) :: simulation
+      type(tip_t), allocatable :: without(:)
+      integer(ik) :: fewer
+      integer :: i
+
+      call start(simulation, 5, 1.0e7_rk, .true., n_rough=3)
+      associate (known => simulation%now%windows%tip, tips => simulation%tip)
+         call checks%is_true(all(known%is_needed .eqv. known%fracture <= 2), "two of them move")
+         call checks%is_true(all(tips%is_shut .neqv. known%is_needed), "the others are shut")
+         without = tips
+         fewer = simulation%windows%n_unknowns(tips)
+         known%is_needed = .true.
+         call evaluate(simulation)
+         call checks%is_true(fewer < 0.8_rk*simulation%windows%n_unknowns(tips), "fewer unknowns")
+         do i = 1, 4
+            call checks%is_close(without(i)%intensity%k2, tips(i)%intensity%k2, &
+                                 1.0e-3_rk*abs(tips(i)%intensity%k2), "K_II")
+            call checks%is_true(abs(tips(i)%intensity%k2) > 1.0e5_rk, "some K_II")
+         end do
+      end associate
+   end subroutine test_still
 
    !> What is compared is the jump over the root of the length of its cell, so a cell of
    !! another length alone does not change it. The mean opening of a cell of length d at a tip
