@@ -8,7 +8,7 @@ module growth_network
    private
 
    public :: end_direction, end_gain, end_pieces, end_place, end_vertices, extend, fracture_length
-   public :: move_end, network_of_scene, straighten_end, total_length
+   public :: increments_in, move_end, network_of_scene, straighten_end, total_length
 
 contains
 
@@ -34,6 +34,22 @@ contains
          network%xy(2, network%first(f):network%first(f + 1) - 1) = scene%fractures(f)%y
       end do
    end function network_of_scene
+
+   !> l_max of each fracture's tips. By default it is a share of the length, and follows it once the
+   !! fracture has become twice as long [m].
+   pure function increments_in(network, scene) result(increment)
+      type(network_t), intent(in) :: network
+      type(scene_t), intent(in) :: scene
+      real(rk) :: increment(size(network%first) - 1)
+      real(rk), parameter :: doubled = 2.0_rk
+      integer(ik) :: f
+
+      increment = [(scene%increment_of(f), f=1, size(increment, kind=ik))]
+      if (.not. scene%growth%increments_follow) return
+      increment = [(increment(f)*max(1.0_rk, fracture_length(network, f) &
+                                     /(doubled*scene%fractures(f)%length())), &
+                    f=1, size(increment, kind=ik))]
+   end function increments_in
 
    !> Add a vertex at one end of a fracture.
    pure subroutine extend(network, fracture, end, xy)

@@ -32,6 +32,7 @@ contains
       type(scene_t), intent(inout) :: scene
       real(rk) :: edge
 
+      scene%growth%increments_follow = follow_lengths(scene)
       associate (body => scene%domain, sizes => scene%discretization, f => scene%fractures)
          edge = min(body%x_max - body%x_min, body%y_max - body%y_min)
          if (size(f) > 0 .and. .not. sizes%size_fracture > 0.0_rk) then
@@ -51,6 +52,17 @@ contains
          sizes%chosen = .true.
       end associate
    end subroutine choose_sizes
+
+   !> Whether increments are to follow the present lengths: where the scene gives neither them nor
+   !! cells.
+   pure logical function follow_lengths(scene) result(follow)
+      type(scene_t), intent(in) :: scene
+
+      follow = scene%has_fluid() .and. scene%growth%law == "equilibrium" .and. &
+               .not. (scene%growth%increment > 0.0_rk .or. &
+                      scene%discretization%size_fracture > 0.0_rk .or. &
+                      any(scene%fractures%increment > 0.0_rk .or. scene%fractures%cell_size > 0.0_rk))
+   end function follow_lengths
 
    !> A share of each fracture's length.
    pure subroutine choose_cells(scene, edge)

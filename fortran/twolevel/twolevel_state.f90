@@ -6,6 +6,7 @@ module twolevel_state
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
    use base_timers, only: phase_tips, timers_t
+   use growth_network, only: increments_in
    use mesh_geometry, only: cell_area
    use coarse_state, only: state_t, step_report_t
    use mesh_types, only: mesh_t, network_t
@@ -210,6 +211,9 @@ contains
       if (self%scene%growth%intensities) then
          call self%now%windows%accept()
          call self%now%reference%accept()
+      end if
+      if (self%scene%growth%increments_follow) then
+         self%rules%own_increment = increments_in(self%network, self%scene)
       end if
       call self%remember()
    end subroutine begin_step

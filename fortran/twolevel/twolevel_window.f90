@@ -15,7 +15,7 @@ module twolevel_window
    use fine_elasticity, only: elasticity_t
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_model, only: fine_model_t
-   use growth_network, only: end_pieces
+   use growth_network, only: end_pieces, increments_in
    use mesh_builder, only: build_mesh, locate, mesh_spec_t, mesher_t, move_tips
    use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
@@ -262,14 +262,15 @@ contains
       type(network_t), intent(in) :: simple  !< in the mesh
       type(window_tip_t), intent(in) :: tips(:)  !< (tips of the network)
       type(window_tip_t), allocatable :: moving(:)
-      real(rk) :: piece(2, size(network%first) - 1)
+      real(rk) :: increment(size(network%first) - 1), piece(2, size(network%first) - 1)
       integer(ik) :: i, number(size(network%first) - 1)
 
       piece = end_pieces(network)
+      increment = increments_in(network, scene)
       number = numbers_without(network, self%made%kept)
       moving = pack(tips(self%serves), tips(self%serves)%has_focus .or. .not. self%is_body)
       moving = pack(moving, [(piece(moving(i)%end, moving(i)%fracture) <= longer &
-                              *scene%increment_of(moving(i)%fracture), i=1, size(moving))])
+                              *increment(moving(i)%fracture), i=1, size(moving))])
       self%made%changes = near_ends(self%mesh, simple, number(moving%fracture), moving%end, reach)
       if (count(self%made%changes) <= most_change*self%mesh%n_cells) return
       deallocate (self%made%changes)
