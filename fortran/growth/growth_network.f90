@@ -35,8 +35,8 @@ contains
       end do
    end function network_of_scene
 
-   !> l_max of each fracture's tips. By default it is a share of the length, and follows it once the
-   !! fracture has become twice as long [m].
+   !> l_max of each fracture's tips; by length it grows with a fracture that has become twice as
+   !! long [m].
    pure function increments_in(network, scene) result(increment)
       type(network_t), intent(in) :: network
       type(scene_t), intent(in) :: scene
@@ -45,7 +45,7 @@ contains
       integer(ik) :: f
 
       increment = [(scene%increment_of(f), f=1, size(increment, kind=ik))]
-      if (.not. scene%growth%increments_follow) return
+      if (scene%growth%increments /= "by_length") return
       increment = [(increment(f)*max(1.0_rk, fracture_length(network, f) &
                                      /(doubled*scene%fractures(f)%length())), &
                     f=1, size(increment, kind=ik))]

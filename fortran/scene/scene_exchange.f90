@@ -492,6 +492,7 @@ contains
       call exchange(record, "intensities", growth%intensities)
       call exchange(record, "law", growth%law)
       call exchange(record, "increment", growth%increment, nothing=0.0_rk)
+      call exchange(record, "increments", growth%increments)
       call exchange(record, "exponent", growth%exponent)
       call exchange(record, "threshold", growth%threshold)
       call exchange(record, "new_aperture", growth%new_aperture)

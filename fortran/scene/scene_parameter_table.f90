@@ -434,6 +434,10 @@ module scene_parameter_table
          absent="the fine mesh size, or size_fracture", &
          meaning="Largest advance l_max of a tip, or length of a path segment; 0: the default, "// &
                  "the fine mesh size, or without a fluid size_fracture"), &
+      parameter_t("growth", "increments", kind_choice, default="'auto'", scenes=in_fluid, &
+         choices="auto|constant|by_length", &
+         meaning="Increments of fractures that are twice as long as at first: constant, or in "// &
+                 "proportion to the length; auto: so where no cells are given either"), &
       parameter_t("growth", "exponent", default="0.35", range=at_least_zero, &
          meaning="Exponent m of advance = l_max (G/G_max)^m, with law = 'paris'"), &
       parameter_t("growth", "threshold", scenes=in_fluid, default="0.5", range=positive, &

@@ -32,7 +32,9 @@ contains
       type(scene_t), intent(inout) :: scene
       real(rk) :: edge
 
-      scene%growth%increments_follow = follow_lengths(scene)
+      if (scene%growth%increments == "auto") then
+         scene%growth%increments = merge("by_length", "constant ", follow_lengths(scene))
+      end if
       associate (body => scene%domain, sizes => scene%discretization, f => scene%fractures)
          edge = min(body%x_max - body%x_min, body%y_max - body%y_min)
          if (size(f) > 0 .and. .not. sizes%size_fracture > 0.0_rk) then
@@ -53,8 +55,8 @@ contains
       end associate
    end subroutine choose_sizes
 
-   !> Whether increments are to follow the present lengths: where the scene gives neither them nor
-   !! cells.
+   !> Whether increments are to follow the present lengths by default: where the scene gives neither
+   !! them nor cells.
    pure logical function follow_lengths(scene) result(follow)
       type(scene_t), intent(in) :: scene
 

@@ -248,8 +248,8 @@ module scene_types
       logical :: intensities = .false.
       character(len=name_length) :: law = "equilibrium"  !< "equilibrium" or "paris"
       real(rk) :: increment = 0.0_rk  !< l_max [m]
-      !> increments, and cells, are chosen by length: they grow with long fractures
-      logical :: increments_follow = .false.
+      !> "constant", or "by_length": they grow with fractures that have become longer; "auto"
+      character(len=name_length) :: increments = "auto"
       real(rk) :: exponent = 0.35_rk  !< exponent of the Paris-type law [-]
       !> eps_p: growth over dH at which the coarse mesh is updated [-]
       real(rk) :: threshold = 0.5_rk

@@ -212,7 +212,7 @@ contains
          call self%now%windows%accept()
          call self%now%reference%accept()
       end if
-      if (self%scene%growth%increments_follow) then
+      if (self%scene%growth%increments == "by_length") then
          self%rules%own_increment = increments_in(self%network, self%scene)
       end if
       call self%remember()
