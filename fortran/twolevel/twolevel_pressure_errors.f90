@@ -6,9 +6,9 @@
 !!   Else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell, z:
 !!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
 !! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
-!!   latter from place to place, and a cell has its mean. Error: 1.8 times the mean difference of
-!!   the fracture's cells from their mean. It falls as the rock drains, 1/(1 +
-!!   16 c t/h**2), as far as the rock takes up what the fractures hold.
+!!   latter from place to place, and a cell has its mean. Error: 1.5 times the mean difference of
+!!   the fracture's cells from their neighbours; it opens faces that are open. It falls as the
+!!   rock drains, 1/(1 + 16 c t/h**2), as far as the rock takes up what the fractures hold.
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -243,8 +243,8 @@ contains
       end do
    end function skempton
 
-   !> Length of fracture that takes in as much fluid as flows round a tip, as far as the cells do not
-   !! resolve it: at a constant pressure half of sqrt(pi c t) (a strip in an infinite body) [m].
+   !> Length of fracture that takes in as much fluid as flows round a tip, as far as the cells do
+   !! not resolve it: at a constant pressure half of sqrt(pi c t) (a strip in an infinite body) [m].
    pure function round_tips(problem, time) result(length)
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: time  !< [s]

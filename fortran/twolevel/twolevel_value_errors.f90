@@ -24,7 +24,7 @@ module twolevel_value_errors
    use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
                                        leaking_share, least, mean_in_rock, mean_pressure, &
                                        of_first_pressure, of_layers, of_steps, of_well_in_rock, &
-                                       skempton, stress_means, undrained_share
+                                       stress_means, undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -41,8 +41,6 @@ module twolevel_value_errors
    real(rk), parameter :: of_solution = 1.0e-6_rk
    !> error of a fracture's compliance, over the relative error of its volume [-]
    real(rk), parameter :: of_compliance = 0.5_rk
-   !> error of the stress that acts on a fracture, over its change since the start [-]
-   real(rk), parameter :: of_stress = 0.025_rk
    !> least error of a probe, over the range, and of its displacement [-]
    real(rk), parameter :: of_range = 0.001_rk, of_displacement = 4.0e-4_rk
 
@@ -89,12 +87,10 @@ module twolevel_value_errors
       procedure :: note_entries
       procedure :: note_probes
       procedure :: undrained
-      procedure :: stress_error
       procedure :: first_pressure
       procedure :: in_space
       procedure :: jumps_of
       procedure :: given_volume
-      procedure :: cell_pressure_errors
       procedure :: pressure_error
       procedure :: time_share
    end type value_errors_t
@@ -323,19 +319,8 @@ contains
                                             self%held)
    end function undrained
 
-   !> Error of the stress on each fracture cell: a share of the mean change on its fracture [Pa].
-   function stress_error(self, scene, problem, state) result(error)
-      class(value_errors_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      real(rk), allocatable :: error(:)
-
-      error = of_stress*norm2(stress_means(scene, problem, state) - self%first_stress, dim=1)
-      error = error(problem%mesh%fracture%cell_fracture)
-   end function stress_error
-
-   !> What is left of the error of the first pressure in each fracture cell; none at a given one [Pa].
+   !> What is left of the error of the first pressure in each fracture cell; none at a given one
+   !! [Pa].
    function first_pressure(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
@@ -356,33 +341,6 @@ contains
       error = merge(0.0_rk, self%of_flow*self%fractures%changes(), have_given_pressure(scene))
       error = error(problem%mesh%fracture%cell_fracture) + self%first_pressure(scene, problem)
    end function in_space
-
-   !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
-   !! of the faces, which is that of the pressure beyond closure [Pa].
-   function cell_pressure_errors(self, scene, problem, state, jumps) result(error)
-      class(value_errors_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      type(jumps_in_space_t), intent(in) :: jumps
-      real(rk), allocatable :: error(:)
-      logical :: own(problem%mesh%fracture%n_cells)
-      integer(ik) :: f
-
-      error = self%in_space(scene, problem)
-      if (self%quantities%n_steps == 0) return  ! the pressure of the initial state is given
-      associate (of_fracture => problem%mesh%fracture%cell_fracture, &
-                 has_given => have_given_pressure(scene))
-         error = error + merge(0.0_rk, skempton(problem)*self%stress_error(scene, problem, state), &
-                               has_given(of_fracture))
-         do f = 1, size(has_given, kind=ik)
-            own = of_fracture == f
-            if (has_given(f) .or. .not. any(own)) cycle
-            where (own) error = max(error, sum(jumps%net_error, mask=own)/count(own))
-         end do
-         error = error + self%fractures%error(of_fracture)
-      end associate
-   end function cell_pressure_errors
 
    !> Error of the mean pressure in the fractures, in time and space [Pa].
    pure real(rk) function pressure_error(self)
