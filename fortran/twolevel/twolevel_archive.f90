@@ -139,6 +139,7 @@ contains
       call archive%item("start", errors%start)
       call archive%item("held", errors%held)
       call archive%list("of_first", errors%of_first, "fractures")
+      call archive%list("first_stress", errors%first_stress, "2, fractures")
       call archive%item("of_start", errors%of_start)
       call archive%item("of_length", errors%of_length)
       call archive%item("of_slip", errors%of_slip)

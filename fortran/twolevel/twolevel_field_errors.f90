@@ -3,16 +3,21 @@
 !!
 !! The flow along a fracture is the sum of what leaks off beyond a cell: the relative error of
 !! leak-off acts on what leaks off in a cell. In the last cell before an end the flow falls to zero
-!! within the cell, anywhere: its error is as large as its value.
+!! within the cell, anywhere: it is nothing, or what the flows of the cells before it lead to. What
+!! flows round the tips comes from the whole fracture; cells do not resolve it where sqrt(c t) is
+!! less than their length. The stress on a fracture has an error in proportion to its change since
+!! the start, and in closed fractures so has the pressure.
 !!
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
-!! that slips is one of K_II of the friction times sqrt(pi L/2) times it; errors in time of slip and
-!! opening are relative errors of K. The net pressure of an open fracture follows from the
-!! compliance of its faces and has no term here. A joint that closes has the relative error that the
-!! pressure causes in its closure, by the law of its faces. Faces at a tip that have slipped and now
-!! stick with less than the friction hold a rest of the slip before them. A cell does not resolve
-!! how this rest s is distributed: K_II changes by half of what it is if it is uniform, sqrt(8 h/pi)
-!! s. Closed faces that slide with dilation have K_I = tan(psi) |K_II|, with its whole error.
+!! that slips is one of K_II of the friction times sqrt(pi L/2) times it, by the share of the cells
+!! that are in contact; errors in time of slip and opening are relative errors of K. The net
+!! pressure of an open fracture follows from the compliance of its faces and has no term here but
+!! that of the first pressure, at which the fracture opens by itself. A joint that closes has the
+!! relative error that the pressure causes in its closure, by the law of its faces. Faces at a tip
+!! that have slipped and now stick with less than the friction hold a rest of the slip before them.
+!! A cell does not resolve how this rest s is distributed: K_II changes by half of what it is if it
+!! is uniform, sqrt(8 h/pi) s. Closed faces that slide with dilation have K_I = tan(psi) |K_II|,
+!! with its whole error.
 module twolevel_field_errors
    use base_kinds, only: ik, pi, rk
    use coarse_fields, only: cell_stress
@@ -25,8 +30,10 @@ module twolevel_field_errors
                           matrix_fields_t
    use scene_types, only: scene_t
    use twolevel_jump_errors, only: jumps_in_space_t
-   use twolevel_pressure_errors, only: least
+   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, least, round_tips, &
+                                       skempton, stress_means
    use twolevel_problem, only: coarse_problem_t
+   use twolevel_results, only: cell_states
    use twolevel_value_errors, only: of_solution, value_errors_t
    implicit none(type, external)
    private
@@ -37,6 +44,9 @@ module twolevel_field_errors
    real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
    !> error of pressures by that of the resistance to flow, over their range in a fracture [-]
    real(rk), parameter :: of_drop = 0.06_rk
+   !> error of the stress that acts on a fracture, over its change since the start [-]
+   real(rk), parameter :: of_stress = 0.025_rk
+   real(rk), parameter :: by_flow = 0.25_rk  !< the same, over the relative error of the flow [-]
 
 contains
 
@@ -53,6 +63,48 @@ contains
       end do
    end function largest_of
 
+   !> Error of the stress on each closed fracture cell: a share of the mean change on its fracture
+   !! [Pa].
+   function stress_error(scene, problem, state, errors) result(error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(value_errors_t), intent(in) :: errors
+      real(rk), allocatable :: error(:)
+
+      error = of_stress*norm2(stress_means(scene, problem, state) - errors%first_stress, dim=1)
+      error = merge(0.0_rk, error(problem%mesh%fracture%cell_fracture), &
+                    cell_states(state) == state_open)
+   end function stress_error
+
+   !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
+   !! of the faces, which is that of the pressure beyond closure [Pa].
+   function cell_pressure_errors(scene, problem, state, errors, jumps) result(error)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      type(value_errors_t), intent(in) :: errors
+      type(jumps_in_space_t), intent(in) :: jumps
+      real(rk), allocatable :: error(:)
+      logical :: own(problem%mesh%fracture%n_cells)
+      integer(ik) :: f
+
+      error = errors%in_space(scene, problem)
+      if (errors%quantities%n_steps == 0) return  ! the pressure of the initial state is given
+      associate (of_fracture => problem%mesh%fracture%cell_fracture, &
+                 has_given => have_given_pressure(scene))
+         associate (by_stress => skempton(problem)*stress_error(scene, problem, state, errors))
+            error = error + merge(0.0_rk, by_stress, has_given(of_fracture))
+         end associate
+         do f = 1, size(has_given, kind=ik)
+            own = of_fracture == f
+            if (has_given(f) .or. .not. any(own)) cycle
+            where (own) error = max(error, sum(jumps%net_error, mask=own)/count(own))
+         end do
+         error = error + errors%fractures%error(of_fracture)
+      end associate
+   end function cell_pressure_errors
+
    !> Errors of the fields of the fracture cells.
    subroutine find_fracture_errors(scene, problem, state, errors, fields)
       type(scene_t), intent(in) :: scene
@@ -61,43 +113,63 @@ contains
       type(value_errors_t), intent(in) :: errors
       type(fracture_fields_t), intent(inout) :: fields
       type(jumps_in_space_t) :: jumps
-      real(rk) :: length(problem%mesh%fracture%n_cells)
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: around, length, tips
+      real(rk) :: drop(size(scene%fractures)), ends(2), leaks, whole
+      logical :: own(size(length))
       integer(ik) :: f
+      integer :: inner(2)
 
       call errors%jumps_of(scene, problem, state, jumps)
       associate (fracture => problem%mesh%fracture, e => fields%error)
          length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
          e%jump_n = jumps%error_n + errors%of_opening*abs(fields%jump_n)
          e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
-         e%pressure = errors%cell_pressure_errors(scene, problem, jumps) &
+         e%pressure = cell_pressure_errors(scene, problem, state, errors, jumps) &
                       + 0.5_rk*unevenness(fracture, fields%pressure) &
-                      + of_solution*abs(fields%pressure) &
-                      + of_drop*(largest_of(fracture, fields%pressure) &
-                                 + largest_of(fracture, -fields%pressure))
+                      + of_solution*abs(fields%pressure)
          e%flow = of_neighbours*unevenness(fracture, fields%flow)
+         around = round_tips(problem, state%time - errors%start)
          do f = 1, maxval(fracture%cell_fracture)
-            associate (first => findloc(fracture%cell_fracture, f, dim=1), &
-                       last => findloc(fracture%cell_fracture, f, dim=1, back=.true.))
+            own = fracture%cell_fracture == f
+            associate (first => findloc(own, .true., dim=1), s => fracture%cell_s, &
+                       last => findloc(own, .true., dim=1, back=.true.), q => fields%flow)
                if (first == 0) cycle
-               e%flow(first) = max(e%flow(first), abs(fields%flow(first)))
-               e%flow(last) = max(e%flow(last), abs(fields%flow(last)))
+               inner = [min(first + 1, last), max(last - 1, first)]
+               e%flow(first) = max(e%flow(first), abs(q(first)), &
+                                   abs(3.0_rk*q(first) - q(inner(1))))
+               e%flow(last) = max(e%flow(last), abs(q(last)), abs(3.0_rk*q(last) - q(inner(2))))
+               whole = sum(length, mask=own)
+               leaks = sum(length*abs(state%leakoff), mask=own)/whole
+               ends = [s(1, first), s(2, last)]
+               tips = min(around, 0.5_rk*whole)*abs(s(1, :) + s(2, :) - sum(ends))/whole
+               where (own) e%flow = e%flow + leaks*(errors%of_flow*length + tips)
             end associate
          end do
          e%flow = e%flow + (errors%of_flow + errors%time_share())*abs(fields%flow) &
-                  + of_largest*largest_of(fracture, abs(fields%flow)) &
-                  + errors%of_flow*errors%leakoff_rate()*length/sum(length)
+                  + of_largest*largest_of(fracture, abs(fields%flow))
+         ! Half of the fluid of the ends passes the others.
+         drop = fracture_means(scene, problem, abs(fields%flow))
+         drop = fracture_means(scene, problem, e%flow)/max(tiny(1.0_rk), drop)
+         e%pressure = e%pressure + max(of_drop, by_flow*min(1.0_rk, drop(fracture%cell_fracture))) &
+                      *(largest_of(fracture, fields%pressure) &
+                        + largest_of(fracture, -fields%pressure))
+         drop = errors%fractures%changes()
+         e%flow = e%flow + abs(fields%flow)*min(1.0_rk, e%pressure/max(tiny(1.0_rk), &
+                                                                & drop(fracture%cell_fracture)))
       end associate
-      call note_tractions(scene, problem, state, jumps%slip, fields)
+      call note_tractions(scene, problem, state, jumps%slip, &
+                          stress_error(scene, problem, state, errors), fields)
    end subroutine find_fracture_errors
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
    !! traction that the error of the jump is equal to, and in contact that of the pressure. Faces
    !! that slip have the friction of their normal traction.
-   subroutine note_tractions(scene, problem, state, jumps, fields)
+   subroutine note_tractions(scene, problem, state, jumps, of_stress, fields)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       type(jump_errors_t), intent(in) :: jumps
+      real(rk), intent(in) :: of_stress(:)  !< (cells) [Pa]
       type(fracture_fields_t), intent(inout) :: fields
       real(rk) :: by_jump(size(state%pressure)), modulus
 
@@ -108,18 +180,33 @@ contains
       end where
       associate (e => fields%error, fracture => problem%mesh%fracture, t => state%traction, &
                  friction => problem%model%cells%law%friction)
-         e%traction_n = max(unevenness(fracture, fields%traction_n), &
-                            0.5_rk*abs(t(1, 2, :) - t(1, 1, :))) &
-                        + by_jump*hypot(fields%jump_n, fields%jump_t) + e%pressure
-         e%traction_t = max(unevenness(fracture, fields%traction_t), &
-                            0.5_rk*abs(t(2, 2, :) - t(2, 1, :))) &
-                        + by_jump*hypot(fields%jump_n, fields%jump_t) + friction*e%pressure
+         by_jump = by_jump*hypot(fields%jump_n, fields%jump_t) + of_stress
+         e%traction_n = scatter(fields%traction_n, t(1, :, :)) + by_jump + e%pressure
+         e%traction_t = scatter(fields%traction_t, t(2, :, :)) + by_jump - 0.5_rk*of_stress &
+                        + friction*e%pressure
          where (fields%state == state_slip) e%traction_t = friction*e%traction_n
          where (fields%state == state_open)
             e%traction_n = 0.0_rk
             e%traction_t = 0.0_rk
          end where
       end associate
+
+   contains
+
+      !> Differences from neighbours and between the ends of a cell; at least the mean of the
+      !! fracture, as neighbours may have the same error.
+      pure function scatter(means, at_ends) result(difference)
+         real(rk), intent(in) :: means(:), at_ends(:, :)  !< (cells), (2, cells) [Pa]
+         real(rk) :: difference(size(means))
+
+         associate (fracture => problem%mesh%fracture)
+            difference = max(unevenness(fracture, means), 0.5_rk*abs(at_ends(2, :) - at_ends(1, :)))
+            associate (mean => fracture_means(scene, problem, difference))
+               difference = max(difference, 0.5_rk*mean(fracture%cell_fracture))
+            end associate
+         end associate
+      end function scatter
+
    end subroutine note_tractions
 
    !> Errors of K_I and K_II of the tips by those of the load of the faces [Pa m^1/2].
@@ -131,13 +218,16 @@ contains
       type(tip_t), intent(in) :: tips(:)
       real(rk) :: of_k(2, size(tips))
       type(jumps_in_space_t) :: jumps
-      real(rk), dimension(problem%mesh%fracture%n_cells) :: of_pressure, rest
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: first, of_pressure, rest
+      logical, dimension(size(rest)) :: own, slides
       integer(ik) :: at, i
 
       of_k = 0.0_rk
       if (size(of_pressure) == 0) return
       call errors%jumps_of(scene, problem, state, jumps)
-      of_pressure = errors%cell_pressure_errors(scene, problem, jumps)
+      of_pressure = cell_pressure_errors(scene, problem, state, errors, jumps)
+      first = errors%first_pressure(scene, problem)
+      slides = cell_states(state) == state_slip
       associate (fracture => problem%mesh%fracture, friction => problem%model%cells%law%friction, &
                  t => state%traction)
          rest = max(0.0_rk, -friction*0.5_rk*sum(t(1, :, :), dim=1) &
@@ -148,8 +238,13 @@ contains
             associate (k => tips(i)%intensity, half => 0.5_rk*(fracture%cell_s(2, at) &
                                                                - fracture%cell_s(1, at)))
                of_k(:, i) = abs([k%k1, k%k2])*[errors%of_opening + of_closure(at), errors%of_slip]
+               if (jumps%n(at) > 0.0_rk .and. .not. k%closed) then
+                  of_k(1, i) = of_k(1, i) + first(at)*root(jumps%opening%reach(at), half)
+               end if
+               own = fracture%cell_fracture == tips(i)%fracture .and. jumps%slip%reach > 0.0_rk
                of_k(2, i) = of_k(2, i) + friction(at)*of_pressure(at) &
-                            *root(jumps%slip%reach(at), half)
+                            *root(jumps%slip%reach(at), half) &
+                            *count(own .and. slides)/max(1, count(own))
                if (abs(k%k2) > 0.0_rk .and. jumps%t(at) > 0.0_rk) then
                   of_k(2, i) = of_k(2, i) + sqrt(4.0_rk*half/pi)*rest(at)
                end if

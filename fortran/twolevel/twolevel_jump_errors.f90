@@ -30,6 +30,7 @@ module twolevel_jump_errors
       !> share of the fluid that has leaked off: its error acts on the opening [-]
       real(rk) :: diffusing = 1.0_rk
       real(rk), allocatable :: of_pressure(:)  !< (cells) error in space of the pressure [Pa]
+      real(rk), allocatable :: of_first(:)  !< (cells) its part of the first pressure [Pa]
    end type jump_facts_t
 
    !> (fracture cells)
@@ -70,7 +71,8 @@ contains
          length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
          self%slip = relative_jump_errors(fracture, moves(self%t), finite_volumes)
          self%opening = relative_jump_errors(fracture, moves(n), finite_volumes)
-         opened = compliance*self%opening%reach*facts%diffusing*facts%of_pressure
+         opened = compliance*self%opening%reach*(facts%diffusing*facts%of_pressure &
+                                                 + (1.0_rk - facts%diffusing)*facts%of_first)
          where (.not. is_open) opened = 0.0_rk
          allocate (self%net_error(size(n)), source=0.0_rk)
          where (self%opening%reach > 0.0_rk)

@@ -3,8 +3,8 @@
 !! The time of a jump has an error: that of K_eq over the rate of K_eq where the tip was at rest, or
 !! that of its position over its speed where it grew in equilibrium. Until this time has passed
 !! after a jump, it may not yet have happened; and a tip at rest that has jumped before may jump
-!! again as soon as K_eq equals K_IC within its error. In both cases the length of the jump is part
-!! of the error of the position.
+!! again as soon as K_eq equals K_IC within its error, by the load of the faces too. In both cases
+!! the length of the jump is part of the error of the position.
 !!
 !! A tip that grows in equilibrium rests now and then, as K_eq falls along a path segment and rises
 !! with the next one by some per cent of K_IC. The slope within a segment is steeper than that over
@@ -101,13 +101,16 @@ contains
 
    !> Take an accepted state at the end of a step of length dt; the errors of the positions by
    !! jumps, and by that of the time [m].
-   pure subroutine follow(self, tips, toughness, position_error, dt, time, error, by_time)
+   pure subroutine follow(self, tips, toughness, position_error, dt, time, error, by_time, &
+                          load_errors)
       class(jumps_t), intent(inout) :: self
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
       real(rk), intent(in) :: position_error(:)  !< (tips) without jumps [m]
       real(rk), intent(in) :: dt, time  !< [s]
       real(rk), intent(out) :: error(:), by_time(:)  !< (tips) [m]
+      !> (2, tips) of K_I, K_II, by the load of the faces; default: 0 [Pa m^1/2]
+      real(rk), intent(in), optional :: load_errors(:, :)
       real(rk), dimension(size(tips)) :: late, new, uncertainty
       logical :: rests(size(tips))
 
@@ -131,6 +134,8 @@ contains
                            shape(self%grown))
       by_time = self%grown(:, 1) - grown_before(self, time - 0.5_rk*late)
       error = 0.0_rk
+      if (present(load_errors)) uncertainty = uncertainty + norm2(load_errors, dim=1) &
+                                              /tips%drive%resistance
       where (self%remaining > 0.0_rk .or. &
              (rests .and. .not. tips%arrested .and. &
               tips%drive%intensity + uncertainty >= toughness)) error = self%length

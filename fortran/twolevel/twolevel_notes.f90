@@ -208,10 +208,11 @@ contains
    end function states_errors
 
    !> Update the estimated errors of length and pressure after a step of length dt.
-   subroutine note_stated_errors(scene, front, problem, dt, now, notes)
+   subroutine note_stated_errors(scene, front, problem, load_errors, dt, now, notes)
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front
       type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: load_errors(:, :)  !< (2, tips) of K, by the load [Pa m^1/2]
       real(rk), intent(in) :: dt  !< [s]
       type(levels_state_t), intent(inout) :: now
       type(notes_t), intent(inout) :: notes
@@ -232,7 +233,7 @@ contains
          position_error = 0.0_rk
          if (allocated(now%stated_errors%tip)) position_error = now%stated_errors%tip
          call notes%jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump, &
-                                 tips%by_time)
+                                 tips%by_time, load_errors)
          tips%jump = max(tips%jump, notes%approach%early_growth(now%segment%gain, now%coarse%time, &
                                                                 tolerance*tip%scale_of(toughness)))
          do i = 1, size(tips, kind=ik)

@@ -6,9 +6,9 @@
 !!   Else by the distance sqrt(c t) of diffusion since the last switch over the size of a cell, z:
 !!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
 !! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
-!!   latter from place to place, and a cell has its mean. Error: 1.8 times the mean difference of
-!!   the fracture's cells from their mean. It falls as the rock drains, 1/(1 +
-!!   16 c t/h**2), as far as the rock takes up what the fractures hold.
+!!   latter from place to place, and a cell has its mean. Error: 1.5 times the mean difference of
+!!   the fracture's cells from their neighbours; it opens faces that are open. It falls as the
+!!   rock drains, 1/(1 + 16 c t/h**2), as far as the rock takes up what the fractures hold.
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -23,6 +23,7 @@ module twolevel_pressure_errors
    use coarse_rock, only: solid_t
    use coarse_state, only: state_t
    use mesh_geometry, only: cell_area, cell_centre, face_length
+   use report_jump_errors, only: unevenness
    use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
@@ -30,7 +31,7 @@ module twolevel_pressure_errors
 
    public :: fracture_means, have_given_pressure, held_at_first, leaking_share, least, &
              mean_in_rock, mean_pressure, of_first_pressure, of_layers, of_steps, of_well_in_rock, &
-             undrained_share, unresolved_depth
+             round_tips, skempton, stress_means, undrained_share, unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
    real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
@@ -40,7 +41,7 @@ module twolevel_pressure_errors
    real(rk), parameter :: of_radius = 0.011_rk, of_rings = 0.02_rk
    !> the same by a side of the body, times the cell's area over its squared distance
    real(rk), parameter :: by_side = 0.45_rk
-   real(rk), parameter :: of_spread = 1.8_rk  !< error of first pressures, over their spread [-]
+   real(rk), parameter :: of_spread = 1.5_rk  !< of first pressures, over their differences [-]
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains
@@ -212,6 +213,54 @@ contains
       end associate
    end function fracture_means
 
+   !> Mean total normal traction and shear traction of each fracture [Pa].
+   pure function stress_means(scene, problem, state) result(mean)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: mean(2, size(scene%fractures))
+
+      mean = 0.0_rk
+      if (problem%mesh%fracture%n_cells == 0) return
+      associate (t => 0.5_rk*sum(state%traction, dim=2))
+         mean(1, :) = fracture_means(scene, problem, t(1, :) - state%pressure)
+         mean(2, :) = fracture_means(scene, problem, t(2, :))
+      end associate
+   end function stress_means
+
+   !> Undrained change of pressure over that of the mean stress in the plane, in the rock at each
+   !! fracture cell [-].
+   pure function skempton(problem) result(ratio)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk) :: ratio(problem%mesh%fracture%n_cells)
+      type(solid_t) :: solid
+      integer(ik) :: i
+
+      do i = 1, size(ratio, kind=ik)
+         solid = problem%model%rock%solid_at(problem%mesh%face_cells(1, &
+                                             & problem%mesh%fracture%cell_faces(1, i)))
+         ratio(i) = solid%biot/(solid%storage*(solid%lame + solid%shear) + solid%biot**2)
+      end do
+   end function skempton
+
+   !> Length of fracture that takes in as much fluid as flows round a tip, as far as the cells do
+   !! not resolve it: at a constant pressure half of sqrt(pi c t) (a strip in an infinite body) [m].
+   pure function round_tips(problem, time) result(length)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: time  !< [s]
+      real(rk) :: length(problem%mesh%fracture%n_cells)
+      real(rk) :: c
+      integer(ik) :: i
+
+      associate (fracture => problem%mesh%fracture)
+         do i = 1, size(length, kind=ik)
+            c = diffusivity(problem, problem%mesh%face_cells(1, fracture%cell_faces(1, i)))
+            length(i) = 0.5_rk*sqrt(pi*c*time)/(1.0_rk + 4.0_rk*c*time &
+                                             & /(fracture%cell_s(2, i) - fracture%cell_s(1, i))**2)
+         end do
+      end associate
+   end function round_tips
+
    !> Error of the first pressure of each fracture [Pa].
    function of_first_pressure(scene, problem, state) result(error)
       type(scene_t), intent(in) :: scene
@@ -219,11 +268,8 @@ contains
       type(state_t), intent(in) :: state
       real(rk) :: error(size(scene%fractures))
 
-      associate (p => problem%fracture_pressure(state))
-         error = fracture_means(scene, problem, p)
-         error = of_spread*fracture_means(scene, problem, &
-                                          abs(p - error(problem%mesh%fracture%cell_fracture)))
-      end associate
+      error = of_spread*fracture_means(scene, problem, unevenness(problem%mesh%fracture, &
+                                                                  problem%fracture_pressure(state)))
    end function of_first_pressure
 
    !> What closed fractures and joints hold by these errors [m2].

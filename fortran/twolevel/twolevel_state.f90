@@ -488,7 +488,10 @@ contains
       row%length_error = self%now%stated_errors%length
       row%well_pressure_error = self%now%stated_errors%pressure
       if (.not. allocated(self%value_errors%of_wells)) return
-      row%well_pressure_error = min(row%well_pressure_error, maxval(self%value_errors%of_wells))
+      associate (first => self%value_errors%undrained(self%scene, self%problem))
+         row%well_pressure_error = min(row%well_pressure_error + maxval([0.0_rk, first]), &
+                                       maxval(self%value_errors%of_wells))
+      end associate
    end function history
 
    !> Displacement, stress and pressure at the probes.

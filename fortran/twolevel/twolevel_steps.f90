@@ -15,6 +15,7 @@ submodule(twolevel_state) twolevel_steps
    use report_slip, only: slip_step_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
+   use twolevel_field_errors, only: load_errors
    use twolevel_stepping, only: refinement_t, trial_t
    use twolevel_heat, only: add_well_temperatures, follow_heat, settle_heat, settlings_max, &
                             warn_of_heat
@@ -93,7 +94,7 @@ contains
       class(two_levels_t), intent(inout) :: self
       type(error_t), allocatable, intent(out) :: error
       type(history_row_t) :: row
-      real(rk), allocatable :: pressure(:)
+      real(rk), allocatable :: pressure(:), of_load(:, :)
 
       call book_change(self)
       call follow_heat(self%scene, self%before, self%now%coarse, self%problem, self%now%heat, error)
@@ -114,8 +115,11 @@ contains
          end if
       end if
       if (states_errors(self%scene%growth)) then
-         call note_stated_errors(self%scene, self%front_state_t, self%problem, self%step%dt, &
-                                 self%now, self%notes)
+         allocate (of_load(2, size(self%tip)), source=0.0_rk)
+         if (self%scene%growth%enabled .and. .not. self%is_initial) of_load = &
+            & load_errors(self%scene, self%problem, self%now%coarse, self%value_errors, self%tip)
+         call note_stated_errors(self%scene, self%front_state_t, self%problem, of_load, &
+                                 self%step%dt, self%now, self%notes)
          self%position_error = self%now%stated_errors%tip
       end if
       if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)

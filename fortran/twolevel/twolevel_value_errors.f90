@@ -24,7 +24,7 @@ module twolevel_value_errors
    use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
                                        leaking_share, least, mean_in_rock, mean_pressure, &
                                        of_first_pressure, of_layers, of_steps, of_well_in_rock, &
-                                       undrained_share
+                                       stress_means, undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -72,6 +72,7 @@ module twolevel_value_errors
       type(followed_step_t) :: step  !< last step
       real(rk) :: start = 0.0_rk  !< time of the first state [s]
       real(rk), allocatable :: of_first(:)  !< of the fractures' first pressures [Pa]
+      real(rk), allocatable :: first_stress(:, :)  !< (2, fractures) stress_means at the start [Pa]
       real(rk) :: held = 0.0_rk  !< fluid in fractures per change of pressure and length [m/Pa]
       real(rk) :: of_start = 0.0_rk  !< of the fractures' volume before the first step [m2]
       type(followed_t) :: quantities
@@ -86,11 +87,10 @@ module twolevel_value_errors
       procedure :: note_entries
       procedure :: note_probes
       procedure :: undrained
+      procedure :: first_pressure
       procedure :: in_space
       procedure :: jumps_of
       procedure :: given_volume
-      procedure :: cell_pressure_errors
-      procedure :: leakoff_rate
       procedure :: pressure_error
       procedure :: time_share
    end type value_errors_t
@@ -116,6 +116,7 @@ contains
       call self%quantities%begin(state%time, values)
       self%start = state%time
       self%of_first = of_first_pressure(scene, problem, state)
+      self%first_stress = stress_means(scene, problem, state)
       call self%fractures%begin(state%time, fracture_means(scene, problem, &
                                                            problem%fracture_pressure(state)))
       call self%wells%begin(state%time, [well_pressures(scene, problem, state%time, state), &
@@ -225,7 +226,8 @@ contains
 
       call jumps%find(scene%material, problem, state, &
                       jump_facts_t(self%of_length, self%given_volume(), self%diffusing, &
-                                   self%in_space(scene, problem)))
+                                   self%in_space(scene, problem), &
+                                   self%first_pressure(scene, problem)))
    end subroutine jumps_of
 
    !> Errors of the fluid volumes.
@@ -317,6 +319,18 @@ contains
                                             self%held)
    end function undrained
 
+   !> What is left of the error of the first pressure in each fracture cell; none at a given one
+   !! [Pa].
+   function first_pressure(self, scene, problem) result(error)
+      class(value_errors_t), intent(in) :: self
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), allocatable :: error(:)
+
+      error = merge(0.0_rk, self%undrained(scene, problem), have_given_pressure(scene))
+      error = error(problem%mesh%fracture%cell_fracture)
+   end function first_pressure
+
    !> Error in space of the pressure of each fracture cell by flow, and of the first pressure [Pa].
    function in_space(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
@@ -324,41 +338,9 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       real(rk), allocatable :: error(:)
 
-      error = merge(0.0_rk, self%of_flow*self%fractures%changes() &
-                    + self%undrained(scene, problem), have_given_pressure(scene))
-      error = error(problem%mesh%fracture%cell_fracture)
+      error = merge(0.0_rk, self%of_flow*self%fractures%changes(), have_given_pressure(scene))
+      error = error(problem%mesh%fracture%cell_fracture) + self%first_pressure(scene, problem)
    end function in_space
-
-   !> Error of the pressure of each fracture cell, in time and space: by flow, and by the compliance
-   !! of the faces, which is that of the pressure beyond closure [Pa].
-   function cell_pressure_errors(self, scene, problem, jumps) result(error)
-      class(value_errors_t), intent(in) :: self
-      type(scene_t), intent(in) :: scene
-      type(coarse_problem_t), intent(in) :: problem
-      type(jumps_in_space_t), intent(in) :: jumps
-      real(rk), allocatable :: error(:)
-      logical :: own(problem%mesh%fracture%n_cells)
-      integer(ik) :: f
-
-      error = self%in_space(scene, problem)
-      if (self%quantities%n_steps == 0) return  ! the pressure of the initial state is given
-      associate (of_fracture => problem%mesh%fracture%cell_fracture, &
-                 has_given => have_given_pressure(scene))
-         do f = 1, size(has_given, kind=ik)
-            own = of_fracture == f
-            if (has_given(f) .or. .not. any(own)) cycle
-            where (own) error = max(error, sum(jumps%net_error, mask=own)/count(own))
-         end do
-         error = error + self%fractures%error(of_fracture)
-      end associate
-   end function cell_pressure_errors
-
-   !> Rate of leak-off in the last step, by magnitude [m2/s].
-   pure real(rk) function leakoff_rate(self)
-      class(value_errors_t), intent(in) :: self
-
-      leakoff_rate = abs(self%quantities%rate(leakoff))
-   end function leakoff_rate
 
    !> Error of the mean pressure in the fractures, in time and space [Pa].
    pure real(rk) function pressure_error(self)

@@ -85,6 +85,9 @@ contains
       call checks%is_close(error(1), 0.1_rk, 0.0_rk, "0.45 s later")
       call jumps%follow(tip, toughness, position_error, 0.15_rk, 10.6_rk, error, by_time)
       call checks%is_close(error(1), 0.0_rk, 0.0_rk, "0.6 s later")
+      call jumps%follow(tip, toughness, position_error, 0.1_rk, 10.7_rk, error, by_time, &
+                        load_errors=reshape(0.2_rk*toughness*[1, 0, 1, 0], [2, 2]))
+      call checks%is_close(error(1), 0.1_rk, 0.0_rk, "it may jump again by its load")
    end subroutine test_rest
 
    !> A tip that grows by 1 mm/s, known to 3 mm, jumps: the time is known to 3 s.
