@@ -91,7 +91,7 @@ def unbroken(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     ("name", "share", "sent"),
     [
         *((name, 0.5, signal.SIGTERM) for name in SCENES),
-        *((name, 0.7, signal.SIGKILL) for name in SCENES),
+        *((name, 0.7, signal.SIGKILL) for name in ("steps", "growth", "mechanics")),
         *((name, 0.0, signal.SIGTERM) for name in ("steps", "growth", "mechanics")),
     ],
 )
