@@ -42,8 +42,11 @@ def ready_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
 
 
 def _copy(source: str, target: str) -> None:
-    """Copy a file; one of a Python package, which nothing writes into, is linked."""
-    (os.link if "site-packages" in source else shutil.copy2)(source, target)
+    """Copy a file; one of pip, which nothing writes into, is linked."""
+    if "/site-packages/pip/" in source:
+        os.link(source, target)
+    else:
+        shutil.copy2(source, target)
 
 
 @pytest.fixture
