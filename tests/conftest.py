@@ -41,11 +41,19 @@ def ready_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
     return Tree(shared_tree.root, tmp_path)
 
 
+def _copy(source: str, target: str) -> None:
+    """Copy a file; one of pip, which nothing writes into, is linked."""
+    if "/site-packages/pip/" in source:
+        os.link(source, target)
+    else:
+        shutil.copy2(source, target)
+
+
 @pytest.fixture
 def own_tree(shared_tree: Tree, tmp_path: Path) -> Tree:
     """A tree that is set up and free to be changed: a copy, so it has noticed being elsewhere."""
     root = tmp_path / "tree"
-    shutil.copytree(shared_tree.root, root, symlinks=True)
+    shutil.copytree(shared_tree.root, root, symlinks=True, copy_function=_copy)
     place = tmp_path / "place"
     place.mkdir()
     tree = Tree(root, place)

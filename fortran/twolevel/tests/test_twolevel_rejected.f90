@@ -109,7 +109,7 @@ contains
       scene%injections = [injection_t(fracture=1, rate=[1.0e-7_rk])]
    end function two_fractures
 
-   !> States of a run, with rejected tries before each of its steps.
+   !> States of a run, with rejected tries before every second of its steps.
    subroutine follow(lengths, row, k, new_meshes)
       real(rk), intent(in) :: lengths(:)  !< (kinds of tries) length over that of the step [-]
       type(history_row_t), allocatable, intent(out) :: row(:)  !< (states)
@@ -125,7 +125,7 @@ contains
       allocate (row(most), k(size(simulation%tip), most))
       do i = 1, most
          ! The first two states are that at rest and one without previous rates.
-         do kind = 1, merge(size(lengths), 0, i > 2)
+         do kind = 1, merge(size(lengths), 0, i > 2 .and. modulo(i, 2) == 0)
             call reject(simulation, lengths(kind), new_meshes(kind))
          end do
          call simulation%next_state(timers, error)
