@@ -60,10 +60,12 @@ contains
    pure logical function follow_lengths(scene) result(follow)
       type(scene_t), intent(in) :: scene
 
-      follow = scene%has_fluid() .and. scene%growth%law == "equilibrium" .and. &
-               .not. (scene%growth%increment > 0.0_rk .or. &
-                      scene%discretization%size_fracture > 0.0_rk .or. &
-                      any(scene%fractures%increment > 0.0_rk .or. scene%fractures%cell_size > 0.0_rk))
+      follow = scene%has_fluid() .and. scene%growth%law == "equilibrium"
+      follow = follow .and. .not. (scene%growth%increment > 0.0_rk .or. &
+                                   scene%discretization%size_fracture > 0.0_rk)
+      associate (f => scene%fractures)
+         follow = follow .and. .not. any(f%increment > 0.0_rk .or. f%cell_size > 0.0_rk)
+      end associate
    end function follow_lengths
 
    !> A share of each fracture's length.

@@ -180,7 +180,7 @@ contains
                        tip%uncertain, tip%compared, tip%compared_at, tip%of_elements, &
                        tip%of_edge, tip%passing, tip%back_stress, tip%jump_then, tip%place_then, &
                        truths([tip%is_compared, tip%was_undrained, tip%has_focus, &
-                                       tip%is_needed])]
+                               tip%is_needed])]
             end associate
          end do
       end if

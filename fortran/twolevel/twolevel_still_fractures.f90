@@ -29,6 +29,7 @@ contains
       real(rk), parameter :: surroundings = 10.0_rk  ! over the cells of the tip's fracture [-]
       logical :: is_still(size(front%network%first) - 1)
       real(rk) :: place(2, size(seen)), reach(size(seen))
+      integer(ik), allocatable :: foci(:)
       integer(ik) :: i
 
       if (all(seen%is_needed)) return
@@ -39,9 +40,9 @@ contains
             place(:, i) = front%tip(i)%xy
             reach(i) = surroundings*scene%cell_size_of(seen(i)%fracture)
          end do
+         foci = pack([(i, i=1, size(seen, kind=ik))], seen%has_focus)
          is_still = still_fractures(problem%mesh, problem%values%law, state, &
-                                    size(is_still, kind=ik), place(:, pack([(i, i=1, size(seen, kind=ik))], seen%has_focus)), &
-                                    pack(reach, seen%has_focus))
+                                    size(is_still, kind=ik), place(:, foci), reach(foci))
       end if
       seen%is_needed = seen%is_needed .or. .not. is_still(seen%fracture)
    end subroutine find_needed
@@ -58,8 +59,7 @@ contains
       real(rk), parameter :: rounding = 1.0e-12_rk  ! of a jump, over the largest jump
       real(rk), parameter :: gap = 2.0_rk  ! from what moves, over the larger of two cells [-]
       logical :: moves(coarse%fracture%n_cells)
-      real(rk), dimension(coarse%fracture%n_cells) :: size_of
-      real(rk) :: centre(2, coarse%fracture%n_cells)
+      real(rk) :: centre(2, coarse%fracture%n_cells), size_of(coarse%fracture%n_cells)
       integer(ik) :: i, j
 
       moves = .not. is_far_from_slip(law, state%traction(1, :, :), state%traction(2, :, :)) .or. &

@@ -132,7 +132,8 @@ module twolevel_window
    end interface
 
    interface
-      !> Load the window with the state of the coarse level, solve, and evaluate its tips in question.
+      !> Load the window with the state of the coarse level, solve, and evaluate the tips in
+      !! question.
       module subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
          implicit none(type, external)
          class(window_t), intent(inout) :: self
@@ -145,8 +146,8 @@ module twolevel_window
          type(error_t), allocatable, intent(out) :: error
       end subroutine find_intensities
 
-      !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on sides
-      !! of the body those that the scene prescribes. Zero at other nodes.
+      !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on
+      !! sides of the body those that the scene prescribes. Zero at other nodes.
       pure module function curved_edge(self, coarse, displacement, gradient) result(edge)
          implicit none(type, external)
          class(window_t), intent(in) :: self
