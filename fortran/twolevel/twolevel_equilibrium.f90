@@ -108,7 +108,10 @@ contains
          if (search%is_over .or. allocated(error)) return
          call move_tips(self, search, timers, any_moves, wants, error)
          if (allocated(error)) return
-         if (.not. any_moves) call go_on(self, search, wants, timers, trial, error)
+         ! A tip that jumps does not wait until others are in equilibrium: it changes that.
+         if (.not. any_moves .or. (search%may_jump .and. any(wants))) then
+            call go_on(self, search, wants, timers, trial, error)
+         end if
          if (search%is_over .or. allocated(error)) return
          call go_back(self%now%coarse, self%before)
       end do

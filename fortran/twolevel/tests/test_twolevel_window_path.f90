@@ -4,7 +4,7 @@ program test_twolevel_window_path
    use mesh_builder, only: mesh_spec_t
    use mesh_types, only: fracture_mesh_t, network_t
    use testing_checks, only: checks_t
-   use twolevel_window_path, only: restore_arc_lengths, straighten_far
+   use twolevel_window_path, only: restore_fractures, straighten_far
    implicit none(type, external)
 
    integer(ik), parameter :: n = 41  !< vertices of the path, 5 mm apart
@@ -27,6 +27,7 @@ program test_twolevel_window_path
    call test_loop()
    call test_edge()
    call test_arc_lengths()
+   call test_left_out()
    call checks%finish()
 
 contains
@@ -48,7 +49,7 @@ contains
       real(rk) :: longest
       integer(ik) :: i
 
-      call straighten_far(path(0.0_rk), spec, .true., simple, kept)
+      call straighten_far(path(0.0_rk), spec, .true., [.true.], simple, kept)
       call checks%is_true(kept(1) == 1 .and. kept(size(kept)) == n, "path: its ends stay")
       call checks%is_true(2*size(kept) < n, "path: many vertices go")
      call checks%is_true(all(simple%first == [1, size(kept) + 1]), "path: all vertices are counted")
@@ -68,9 +69,9 @@ contains
       type(network_t) :: simple
       integer(ik), allocatable :: kept(:)
 
-      call straighten_far(path(0.006_rk*spec%focus_size), spec, .true., simple, kept)
+      call straighten_far(path(0.006_rk*spec%focus_size), spec, .true., [.true.], simple, kept)
       call checks%is_true(size(kept) == n, "bends: all stay")
-      call straighten_far(path(0.001_rk*step), spec, .true., simple, kept)
+      call straighten_far(path(0.001_rk*step), spec, .true., [.true.], simple, kept)
       call checks%is_true(size(kept) < n, "bends: slight ones go")
    end subroutine test_bends
 
@@ -88,7 +89,7 @@ contains
          network%s_start = [0.1_rk, 0.0_rk]
          network%xy = reshape([network%xy, x, merge(0.25_rk, 0.2_rk, k == 1), x, 0.3_rk], &
                               [2_ik, n + 2_ik])
-         call straighten_far(network, spec, .true., simple, kept)
+         call straighten_far(network, spec, .true., all_of(network), simple, kept)
          call checks%is_true(all([any(kept == 6), any(kept == 7)]), "joint: its segment stays")
          call checks%is_true(all(kept(size(kept) - 1:) == [n + 1, n + 2]), "joint: the other stays")
          call checks%is_true(size(kept) < n, "joint: elsewhere vertices go")
@@ -106,7 +107,7 @@ contains
       network%first = [1_ik, n + 4_ik]
       network%xy = reshape([x, 0.25_rk, x, 0.4_rk, network%xy(1, 1), 0.4_rk, network%xy], &
                            [2_ik, n + 3_ik])
-      call straighten_far(network, spec, .true., simple, kept)
+      call straighten_far(network, spec, .true., all_of(network), simple, kept)
       call checks%is_true(all([any(kept == 9), any(kept == 10)]), "loop: its segment stays")
       call checks%is_true(size(kept) < n, "loop: elsewhere vertices go")
    end subroutine test_loop
@@ -120,7 +121,7 @@ contains
 
       network = path(0.0_rk)
       spec%x_max = 0.25_rk + step*(n - 6) - 0.3_rk*step
-      call straighten_far(network, spec, .false., simple, kept)
+      call straighten_far(network, spec, .false., all_of(network), simple, kept)
       call checks%is_true(all([any(kept == 6), any(kept == 7)]), "edge: what crosses it stays")
       call checks%is_true(any([(.not. any(kept == i), i=1, 5)]), "edge: outside vertices go")
       spec%x_max = 0.5_rk
@@ -140,11 +141,12 @@ contains
       do i = 2, n
          lengths(i) = lengths(i - 1) + norm2(network%xy(:, i) - network%xy(:, i - 1))
       end do
-      call straighten_far(network, spec, .true., simple, kept)
+      call straighten_far(network, spec, .true., all_of(network), simple, kept)
       call checks%is_true(size(kept) < n, "arc lengths: vertices go")
       ! Two cells between each two vertices.
       fractures%n_cells = 2*(size(kept, kind=ik) - 1)
       allocate (fractures%cell_fracture(fractures%n_cells), source=1_ik)
+      allocate (fractures%tip_fracture(0))
       allocate (fractures%cell_s(2, fractures%n_cells))
       simple_s = 0.1_rk
       do i = 1, size(kept, kind=ik) - 1
@@ -154,7 +156,7 @@ contains
             simple_s = simple_s + length
          end associate
       end do
-      call restore_arc_lengths(network, simple, kept, fractures)
+      call restore_fractures(network, simple, kept, fractures)
       do i = 1, size(kept, kind=ik) - 1
          associate (whole => lengths(kept(i:i + 1)), s => fractures%cell_s(:, 2*i - 1:2*i))
             call checks%is_close(s(1, 1), whole(1), 1.0e-14_rk, "arc lengths: start")
@@ -165,5 +167,36 @@ contains
          end associate
       end do
    end subroutine test_arc_lengths
+
+   !> Of three fractures the second one is left out; the third keeps its number and arc lengths.
+   subroutine test_left_out()
+      type(network_t) :: network, simple
+      type(fracture_mesh_t) :: fractures
+      integer(ik), allocatable :: kept(:)
+
+      network = network_t(first=[1_ik, 3_ik, 6_ik, 8_ik], s_start=[0.1_rk, 0.2_rk, 0.3_rk], &
+                          xy=reshape([0.1_rk, 0.1_rk, 0.2_rk, 0.1_rk, 0.1_rk, 0.4_rk, 0.2_rk, &
+                                      0.4_rk, 0.2_rk, 0.45_rk, 0.3_rk, 0.1_rk, 0.4_rk, 0.1_rk], &
+                                     [2, 7]))
+      call straighten_far(network, spec, .true., [.true., .false., .true.], simple, kept)
+      call checks%is_true(all(kept == [1, 2, 6, 7]) .and. all(simple%first == [1, 3, 5]), &
+                          "left out: vertices")
+      fractures%n_cells = 2
+      fractures%cell_fracture = [1_ik, 2_ik]
+      fractures%tip_fracture = [1_ik, 2_ik, 2_ik]
+      fractures%cell_s = reshape([0.1_rk, 0.2_rk, 0.3_rk, 0.4_rk], [2, 2])
+      call restore_fractures(network, simple, kept, fractures)
+      call checks%is_true(all(fractures%cell_fracture == [1, 3]) .and. &
+                          all(fractures%tip_fracture == [1, 3, 3]), "left out: numbers")
+      call checks%is_close(fractures%cell_s(2, 2), 0.4_rk, 1.0e-14_rk, "left out: arc length")
+   end subroutine test_left_out
+
+   !> All fractures are in the mesh.
+   pure function all_of(network) result(is_needed)
+      type(network_t), intent(in) :: network
+      logical :: is_needed(size(network%first) - 1)
+
+      is_needed = .true.
+   end function all_of
 
 end program test_twolevel_window_path
