@@ -12,7 +12,7 @@
 !! that slips is one of K_II of the friction times sqrt(pi L/2) times it, by the share of the cells
 !! that are in contact; errors in time of slip and opening are relative errors of K. The net
 !! pressure of an open fracture follows from the compliance of its faces and has no term here but
-!! that of the first pressure, at which the fracture opens by itself. A joint that closes has the
+!! that of the first pressure, at which the fracture opens on its own. A joint that closes has the
 !! relative error that the pressure causes in its closure, by the law of its faces. Faces at a tip
 !! that have slipped and now stick with less than the friction hold a rest of the slip before them.
 !! A cell does not resolve how this rest s is distributed: K_II changes by half of what it is if it

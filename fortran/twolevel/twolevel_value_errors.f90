@@ -319,8 +319,7 @@ contains
                                             self%held)
    end function undrained
 
-   !> What is left of the error of the first pressure in each fracture cell; none at a given one
-   !! [Pa].
+   !> Remaining error of the first pressure in each fracture cell; none at a given pressure [Pa].
    function first_pressure(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
