@@ -54,7 +54,7 @@ contains
       type(lists_t), intent(in) :: neighbours
       integer(ik), allocatable, intent(out) :: place(:)  !< (n) of each node in the order, from 1
       type(error_t), allocatable, intent(out) :: error
-      integer(c_int32_t) :: options(0:n_options - 1)
+      integer(c_int32_t) :: options(0:n_options - 1), status
       integer(c_int32_t), allocatable :: order(:)
       integer(ik) :: n
 
@@ -69,7 +69,11 @@ contains
          options(option_compress) = 0  ! nodes with the same neighbours are not looked for
          options(option_numbering) = 0  ! from 1 METIS would change the graph for a while
          associate (first => neighbours%first - 1, item => neighbours%item - 1)
-            if (algebra_node_nd(n, first, item, options, order, place) == metis_ok) then
+            ! METIS seeds and draws the random numbers of the C library, as gmsh does.
+            !$omp critical (c_random_numbers)
+            status = algebra_node_nd(n, first, item, options, order, place)
+            !$omp end critical (c_random_numbers)
+            if (status == metis_ok) then
                place = place + 1
                return
             end if

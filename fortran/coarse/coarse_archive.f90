@@ -146,6 +146,7 @@ contains
          call archive%item("dt", dt)
          call archive%item("factorizations", factorizations)
          call archive%list("spring", spring, "condensed ?")
+         call archive%list("held", condensed%held, "held_cells ?")
          call archive%item("needs_exchanges", condensed%factors%needs_exchanges)
          if (archive%is_loading .and. dt > 0.0_rk) then
             if (model%rock_wells%n > 0) call model%rock_wells%take_place(model%matrix)

@@ -9,6 +9,9 @@
 !!         q = ( [u]_n, [u]_tau at the start, p+, [u]_n, [u]_tau at the end, p- ),
 !! six of each per fracture cell (condensed_layout_t), jumps and forces in n, tau of the cell.
 !!
+!! Cells that stick without a jump may be held (coarse_held_cells): their jumps are no unknowns, and
+!! S and g have zeros instead.
+!!
 !! For many fracture cells S is not formed: its size grows with the square of their number, and the
 !! cost of its elimination with the cube. The rock is then factorized without its fractures, and S q
 !! costs one solution with these factors (coarse_coupling).
@@ -45,14 +48,18 @@ module coarse_condensed
       integer(ik) :: n = 0  !< fracture cells
       type(condensed_layout_t) :: layout  !< of q
       type(coarse_factors_t) :: factors
+      logical, allocatable :: held(:)  !< (n) cells that are held; unallocated: none
       logical :: analysed = .false.  !< whether the pattern of the mesh has been analysed
    contains
       procedure :: forget
+      procedure :: hold
+      procedure :: holds
       procedure :: factorize
       procedure :: support
       procedure :: condense
       procedure :: expand
       procedure :: find_forces
+      procedure :: find_reactions
       procedure :: find_volume_slopes
    end type condensed_t
 
@@ -71,6 +78,7 @@ contains
       integer(ik), parameter :: few = 800
 
       call self%factors%release()
+      if (allocated(self%held)) deallocate (self%held)
       associate (n => mesh%fracture%n_cells)
          self%is_full = real(n, rk)**2 <= merge(cells_per_square, of_many, n <= few)*mesh%n_cells
          if (condensation /= "auto") self%is_full = condensation == "full"
@@ -80,6 +88,25 @@ contains
       self%dt = -1.0_rk
    end subroutine forget
 
+   !> Hold cells from the next factorization on.
+   pure subroutine hold(self, held)
+      class(condensed_t), intent(inout) :: self
+      logical, intent(in) :: held(:)  !< (n)
+
+      self%held = held
+      self%analysed = .false.
+      self%dt = -1.0_rk
+   end subroutine hold
+
+   !> Whether a cell is held.
+   pure logical function holds(self, cell)
+      class(condensed_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      holds = allocated(self%held)
+      if (holds) holds = self%held(cell)
+   end function holds
+
    !> Factorize for a time step and condense.
    subroutine factorize(self, mesh, matrix, dt, error)
       class(condensed_t), intent(inout) :: self
@@ -87,19 +114,25 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: fixed(:)
+      integer(ik) :: cell, end
 
       self%dt = -1.0_rk
       self%factorizations = self%factorizations + 1
       if (.not. self%analysed) then
          if (allocated(self%rock)) deallocate (self%rock)  ! of another mesh
+         call self%factors%release()
          self%n = mesh%fracture%n_cells
          self%layout = condensed_layout_t(self%n)
          call find_frames(mesh, self%normal, self%length)
          self%analysed = .true.
       end if
       if (self%is_full) then
-         call self%factors%factorize(matrix, dt, error, self%stiffness)
+         fixed = pack([((2*cell - 2 + end, end=1, 2), cell=1, self%n)], &
+                      [((self%holds(cell), end=1, 2), cell=1, self%n)])
+         call self%factors%factorize(matrix, dt, error, self%stiffness, matrix%n_cells + fixed)
          if (allocated(error)) return
+         if (allocated(self%held) .and. .not. self%factors%by_fronts) deallocate (self%held)
          call find_stiffness(self)
       else
          call self%factors%factorize(matrix, dt, error)
@@ -189,6 +222,42 @@ contains
          force = force + self%spring*q
       end if
    end subroutine find_forces
+
+   !> Forces on the cells that are held, once all unknowns are known, in the order of q. They are
+   !! those of the solution less the loads on the faces.
+   subroutine find_reactions(self, matrix, unknowns, rhs, g, force)
+      class(condensed_t), intent(in) :: self
+      type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: unknowns(:, :)  !< (3, n_blocks) [m], [m], [Pa]
+      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
+      real(rk), intent(in) :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
+      real(rk), intent(out) :: force(:)  !< (6 n), zero where nothing is held [N/m], [m2]
+      real(rk) :: block(3, 3), own(3, 2*self%n)
+      integer(ik) :: at, cell, end, i, j, k
+
+      own = -rhs(:, matrix%n_cells + 1:)
+      do i = 1, 2*self%n
+         associate (columns => matrix%columns, row => matrix%n_cells + i)
+            do k = columns%first(row), columns%last(row)
+               block = matrix%block_at(k, self%dt)
+               j = columns%item(k)
+               own(:, i) = own(:, i) + matmul(block, unknowns(:, j))
+               j = j - matrix%n_cells
+               if (j > 0 .and. j /= i) own(:, j) = own(:, j) + matmul(unknowns(:, row), block)
+            end do
+         end associate
+      end do
+      force = reshape(own, [6*self%n])
+      call turn(self, force)
+      force = force - g
+      do cell = 1, self%n
+         if (self%holds(cell)) cycle
+         do end = 1, 2
+            at = self%layout%at_jump(cell, end)
+            force(at:at + 1) = 0.0_rk
+         end do
+      end do
+   end subroutine find_reactions
 
    !> Derivatives of the volumes of some faces by their own pressures: entries on the diagonal of S,
    !! without springs.

@@ -11,6 +11,8 @@
 !! The matrix equations as a sum of small dense matrices, for elimination by fronts: each block of
 !! unknowns with the unknowns eliminated after it. Such an element has no more entries than the
 !! elimination of its block produces, so that the fronts are those of the matrix.
+!!
+!! Jumps that are known to be zero may be fixed: they are no part of the matrix then.
 module coarse_factors
    use algebra_multifrontal, only: element_matrices_t, multifrontal_t
    use algebra_mumps, only: are_shared, mumps_indefinite, mumps_t
@@ -31,6 +33,8 @@ module coarse_factors
       integer(ik), allocatable :: entry(:)  !< of the matrix, one per item; negative: transposed
       type(matrix_t), pointer :: matrix => null()
       real(rk), pointer :: scale(:) => null()  !< (3 n_blocks) [m], [m], [Pa] block by block
+      logical, allocatable :: is_fixed(:)  !< (n_blocks) jumps are no unknowns
+      integer(ik), allocatable :: fixed(:)  !< those blocks
       real(rk) :: dt = 0.0_rk  !< [s]
    contains
       procedure :: give
@@ -42,6 +46,7 @@ module coarse_factors
       integer(ik) :: at_fractures = 1  !< where the fractures' begin among the unknowns
       logical :: by_fronts = .false.  !< no pivots are exchanged
       logical :: needs_exchanges = .false.  !< exchange pivots, also in the future
+      integer(ik), allocatable :: kept(:)  !< unknowns to condense onto, from the first on fractures
       logical, private :: analysed = .false.
       type(mumps_t), private :: exchanging
       type(multifrontal_t), private :: fronts
@@ -68,20 +73,23 @@ contains
    end subroutine release
 
    !> Factorize for a time step. The pattern is analysed at the first call.
-   subroutine factorize(self, matrix, dt, error, schur)
+   subroutine factorize(self, matrix, dt, error, schur, fixed)
       class(coarse_factors_t), intent(inout) :: self
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      !> Scaled matrix condensed onto the unknowns of the fractures. Absent: the cells alone are
-      !! factorized.
+      !> Scaled matrix condensed onto the unknowns of the fractures, zero for fixed ones. Absent: the
+      !! cells alone are factorized.
       real(rk), allocatable, intent(inout), optional :: schur(:, :)
+      !> Blocks with jumps that are zero, at the first call. By MUMPS none are fixed.
+      integer(ik), intent(in), optional :: fixed(:)
 
       call find_scale(matrix, dt, self%scale)
       if (.not. self%analysed) then
          self%at_fractures = at_component(matrix%n_cells + 1, 1)
          self%by_fronts = present(schur) .and. .not. self%needs_exchanges &
                           .and. are_shared(3*matrix%n_blocks) == 0
+         call fix(self, matrix%n_blocks, fixed)
       end if
       if (self%by_fronts) then
          call factorize_by_fronts(self, matrix, dt, schur, error)
@@ -90,11 +98,33 @@ contains
             self%by_fronts = .false.
             self%needs_exchanges = .true.
             self%analysed = .false.
+            call fix(self, matrix%n_blocks)
          end if
       end if
       if (.not. self%by_fronts) call factorize_by_mumps(self, matrix, dt, error, schur)
       if (.not. allocated(error)) self%analysed = .true.
    end subroutine factorize
+
+   !> Set the jumps that are zero.
+   pure subroutine fix(self, n_blocks, fixed)
+      class(coarse_factors_t), intent(inout) :: self
+      integer(ik), intent(in) :: n_blocks
+      integer(ik), intent(in), optional :: fixed(:)  !< blocks
+      logical :: is_kept(self%at_fractures:3*n_blocks)
+      integer(ik) :: i
+
+      associate (rows => self%rows)
+         if (allocated(rows%is_fixed)) deallocate (rows%is_fixed)
+         allocate (rows%is_fixed(n_blocks), source=.false.)
+         rows%fixed = [integer(ik) ::]
+         if (present(fixed)) rows%fixed = fixed
+         rows%is_fixed(rows%fixed) = .true.
+         is_kept = .true.
+         is_kept(at_component(rows%fixed, 1)) = .false.
+         is_kept(at_component(rows%fixed, 2)) = .false.
+      end associate
+      self%kept = pack([(i, i=1, size(is_kept, kind=ik))], is_kept)
+   end subroutine fix
 
    !> Solve for scaled equations and unknowns, where nothing is condensed.
    subroutine solve(self, x, error)
@@ -117,11 +147,16 @@ contains
    subroutine condense(self, rhs, reduced, error)
       class(coarse_factors_t), intent(inout) :: self
       real(rk), intent(inout), contiguous, target :: rhs(:)
-      real(rk), intent(out) :: reduced(:)
+      real(rk), intent(out) :: reduced(:)  !< zero for fixed jumps
       type(error_t), allocatable, intent(out) :: error
+      real(rk) :: on_kept(size(self%kept))
 
       if (self%by_fronts) then
-         call self%fronts%condense(rhs, reduced, error)
+         rhs(at_component(self%rows%fixed, 1)) = 0.0_rk
+         rhs(at_component(self%rows%fixed, 2)) = 0.0_rk
+         call self%fronts%condense(rhs, on_kept, error)
+         reduced = 0.0_rk
+         reduced(self%kept) = on_kept
       else
          call self%exchanging%condense(rhs, reduced, error)
       end if
@@ -135,7 +170,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (self%by_fronts) then
-         call self%fronts%expand(condensed, x, error)
+         call self%fronts%expand(condensed(self%kept), x, error)
       else
          call self%exchanging%expand(condensed, x, error)
       end if
@@ -192,7 +227,8 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(inout) :: schur(:, :)
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: order(:), place(:)
+      real(rk), allocatable :: of_kept(:, :)
+      integer(ik), allocatable :: place(:)
       integer(ik) :: i, n
 
       n = matrix%n_blocks
@@ -200,12 +236,8 @@ contains
          call dissect(neighbours_of(matrix%columns, matrix%n_cells), place, error)
          if (allocated(error)) return
          place = [place, (i, i=matrix%n_cells + 1, n)]
-         allocate (order(n))
-         order(place) = [(i, i=1, n)]
          call find_rows(matrix%columns, place, self%rows)
-         call self%fronts%analyse([(3*i - 2, i=1, n + 1)], self%rows%blocks, error, &
-                                  kept=[(i, i=self%at_fractures, 3*n)], order=order, &
-                                  is_negative=matrix%is_pressure())
+         call analyse_fronts(self, matrix, place, error)
          if (allocated(error)) return
       end if
       self%rows%matrix => matrix
@@ -213,11 +245,58 @@ contains
       self%rows%dt = dt
       call self%fronts%factorize(self%rows, error)
       if (.not. allocated(error)) then
-         call self%fronts%get_schur(schur)
-         call check_factors(self, schur, error)
+         call self%fronts%get_schur(of_kept)
+         call check_factors(self, of_kept, error)
+         if (size(self%rows%fixed) == 0) then
+            call move_alloc(of_kept, schur)
+         else
+            if (allocated(schur)) deallocate (schur)
+            n = 3*n - self%at_fractures + 1
+            allocate (schur(n, n), source=0.0_rk)
+            do i = 1, size(self%kept, kind=ik)
+               schur(self%kept, self%kept(i)) = of_kept(:, i)
+            end do
+         end if
       end if
       nullify (self%rows%matrix, self%rows%scale)
    end subroutine factorize_by_fronts
+
+   !> Analyse the pattern, each block with its element: fixed jumps are blocks alone.
+   subroutine analyse_fronts(self, matrix, place, error)
+      class(coarse_factors_t), intent(inout) :: self
+      type(matrix_t), intent(in) :: matrix
+      integer(ik), intent(in) :: place(:)  !< (n_blocks) in the order of elimination
+      type(error_t), allocatable, intent(out) :: error
+      type(lists_t) :: elements
+      integer(ik) :: i, n, n_items, order(size(place)), part(size(place) + 1)
+      integer(ik), allocatable :: alone(:), first_unknown(:)
+
+      n = size(place, kind=ik)
+      order(place) = [(i, i=1, n)]
+      associate (is_fixed => self%rows%is_fixed, fixed => self%rows%fixed, &
+                 blocks => self%rows%blocks)
+         part(1) = 1
+         do i = 1, n
+            part(i + 1) = part(i) + merge(2_ik, 1_ik, is_fixed(i))
+         end do
+         allocate (first_unknown(part(n + 1)))
+         do i = 1, n
+            first_unknown(part(i)) = at_component(i, 1)
+            if (is_fixed(i)) first_unknown(part(i) + 1) = at_component(i, 3)
+         end do
+         first_unknown(part(n + 1)) = at_component(n + 1, 1)
+         alone = part(fixed)
+         n_items = size(blocks%item, kind=ik)
+         elements%first = [blocks%first, (n_items + 1 + i, i=1, size(fixed, kind=ik))]
+         elements%item = [part(blocks%item + 1) - 1, alone]
+         order = part(order + 1) - 1
+         call self%fronts%analyse(first_unknown, elements, error, &
+                                  kept=self%at_fractures - 1 + self%kept, &
+                                  order=[order(:matrix%n_cells), alone, &
+                                         order(matrix%n_cells + 1:)], &
+                                  is_negative=matrix%is_pressure())
+      end associate
+   end subroutine analyse_fronts
 
    !> Measure the growth of rounding errors on a known solution: an error is raised if the
    !! elimination is not stable. The known pressure is uniform: its accuracy is lost first where
@@ -238,14 +317,18 @@ contains
       pressure = minval(self%scale, mask=is_pressure)
       where (is_pressure) known = pressure/self%scale
       where (self%rows%matrix%is_difference()) known = 0.0_rk
+      known(at_component(self%rows%fixed, 1)) = 0.0_rk
+      known(at_component(self%rows%fixed, 2)) = 0.0_rk
       load = times_scaled(self%rows, known)
+      load(at_component(self%rows%fixed, 1)) = 0.0_rk
+      load(at_component(self%rows%fixed, 2)) = 0.0_rk
       if (size(schur) == 0) then
          found = load
          call self%fronts%solve(found, error)
          if (allocated(error)) return
          difference = 0.0_rk
       else
-         associate (kept => known(self%at_fractures:))
+         associate (kept => known(self%at_fractures - 1 + self%kept))
             allocate (reduced(size(kept)), found(size(known)))
             call self%fronts%condense(load, reduced, error)
             if (allocated(error)) return
@@ -255,7 +338,7 @@ contains
                sizes = sizes + abs(schur(:, i)*kept(i))
             end do
             difference = maxval(abs(reduced)/sizes)
-            lost = abs(dot_product(reduced(3 :: 3), kept(3 :: 3)))
+            lost = abs(sum(reduced*kept, mask=modulo(self%kept, 3_ik) == 0))
             if (.not. lost <= tolerance*sum(self%rows%matrix%storage)*pressure**2) then
                difference = huge(1.0_rk)
             end if
@@ -380,27 +463,37 @@ contains
       end associate
    end subroutine find_rows
 
-   !> The scaled entries of one block row.
+   !> The scaled entries of one block row, of fixed jumps the unit matrix.
    pure subroutine give(self, element, n, matrix)
       class(rows_t), intent(in) :: self
       integer(ik), intent(in) :: element, n
       real(rk), intent(out) :: matrix(n, n)
       real(rk) :: block(3, 3)
-      integer(ik) :: a, at, b, k, own, row
+      integer(ik) :: a, at, b, first_col, first_row, k, own, row
 
-      matrix(:, 4:) = 0.0_rk
+      matrix = 0.0_rk
+      if (element > size(self%is_fixed)) then
+         do a = 1, n
+            matrix(a, a) = 1.0_rk
+         end do
+         return
+      end if
+      first_col = merge(3_ik, 1_ik, self%is_fixed(element))
       own = at_component(element, 1) - 1
       at = 0
       do k = self%blocks%first(element), self%blocks%last(element)
          block = self%matrix%block_at(abs(self%entry(k)), self%dt)
          if (self%entry(k) < 0) block = transpose(block)
          row = at_component(self%blocks%item(k), 1) - 1
-         do b = 1, 3
-            do a = 1, 3
-               matrix(at + a, b) = block(a, b)*self%scale(row + a)*self%scale(own + b)
+         first_row = merge(3_ik, 1_ik, self%is_fixed(self%blocks%item(k)))
+         do b = first_col, 3
+            do a = first_row, 3
+               matrix(at + a - first_row + 1, b - first_col + 1) = block(a, b) &
+                                                                  *self%scale(row + a) &
+                                                                  *self%scale(own + b)
             end do
          end do
-         at = at + 3
+         at = at + 4 - first_row
       end do
    end subroutine give
 

@@ -45,6 +45,7 @@ module coarse_model
       !! with regions [-]
       real(rk), allocatable :: rock_resistance(:)
       type(crack_ends_t) :: ends  !< of the cracks
+      logical :: may_hold = .false.  !< cells that stick may be held (coarse_held_cells)
       logical :: drained = .false.  !< fluid may cross the outer boundary
       !> (3, n_cells) body force x, y [N/m] and fluid [m2/s]; none if absent
       real(rk), allocatable :: source(:, :)
@@ -118,7 +119,8 @@ contains
                                            damping=scene%material%radiation_damping, &
                                            young=scene%material%young)
          ! The tries of growth need many elimination steps.
-         if (scene%growth%in_equilibrium()) self%settings%many = 200
+         self%may_hold = scene%growth%in_equilibrium()
+         if (self%may_hold) self%settings%many = 200
          if (has_law(fluid)) then
             self%settings%fluid_law = new_fluid_law(fluid)
             ! A density law contains the compression.

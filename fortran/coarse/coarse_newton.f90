@@ -427,6 +427,13 @@ contains
       row = eq%layout%at_jump(i, end)
       fluid = eq%fluid_at(x, i)
       point = 2*(i - 1) + end
+      if (eq%condensed%holds(i)) then
+         eq%traction(:, point) = eq%before%traction(:, end, i)
+         eq%residual(row:row + 1) = x(row:row + 1)
+         call eq%slopes%add(row, row, 1.0_rk)
+         call eq%slopes%add(row + 1, row + 1, 1.0_rk)
+         return
+      end if
       eq%traction(:, point) = [fluid%pressure, 0.0_rk] - eq%force(at:at + 1)/half_length
       call contact_equations(eq%law(point), eq%stiffness, eq%traction(:, point), eq%q(at:at + 1), &
                              eq%slip_before(point), eq%slip_sign(point), found)

@@ -8,6 +8,7 @@ submodule(coarse_model) coarse_steps
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_fluid_law, only: add_fracture_balance
    use coarse_fractures, only: flow_paths_t
+   use coarse_held_cells, only: choose_held, find_released
    use coarse_newton, only: solve_fractures
    use coarse_state, only: go_back
    use coarse_tips, only: dampers, jumps_of, place_tips, tip_springs
@@ -208,8 +209,71 @@ contains
       end if
    end subroutine add_face_loads
 
-   !> Solve a step with the present sources and matrix.
+   !> Solve a step with the present sources and matrix, again while cells that are held have to be
+   !! released.
    subroutine solve_step(self, mesh, paths, dt, state, timers, report, error)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      type(flow_paths_t), intent(in) :: paths
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+      type(state_t) :: before
+      logical :: released(mesh%fracture%n_cells)
+
+      if (self%may_hold .and. .not. (paths%settings%equilibrate .or. is_factorized(self, dt))) then
+         call choose_held(mesh, self%cells%law, self%ends, state, self%condensed)
+      end if
+      if (allocated(self%condensed%held)) before = state
+      do
+         call solve_held(self, mesh, paths, dt, state, timers, report, error)
+         if (allocated(error) .or. .not. allocated(self%condensed%held)) return
+         released = .true.
+         if (report%converged) then
+            call find_released(mesh, self%cells%law, state, self%condensed%held, released)
+            if (.not. any(released)) return
+         end if
+         call self%condensed%hold(self%condensed%held .and. .not. released)
+         if (.not. any(self%condensed%held)) deallocate (self%condensed%held)
+         call go_back(state, before)
+      end do
+   end subroutine solve_step
+
+   !> Whether the factors are those of a step length.
+   pure logical function is_factorized(self, dt)
+      class(coarse_model_t), intent(in) :: self
+      real(rk), intent(in) :: dt  !< [s]
+
+      is_factorized = abs(self%condensed%dt - dt) <= same_time*dt
+   end function is_factorized
+
+   !> Set the tractions of the cells that are held.
+   subroutine set_reactions(self, rhs, g, state)
+      class(coarse_model_t), intent(in) :: self
+      real(rk), intent(in) :: rhs(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
+      real(rk), intent(in) :: g(:)  !< (6 n) load on the condensed system [N/m], [m2]
+      type(state_t), intent(inout) :: state
+      real(rk) :: force(size(g))
+      integer(ik) :: end, i
+
+      associate (condensed => self%condensed)
+         call condensed%find_reactions(self%matrix, state%unknowns, rhs, g, force)
+         do i = 1, condensed%n
+            if (.not. condensed%held(i)) cycle
+            do end = 1, 2
+               associate (at => condensed%layout%at_jump(i, end))
+                  state%traction(:, end, i) = [state%pressure(i), 0.0_rk] &
+                                              - force(at:at + 1)/(0.5_rk*condensed%length(i))
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine set_reactions
+
+   !> Solve a step where the jumps of cells that are held are zero.
+   subroutine solve_held(self, mesh, paths, dt, state, timers, report, error)
       class(coarse_model_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       type(flow_paths_t), intent(in) :: paths
@@ -223,7 +287,7 @@ contains
       integer(ik) :: n
 
       n = mesh%fracture%n_cells
-      if (.not. abs(self%condensed%dt - dt) <= same_time*dt) then
+      if (.not. is_factorized(self, dt)) then
          call timers%start(phase_factorize)
          call self%layers%set_terms(dt, self%matrix)
          call self%condensed%factorize(mesh, self%matrix, dt, error)
@@ -262,6 +326,7 @@ contains
       call self%condensed%expand(q, rhs, state%unknowns, error)
       call timers%stop(phase_solve)
       if (allocated(error)) return
+      if (allocated(self%condensed%held)) call set_reactions(self, rhs, g, state)
       call timers%start(phase_assemble)
       if (self%layers%n > 0) call self%layers%update(state%unknowns, state%layer)
       call corner_tractions(self%regions, self%rock%with_heat(state%unknowns), state%tractions)
@@ -273,7 +338,7 @@ contains
       if (.not. sum(abs(state%unknowns)) <= huge(1.0_rk)) then
          call raise_error(error, "coarse_model", "the solution is not a finite number")
       end if
-   end subroutine solve_step
+   end subroutine solve_held
 
    !> Whether slip radiates energy; not in the initial state, which takes no time.
    pure logical function is_damped(settings)

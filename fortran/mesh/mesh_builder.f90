@@ -47,14 +47,18 @@ contains
       type(cm_network_t) :: c_network
       type(mesh_spec_t), target :: kept
       type(c_network_arrays_t), target :: arrays
+      integer :: status
 
       call destroy_mesher(mesher)
       kept = spec
       call prepare_network(network, arrays, c_network, error)
       if (.not. allocated(error)) call prepare_spec(kept, c_network%n_fractures, c_spec, error)
       if (allocated(error)) return
-     call finish(cm_create(c_spec, c_network, mesher%handle), "build_mesh", network, mesher, mesh, &
-                  error)
+      ! gmsh seeds and draws the random numbers of the C library, as METIS does (algebra_ordering).
+      !$omp critical (c_random_numbers)
+      status = cm_create(c_spec, c_network, mesher%handle)
+      !$omp end critical (c_random_numbers)
+      call finish(status, "build_mesh", network, mesher, mesh, error)
    end subroutine build_mesh
 
    !> A new mesh of the same body whose cells have about the sizes that are wanted in the cells of

@@ -162,7 +162,7 @@ contains
       self%now%segment%reached = reached
       call place_tips(self%front_state_t, self%now%segment, self%problem)
       call find_tip_layers(self, search%dt, search%may_jump)
-      call self%try_step(search%dt, timers, report, error)
+      call solve_coarse(self, search%dt, timers, report, error)
       if (allocated(error)) return
       trial%converged = report%converged
       search%is_over = .not. trial%converged
@@ -197,6 +197,37 @@ contains
       self%now%active = active_tips(self%tip, self%now%segment, self%rules%toughness, search%kind)
       call self%tape%keep("active", self%now%active)
    end subroutine find_state
+
+   !> Solve the coarse level, and meanwhile, on another thread, mesh the windows of tips that have
+   !! moved and factorize their matrices.
+   subroutine solve_coarse(self, dt, timers, report, error)
+      class(two_levels_t), intent(inout) :: self
+      real(rk), intent(in) :: dt  !< [s]
+      type(timers_t), intent(inout) :: timers
+      type(step_report_t), intent(out) :: report
+      type(error_t), allocatable, intent(out) :: error
+      type(error_t), allocatable :: failure
+      logical :: active(size(self%tip))
+
+      ! The loads of sides that change with time are part of a new window.
+      if (any(self%problem%model%sides%changes()) .or. .not. self%windows%has_to_mesh(self%tip)) then
+         call self%try_step(dt, timers, report, error)
+         return
+      end if
+      active = .true.
+      if (allocated(self%now%active)) active = self%now%active
+      !$omp parallel
+      !$omp master
+      !$omp task default(shared)
+      call self%windows%prepare(self%scene, self%front_state_t, active, self%problem%mesher, &
+                                self%problem%mesh, self%problem%model%cells, self%now%windows, &
+                                failure)
+      !$omp end task
+      call self%try_step(dt, timers, report, error)
+      !$omp end master
+      !$omp end parallel
+      if (.not. allocated(error) .and. allocated(failure)) call move_alloc(failure, error)
+   end subroutine solve_coarse
 
    !> End the tries after the first one, where a tip would have to begin a segment but exceeds its
    !! toughness by so much that the growth of the others cannot change it: the step goes too far.

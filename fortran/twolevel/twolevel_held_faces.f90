@@ -4,10 +4,11 @@
 !! what a window of the whole body costs.
 module twolevel_held_faces
    use base_kinds, only: ik, rk
+   use coarse_held_cells, only: is_far_from_slip, is_near_slip, widen
    use coarse_state, only: state_t
    use contact_law, only: contact_law_t, state_stick
    use fine_contact, only: contact_t
-   use fine_faces, only: face_conditions_t, face_jump, faces_at_joints
+   use fine_faces, only: face_law_t, faces_at_joints
    use fine_loads, only: fine_loads_t
    use fine_mesh, only: fine_mesh_t
    use fine_model, only: fine_model_t
@@ -18,14 +19,7 @@ module twolevel_held_faces
    implicit none(type, external)
    private
 
-   public :: choose_held, hold_faces, is_far_from_slip, release_faces
-
-   !> Share of the bound of friction below which the coarse level lets a face be held, and above
-   !! which a held face is released [-].
-   real(rk), parameter :: safe = 0.9_rk, near_slip = 0.99_rk
-
-   !> Coarse cells on either side of one near slip whose faces are not held.
-   integer(ik), parameter :: margin = 2
+   public :: choose_held, hold_faces, release_faces
 
    !> Share of the faces below which holding them is not worth it [-].
    real(rk), parameter :: worth = 0.25_rk
@@ -59,7 +53,7 @@ contains
             if (last > 0) sticks(last) = .false.
          end associate
       end do
-      call widen(coarse, sticks)
+      call widen(coarse%fracture%cell_fracture, sticks)
       held = map%is_inside .and. sticks(map%coarse_cell) .and. .not. faces_at_joints(fine) &
              .and. fine%face_at_tip == 0
       do i = 1, size(held)
@@ -68,50 +62,20 @@ contains
       if (count(held) < worth*size(held)) held = .false.
    end function choose_held
 
-   !> Whether both ends of coarse cells are far from slip.
-   pure function is_far_from_slip(law, normal, shear) result(is_far)
-      type(contact_law_t), intent(in) :: law(:)  !< (coarse fracture cells)
-      real(rk), intent(in) :: normal(:, :), shear(:, :)  !< (2, coarse fracture cells) [Pa]
-      logical :: is_far(size(law))
-
-      is_far = all(normal < 0.0_rk .and. &
-                   abs(shear) < safe*spread(law%friction, 1, 2)*abs(normal), dim=1)
-      is_far = is_far .and. .not. (law%compliance > 0.0_rk .or. law%bilateral .or. law%is_bonded())
-   end function is_far_from_slip
-
-   !> Cells next to one that may slip, on its fracture, may slip.
-   pure subroutine widen(coarse, sticks)
-      type(mesh_t), intent(in) :: coarse
-      logical, intent(inout) :: sticks(:)  !< (coarse fracture cells)
-      logical :: may_slip(size(sticks))
-      integer(ik) :: j, k
-
-      may_slip = .not. sticks
-      associate (of => coarse%fracture%cell_fracture)
-         do j = 1, size(sticks)
-            if (.not. may_slip(j)) cycle
-            do k = max(1, j - margin), min(size(sticks), j + margin)
-               if (of(k) == of(j)) sticks(k) = .false.
-            end do
-         end do
-      end associate
-   end subroutine widen
-
    !> Give the jumps of held faces: those before the step.
-   pure subroutine hold_faces(held, contact, conditions, loads)
+   pure subroutine hold_faces(held, contact, law, loads)
       logical, intent(in) :: held(:)  !< (fracture cells)
       type(contact_t), intent(in) :: contact  !< with the slip before the step
-      type(face_conditions_t), intent(inout) :: conditions
+      type(face_law_t), intent(in) :: law(:)  !< (fracture cells)
       type(fine_loads_t), intent(inout) :: loads
       real(rk) :: gap, slope
       integer(ik) :: i, k
 
       do i = 1, size(held)
          if (.not. held(i)) cycle
-         conditions%condition(i) = face_jump
          do k = 1, 3
             associate (slip => contact%slip_before(k, i))
-               call conditions%law(i)%contact%dilated(slip, sign(1.0_rk, slip), gap, slope)
+               call law(i)%contact%dilated(slip, sign(1.0_rk, slip), gap, slope)
                loads%jump(:, k, i) = [slip, gap]
             end associate
          end do
@@ -139,14 +103,12 @@ contains
             shear = dot_product(tau, traction)
             normal = tau(1)*traction(2) - tau(2)*traction(1) + loads%fluid_pressure(i)
          end associate
-         associate (bound => model%conditions%law(i)%contact%friction*abs(normal))
-            if (normal < 0.0_rk .and. abs(shear) <= near_slip*bound) cycle
-         end associate
+         if (.not. is_near_slip(model%conditions%law(i)%contact, normal, shear)) cycle
          sticks(map%coarse_cell(i)) = .false.
       end do
       any_released = .not. all(sticks)
       if (.not. any_released) return
-      call widen(coarse, sticks)
+      call widen(coarse%fracture%cell_fracture, sticks)
       held = held .and. sticks(map%coarse_cell)
    end subroutine release_faces
 

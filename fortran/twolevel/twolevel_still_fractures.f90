@@ -4,12 +4,12 @@
 module twolevel_still_fractures
    use base_kinds, only: ik, rk
    use base_plane, only: norm2, point_distance
+   use coarse_held_cells, only: is_far_from_slip
    use coarse_state, only: state_t
    use contact_law, only: contact_law_t, state_stick
    use growth_front, only: front_state_t
    use mesh_types, only: mesh_t
    use scene_types, only: scene_t
-   use twolevel_held_faces, only: is_far_from_slip
    use twolevel_problem, only: coarse_problem_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)

@@ -12,6 +12,7 @@ module twolevel_window
    use coarse_in_situ, only: find_in_situ, in_situ_state_t, weight_of_scene
    use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: state_t
+   use contact_law, only: contact_law_t
    use fine_elasticity, only: elasticity_t
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
    use fine_model, only: fine_model_t
@@ -106,6 +107,7 @@ module twolevel_window
       procedure :: crack_modulus
       procedure :: project
       procedure :: choose_tips
+      procedure :: prepare_matrix
       procedure :: find_intensities
       procedure :: intensities_with
       procedure :: curved_edge
@@ -145,6 +147,15 @@ module twolevel_window
          type(window_history_t), intent(inout) :: history
          type(error_t), allocatable, intent(out) :: error
       end subroutine find_intensities
+
+      !> Factorize the matrix, unless it is that of these laws, or depends on the state.
+      module subroutine prepare_matrix(self, scene, law, error)
+         implicit none(type, external)
+         class(window_t), intent(inout) :: self
+         type(scene_t), intent(in) :: scene
+         type(contact_law_t), intent(in) :: law(:)  !< (coarse fracture cells)
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine prepare_matrix
 
       !> Displacements of the window's edge: the coarse ones, quadratic in each coarse cell; on
       !! sides of the body those that the scene prescribes. Zero at other nodes.
@@ -426,16 +437,16 @@ contains
 
    !> Find the position of the window in the coarse mesh; required again whenever the coarse mesh
    !! has changed.
-   subroutine project(self, mesher, coarse, values, error)
+   subroutine project(self, mesher, coarse, is_grown, error)
       class(window_t), intent(inout) :: self
       type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
       type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
+      logical, intent(in) :: is_grown(:)  !< (coarse fracture cells)
       type(error_t), allocatable, intent(out) :: error
 
       call self%map%find(self%model%mesh, mesher, coarse, error)
       if (allocated(error)) return
-      self%faces = match_faces(self%model%mesh, coarse, values%is_grown)
+      self%faces = match_faces(self%model%mesh, coarse, is_grown)
       self%made%is_projected = .true.
    end subroutine project
 

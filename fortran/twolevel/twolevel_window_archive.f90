@@ -44,7 +44,7 @@ contains
          call archive%set_fault("values")
          return
       end if
-      call self%project(mesher, coarse, values, error)
+      call self%project(mesher, coarse, values%is_grown, error)
       if (allocated(error)) return
       if (any(self%faces%coarse_cell < 1)) call archive%set_fault("cell_fracture")
    end subroutine visit

@@ -2,7 +2,7 @@
 submodule(twolevel_window) twolevel_window_solution
    use contact_law, only: is_same
    use fine_contact, only: contact_t, transfer_contact
-   use fine_faces, only: face_conditions_t
+   use fine_faces, only: face_conditions_t, face_jump
    use fine_tip_intensity, only: tip_intensity
    use fine_tip_types, only: intensity_t
    use twolevel_held_faces, only: choose_held, hold_faces, release_faces
@@ -22,7 +22,6 @@ contains
       type(window_tip_t), intent(inout) :: tips(:)
       type(window_history_t), intent(inout) :: history
       type(error_t), allocatable, intent(out) :: error
-      type(face_conditions_t) :: conditions
       integer(ik) :: i
       logical :: again
 
@@ -41,7 +40,6 @@ contains
          call remember_contact(self, state, history)
       end if
       associate (face_condition => scene%discretization%face_condition)
-         conditions = self%faces%conditions(self%model%mesh, face_condition, values%law)
          call self%faces%load(self%model%mesh, face_condition, state, &
                               scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ, &
                               values%viscous)
@@ -52,12 +50,10 @@ contains
                                       history%contact%slip_before, tips)
       end if
       do
+         call self%prepare_matrix(scene, values%law, error)
+         if (allocated(error)) return
          if (allocated(self%made%held)) then
-            call hold_faces(self%made%held, history%contact, conditions, self%loads)
-         end if
-         if (.not. same_conditions(self%model, conditions)) then
-            call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
-            if (allocated(error)) return
+            call hold_faces(self%made%held, history%contact, self%model%conditions%law, self%loads)
          end if
          call self%model%solve(self%loads, self%displacement, error, history%contact)
          if (allocated(error)) return
@@ -65,8 +61,6 @@ contains
          call release_faces(self%model, self%loads, self%displacement, coarse, self%faces, &
                             self%made%held, again)
          if (.not. again) exit
-         conditions = self%faces%conditions(self%model%mesh, &
-                                            scene%discretization%face_condition, values%law)
       end do
       call find_probes(self, error)
       if (allocated(error)) return
@@ -84,6 +78,21 @@ contains
          end associate
       end do
    end subroutine find_intensities
+
+   module subroutine prepare_matrix(self, scene, law, error)
+      class(window_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(contact_law_t), intent(in) :: law(:)
+      type(error_t), allocatable, intent(out) :: error
+      type(face_conditions_t) :: conditions
+
+      conditions = self%faces%conditions(self%model%mesh, scene%discretization%face_condition, law)
+      if (allocated(self%made%held)) then
+         where (self%made%held) conditions%condition = face_jump
+      end if
+      if (same_conditions(self%model, conditions)) return
+      call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
+   end subroutine prepare_matrix
 
    !> Update the time-dependent values of the sides.
    pure subroutine follow_sides(self, scene)

@@ -10,10 +10,11 @@ module twolevel_windows
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
    use base_tolerances, only: same_place
-   use coarse_state, only: state_t
+   use coarse_state, only: fracture_cells_t, state_t
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
-   use mesh_types, only: network_t
+   use mesh_builder, only: mesher_t
+   use mesh_types, only: mesh_t, network_t
    use scene_types, only: scene_t
    use report_rows, only: window_fields_t
    use report_scene, only: has_other_toughness, relative_toughness
@@ -58,6 +59,7 @@ module twolevel_windows
       procedure :: begin_step
       procedure :: put_back
       procedure :: evaluate
+      procedure :: prepare
       procedure :: network_changed
       procedure :: coarse_changed
       procedure :: intensity_of
@@ -209,6 +211,58 @@ contains
       call first_failure(failure, error)
    end subroutine evaluate_windows
 
+   !> Mesh the windows of tips that have moved, and factorize their matrices: what does not depend on
+   !! the state of the coarse level, which may be solved at the same time.
+   subroutine prepare(self, scene, front, active, mesher, mesh, cells, known, error)
+      class(windows_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+      type(front_state_t), intent(in) :: front
+      logical, intent(in) :: active(:)  !< (tips) active tips
+      type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
+      type(mesh_t), intent(in) :: mesh
+      type(fracture_cells_t), intent(in) :: cells  !< of the coarse level
+      type(windows_state_t), intent(inout) :: known
+      type(error_t), allocatable, intent(out) :: error
+      type(failure_t) :: failure(size(self%slot))
+      integer(ik) :: w
+
+      do w = 1, size(self%slot, kind=ik)
+         associate (serves => self%slot(w)%window%serves)
+            if (.not. any(active(serves) .and. front%tip(serves)%is_loaded())) cycle
+         end associate
+         if (.not. has_to_be_meshed(self%slot(w)%window, front%tip)) cycle
+         !$omp task firstprivate(w) default(shared)
+         call prepare_window(self%slot(w), scene, front, self%is_beside_body, mesher, mesh, cells, &
+                             known%tip, known%history(w), failure(w)%error)
+         !$omp end task
+      end do
+      !$omp taskwait
+      call first_failure(failure, error)
+   end subroutine prepare
+
+   !> Mesh a window and factorize its matrix.
+   subroutine prepare_window(slot, scene, front, is_beside_body, mesher, mesh, cells, seen, history, &
+                             error)
+      type(slot_t), intent(inout) :: slot
+      type(scene_t), intent(in) :: scene
+      type(front_state_t), intent(in) :: front
+      logical, intent(in) :: is_beside_body
+      type(mesher_t), intent(in) :: mesher  !< of the coarse mesh
+      type(mesh_t), intent(in) :: mesh
+      type(fracture_cells_t), intent(in) :: cells  !< of the coarse level
+      type(window_tip_t), intent(in) :: seen(:)  !< (tips)
+      type(window_history_t), intent(inout) :: history
+      type(error_t), allocatable, intent(out) :: error
+
+      call renew(slot, scene, front%network, front%tip, is_beside_body, seen, history, error)
+      if (allocated(error)) return
+      call slot%window%project(mesher, mesh, cells%roughness > 0.0_rk, error)
+      if (allocated(error)) return
+      ! Which faces are held on a new mesh depends on the state.
+      if (slot%window%is_body .and. .not. allocated(slot%window%made%held)) return
+      call slot%window%prepare_matrix(scene, cells%law, error)
+   end subroutine prepare_window
+
    !> Windows in the order of their mesh sizes, the largest first, so that threads end at about the
    !! same time.
    pure function by_size(slot) result(order)
@@ -259,7 +313,7 @@ contains
       associate (window => self%slot(w)%window, undrained => problem%values%undrained, &
                  seen => known%tip)
          if (.not. window%made%is_projected) then
-            call window%project(problem%mesher, problem%mesh, problem%values, error)
+            call window%project(problem%mesher, problem%mesh, problem%values%is_grown, error)
             if (allocated(error)) return
          end if
          if ((window%undrained .neqv. undrained) .or. .not. allocated(window%model%stiffness)) then
