@@ -8,7 +8,7 @@ program test_twolevel_held_faces
    use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, nearest_node
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
-   use fine_faces, only: face_conditions_t, face_contact, faces_at_joints, &
+   use fine_faces, only: face_conditions_t, face_contact, face_jump, faces_at_joints, &
                          loaded_everywhere
    use fine_loads, only: fine_loads_t, no_loads
    use fine_model, only: fine_model_t
@@ -108,7 +108,8 @@ contains
       releases = 0
       do
          conditions = all_in_contact
-         call hold_faces(held, contact, conditions, loads)
+         where (held) conditions%condition = face_jump
+         call hold_faces(held, contact, conditions%law, loads)
          call model%prepare(conditions, error, boundary)
          call checks%no_error(error, "some held")
          call model%solve(loads, displacement, error, contact)
