@@ -129,7 +129,7 @@ MADE_AGAIN = {
     "front_t": {"rules": _RULE},
     "coarse_problem_t": _each("joint_share rock_cell entries well_of heat heat_field", _RULE)
     | dict.fromkeys(["heat_after", "heat_span", "heat_flows"], "of the tries of a step"),
-    "coarse_model_t": _each("rock sides in_situ regions matrix layers drained", _RULE)
+    "coarse_model_t": _each("rock sides in_situ regions matrix layers drained may_hold", _RULE)
     | {"rock_resistance": _RULE, "weight": _RULE},
     "condensed_t": _each("is_full stiffness coupling body normal length n", _RULE)
     | {"layout": _RULE, "analysed": _RULE},

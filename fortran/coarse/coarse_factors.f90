@@ -78,8 +78,8 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      !> Scaled matrix condensed onto the unknowns of the fractures, zero for fixed ones. Absent: the
-      !! cells alone are factorized.
+      !> Scaled matrix condensed onto the unknowns of the fractures, zero for fixed ones. Absent:
+      !! the cells alone are factorized.
       real(rk), allocatable, intent(inout), optional :: schur(:, :)
       !> Blocks with jumps that are zero, at the first call. By MUMPS none are fixed.
       integer(ik), intent(in), optional :: fixed(:)
@@ -489,8 +489,8 @@ contains
          do b = first_col, 3
             do a = first_row, 3
                matrix(at + a - first_row + 1, b - first_col + 1) = block(a, b) &
-                                                                  *self%scale(row + a) &
-                                                                  *self%scale(own + b)
+                                                                   *self%scale(row + a) &
+                                                                   *self%scale(own + b)
             end do
          end do
          at = at + 4 - first_row

@@ -210,7 +210,8 @@ contains
       logical :: active(size(self%tip))
 
       ! The loads of sides that change with time are part of a new window.
-      if (any(self%problem%model%sides%changes()) .or. .not. self%windows%has_to_mesh(self%tip)) then
+      if (any(self%problem%model%sides%changes()) .or. &
+          .not. self%windows%has_to_mesh(self%tip)) then
          call self%try_step(dt, timers, report, error)
          return
       end if

@@ -211,8 +211,8 @@ contains
       call first_failure(failure, error)
    end subroutine evaluate_windows
 
-   !> Mesh the windows of tips that have moved, and factorize their matrices: what does not depend on
-   !! the state of the coarse level, which may be solved at the same time.
+   !> Mesh the windows of tips that have moved, and factorize their matrices: what does not depend
+   !! on the state of the coarse level, which may be solved at the same time.
    subroutine prepare(self, scene, front, active, mesher, mesh, cells, known, error)
       class(windows_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
@@ -241,8 +241,8 @@ contains
    end subroutine prepare
 
    !> Mesh a window and factorize its matrix.
-   subroutine prepare_window(slot, scene, front, is_beside_body, mesher, mesh, cells, seen, history, &
-                             error)
+   subroutine prepare_window(slot, scene, front, is_beside_body, mesher, mesh, cells, seen, &
+                             history, error)
       type(slot_t), intent(inout) :: slot
       type(scene_t), intent(in) :: scene
       type(front_state_t), intent(in) :: front

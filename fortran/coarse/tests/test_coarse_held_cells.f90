@@ -1,5 +1,5 @@
-!> Cells that are held: the same solution as with all jumps as unknowns, also where slip spreads over
-!! cells that were held before and with steps of several lengths.
+!> Cells that are held: the same solution as with all jumps as unknowns, also where slip spreads
+!! over cells that were held before and with steps of several lengths.
 program test_coarse_held_cells
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
@@ -22,8 +22,8 @@ program test_coarse_held_cells
 
 contains
 
-   !> Fluid is injected into one of three fractures: it slips, from the well outwards, one near it is
-   !! brought to slip, and a third one sticks.
+   !> Fluid is injected into one of three fractures: it slips, from the well outwards. One near it
+   !! is brought closer to slip, a third one sticks.
    subroutine same_solution(with_dilation)
       logical, intent(in) :: with_dilation
       integer, parameter :: steps = 12
