@@ -120,8 +120,8 @@ contains
       call solve_scaled(heat, correction, error)
    end subroutine find
 
-   !> Solve for the temperatures after a half: the limited terms and the capacity that the matrix has
-   !! too much are iterated.
+   !> Solve for the temperatures after a half: the limited terms and the capacity that the matrix
+   !! has too much are iterated.
    subroutine solve(heat, dt, converged, diagonal, before, excess, taken, after, remainder, error)
       class(heat_model_t), intent(inout) :: heat
       real(rk), intent(in) :: dt  !< [s]
