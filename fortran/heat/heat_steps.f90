@@ -355,6 +355,7 @@ contains
       type(half_t), intent(in) :: half(2)  !< mean temperatures, and those after it
       real(rk), intent(inout) :: produced(:, :)  !< (2, wells) [J/(m K)], [J/m]
       type(heat_state_t), intent(inout) :: state
+      real(rk), parameter :: part = 1.0e-5_rk  ! of the heat, whose rounding would be seen
       real(rk) :: ab(2), by_sides, by_wells, passed
       integer(ik) :: k
 
@@ -383,7 +384,8 @@ contains
          end associate
       end do
       state%moved = max(state%moved, &
-                        sum(half(2)%capacity*abs(half(2)%temperature - heat%initial)))
+                        sum(half(2)%capacity*abs(half(2)%temperature - heat%initial)), &
+                        part*sum(half(2)%capacity*abs(heat%initial)))
       state%by_wells = state%by_wells + by_wells
       state%by_sides = state%by_sides + by_sides
       state%stored = state%stored &
