@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import fluid_sweeps
+import heat_sweeps
 import mutated_scenes
 import pytest
 import well_sweeps
@@ -74,6 +75,12 @@ def test_wells_of_every_kind_run(tmp_path: Path) -> None:
     """Seven that hung or did not converge, and one of each kind."""
     seeds = [4, 7, 14, 34, 36, 45, 49, 1, 2, 3, 5, 8, 9]
     assert well_sweeps.sweep(tmp_path, seeds) == {"right": len(seeds)}
+
+
+def test_heat_of_every_kind_is_right(tmp_path: Path) -> None:
+    """Stiff scenes, of which 3, 20 and 46 showed rounding as an error of their balance."""
+    seeds = [3, 4, 11, 20, 25, 42, 46]
+    assert heat_sweeps.sweep(tmp_path, seeds) == {"right": len(seeds)}
 
 
 @pytest.fixture(scope="module")

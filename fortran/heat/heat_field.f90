@@ -153,7 +153,8 @@ contains
       real(rk), intent(in) :: xy(2, 3)  !< corners [m]
       integer(ik), intent(in) :: cell
       real(rk) :: moment(3)  !< [K]
-      integer, parameter :: least = 1, most = 7  ! times a triangle, or the cell, is divided
+      integer, parameter :: most = 7  ! times the cell is divided
+      integer :: fewest  ! times the triangle is: once, unless it is small
       real(rk), parameter :: whole(3, 3) = reshape([1, 0, 0, 0, 1, 0, 0, 0, 1], [3, 3])
       real(rk) :: plain(3)  ! without profiles
       real(rk) :: smallest  ! part, over the triangle
@@ -165,6 +166,7 @@ contains
       end associate
       moment = (sum(plain) + plain)/12.0_rk + field%lack(cell)/3.0_rk
       smallest = 0.25_rk**most*cell_area(heat%mesh, cell)/max(tiny(1.0_rk), triangle_area(xy))
+      fewest = merge(1, 0, smallest < 0.25_rk**(most - 2))
       if (field%around%length(cell) > 0) call add_part(whole, [(beyond(whole(:, k)), k=1, 3)], 0)
 
    contains
@@ -179,7 +181,7 @@ contains
          centre = sum(corner, dim=2)/3.0_rk
          of_centre = beyond(centre)
          associate (area => 0.25_rk**times)
-            if (times >= least .and. &
+            if (times >= fewest .and. &
                 (area <= smallest .or. area*abs(of_centre - sum(value)/3.0_rk) &
                  <= field%least(cell))) then
                moment = moment + field%found(cell)*area*(0.75_rk*of_centre*centre &

@@ -26,7 +26,8 @@ module heat_state
       real(rk) :: stored = 0.0_rk  !< increase in the body
       real(rk) :: by_wells = 0.0_rk  !< into the body
       real(rk) :: by_sides = 0.0_rk  !< into the body, by conduction and with fluid
-      !> Sum of the amounts of both in all substeps, or if more what has moved within the body
+      !> Sum of the amounts of both in all substeps, or if more what has moved within the body, or a
+      !! hundred-thousandth of its heat before
       real(rk) :: moved = 0.0_rk
       !> Temperature outside the range of the initial ones and those of sides and wells [K]
       real(rk) :: beyond_range = 0.0_rk

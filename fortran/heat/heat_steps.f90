@@ -1,17 +1,28 @@
-!> Heat in a step of the coarse level, whose flows are constant in the step: backward Euler in
-!! substeps.
+!> Heat in a step of the coarse level, whose flows are constant in the step: substeps of two halves
+!! of backward Euler, and a correction that makes them second order.
 !!
 !! The capacity H of an unknown follows the fluid that it takes in, dH/dt = - sum of f, so that
-!! uniform temperatures stay uniform and no fluid is made of heat. In a substep
+!! uniform temperatures stay uniform and no fluid is made of heat. In a half
 !!   H_1 T_1 - H_0 T_0 + dt sum (a T_1 - b T_1') = 0
 !! over the links of heat_links, with the multi-point fluxes of conduction. The unknown is the
-!! change of T in the substep, and its right-hand side contains differences of temperatures only:
+!! change of T in the half, and its right-hand side contains differences of temperatures only:
 !! what does not change is exact. The limited temperatures at the ends of fracture cells are
-!! iterated on the right-hand side. The matrix is an M-matrix, which keeps temperatures between
+!! iterated on the right-hand side. The matrix M is an M-matrix, which keeps temperatures between
 !! those before and outside, as far as the multi-point fluxes are (no obtuse or cut cells).
 !!
-!! Length of substeps: the change of the rate from one substep to the next shows their error,
-!! relative to the heat that has moved since the start.
+!! With the temperatures T_1, T_2 after the halves, those after the substep are T_2 - c,
+!!   M c = H_2 (T_2 - T_1) - H_0 (T_1 - T_0):
+!! second order, damps what is stiff (by (1 + y - y^2)/(1 + y)^3, y half a substep over the time of
+!! a decay). If c would take a temperature out of its range, only a share of it counts everywhere.
+!!
+!! One factorization, that of the second half, serves both halves and c. In the first half the
+!! capacity that M has too much is iterated on the right-hand side. The heat r that the iteration
+!! leaves over is taken from the second half and 2 r is added to that of c, so that both T_2 and c
+!! conserve heat to rounding, however far it has come.
+!!
+!! Length of substeps: c shows the error of the halves, relative to the heat that has moved since
+!! the start. Of the half-space cooled at its face a fifth of it is more than remains with c: 1e-4
+!! of the heat at the default tolerance (test_heat_steps).
 module heat_steps
    use algebra_mumps, only: mumps_unsymmetric
    use base_errors, only: error_t
@@ -25,14 +36,12 @@ module heat_steps
 
    public :: advance_heat
 
-   !> A substep in which the system is solved.
-   type :: substep_t
+   !> A half of a substep, a step of backward Euler.
+   type :: half_t
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk), allocatable :: capacity(:)  !< (unknowns) after it [J/(m K)]
-      real(rk), allocatable :: diagonal(:)  !< (unknowns) of the matrix [J/(m K)]
-      real(rk), allocatable :: rhs(:)  !< (unknowns) without the limited terms [J/m]
       real(rk), allocatable :: temperature(:)  !< (unknowns) after it [K]
-   end type substep_t
+   end type half_t
 
    real(rk), parameter :: most = 2.0_rk, least = 0.2_rk  !< change of the length of substeps [-]
 
@@ -44,9 +53,10 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(heat_state_t), intent(inout) :: state
       type(error_t), allocatable, intent(out) :: error
-      type(substep_t) :: substep
+      type(half_t) :: half(2)
+      real(rk), allocatable :: after(:), correction(:)  ! (unknowns) [K]
       real(rk), allocatable :: produced(:, :)  ! (2, wells) capacity [J/(m K)] and heat [J/m]
-      real(rk) :: left, ratio, shortest
+      real(rk) :: left, ratio, share, shortest, substep
       real(rk), parameter :: tiny_step = 1.0e-7_rk
 
       allocate (produced(2, size(state%well_temperature)), source=0.0_rk)
@@ -54,132 +64,180 @@ contains
       left = dt
       shortest = tiny_step*dt
       do while (left > 0.0_rk)
-         substep%dt = min(max(state%next, shortest), left)
-         if (left - substep%dt < 0.5_rk*substep%dt) substep%dt = merge(left, 0.5_rk*left, &
-            & substep%dt >= left)
-         call solve(heat, state, substep, error)
+         substep = min(max(state%next, shortest), left)
+         if (left - substep < 0.5_rk*substep) substep = merge(left, 0.5_rk*left, substep >= left)
+         half%dt = 0.5_rk*substep
+         call find(heat, state, half, correction, error)
          if (allocated(error)) return
-         ratio = heat%heat%tolerance/max(step_error(heat, state, substep), tiny(1.0_rk))
-         if (ratio < 0.5_rk .and. substep%dt > 2.0_rk*shortest) then
-            state%next = substep%dt*max(least, 0.9_rk*sqrt(ratio))
+         ratio = heat%heat%tolerance/max(step_error(heat, state, half(2), correction), &
+                                         tiny(1.0_rk))
+         if (ratio < 0.5_rk .and. substep > 2.0_rk*shortest) then
+            state%next = substep*max(least, 0.9_rk*sqrt(ratio))
             cycle
          end if
-         left = left - substep%dt
+         left = left - substep
          if (.not. left > epsilon(1.0_rk)*dt) left = 0.0_rk
          ! A substep that the end of the step has shortened does not shorten the next one.
-         state%next = max(substep%dt*min(most, 0.9_rk*sqrt(ratio)), &
+         state%next = max(substep*min(most, 0.9_rk*sqrt(ratio)), &
                           merge(state%next, 0.0_rk, left <= 0.0_rk .and. ratio > 1.0_rk))
-         call book(heat, substep, produced, state)
-         call accept(heat, substep, state)
+         share = share_in_range(heat, state, half(2)%temperature, correction)
+         after = half(2)%temperature - share*correction
+         ! Linear, so that of its time integral is the integral of what leaves the body.
+         half(1)%temperature = 0.5_rk*((1.0_rk + share)*half(1)%temperature &
+                                       + (1.0_rk - share)*half(2)%temperature - share*correction)
+         half(2)%temperature = after
+         call book(heat, substep, half, produced, state)
+         call accept(heat, substep, half(2), state)
       end do
       call set_well_temperatures(heat, produced, state)
    end subroutine advance_heat
 
-   !> Solve for the temperatures after a substep.
-   subroutine solve(heat, state, substep, error)
+   !> Solve for the temperatures after each half of a substep, and for what those after it are too
+   !! large.
+   subroutine find(heat, state, half, correction, error)
       class(heat_model_t), intent(inout) :: heat
       type(heat_state_t), intent(in) :: state
-      type(substep_t), intent(inout) :: substep
+      type(half_t), intent(inout) :: half(2)
+      real(rk), allocatable, intent(out) :: correction(:)  !< (unknowns) [K]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: converged = 1.0e-10_rk  ! change of iterated terms over the range
+      real(rk) :: diagonal(heat%n), excess(heat%n)
+      real(rk) :: nothing(heat%n), remainder(heat%n), rest(heat%n)
+
+      call factorize(heat, state%capacity, half, diagonal, error)
+      if (allocated(error)) return
+      excess = half(1)%capacity - state%capacity
+      nothing = 0.0_rk
+      call solve(heat, half(1)%dt, converged*(state%range(2) - state%range(1)), diagonal, &
+                 state%temperature, excess, nothing, half(1)%temperature, remainder, error)
+      if (allocated(error)) return
+      call solve(heat, half(2)%dt, converged*(state%range(2) - state%range(1)), diagonal, &
+                 half(1)%temperature, nothing, remainder, half(2)%temperature, rest, error)
+      if (allocated(error)) return
+      correction = (half(2)%capacity*(half(2)%temperature - half(1)%temperature) &
+                    - state%capacity*(half(1)%temperature - state%temperature) &
+                    + 2.0_rk*remainder)/diagonal
+      call solve_scaled(heat, correction, error)
+   end subroutine find
+
+   !> Solve for the temperatures after a half: the limited terms and the capacity that the matrix
+   !! has too much are iterated.
+   subroutine solve(heat, dt, converged, diagonal, before, excess, taken, after, remainder, error)
+      class(heat_model_t), intent(inout) :: heat
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: converged  !< change of the iterated terms [K]
+      real(rk), intent(in) :: diagonal(:)  !< (unknowns) of the matrix [J/(m K)]
+      real(rk), intent(in) :: before(:)  !< (unknowns) [K]
+      real(rk), intent(in) :: excess(:)  !< (unknowns) of capacity in the matrix [J/(m K)]
+      real(rk), intent(in) :: taken(:)  !< (unknowns) heat [J/m]
+      real(rk), allocatable, intent(out) :: after(:)  !< (unknowns) [K]
+      real(rk), intent(out) :: remainder(:)  !< (unknowns) heat too much in the result [J/m]
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: iterations = 25
-      real(rk), parameter :: converged = 1.0e-12_rk  ! change of the limited terms
-      real(rk), allocatable :: limited_before(:), values(:), x(:, :)
+      real(rk), dimension(heat%n) :: added, change, last, rhs
       integer :: k
 
-      call assemble(heat, state, substep, values)
-      call factorize(heat, substep, values, error)
-      if (allocated(error)) return
-      allocate (x(heat%n, 1))
-      substep%temperature = state%temperature
+      rhs = supplied(heat, dt, before) - taken
+      change = 0.0_rk
+      last = huge(1.0_rk)
       do k = 1, iterations
-         associate (limited => limited_terms(heat, substep)/substep%diagonal)
-            if (k > 1) then
-               if (all(abs(limited - limited_before) <= converged*(state%range(2) &
-                                                                   - state%range(1)))) return
-            end if
-            x(:, 1) = substep%rhs/substep%diagonal + limited
-            limited_before = limited
-         end associate
-         call heat%matrix%solve(x, error)
+         added = limited_terms(heat, dt, before + change) + excess*change
+         if (all(abs(added - last) <= converged*diagonal)) exit
+         remainder = excess*change
+         last = added
+         change = (rhs + added)/diagonal
+         call solve_scaled(heat, change, error)
          if (allocated(error)) return
-         substep%temperature = state%temperature + x(:, 1)
-         if (.not. any(heat%links%is_limited)) return
       end do
+      remainder = remainder - excess*change
+      after = before + change
    end subroutine solve
 
-   !> Matrix, in the order of `factorize`, and right-hand side of a substep.
-   subroutine assemble(heat, state, substep, values)
+   !> Solve with the matrix of `factorize`.
+   subroutine solve_scaled(heat, x, error)
+      class(heat_model_t), intent(inout) :: heat
+      real(rk), intent(inout) :: x(:)  !< (unknowns) right-hand side over the diagonal, solution [K]
+      type(error_t), allocatable, intent(out) :: error
+      real(rk) :: columns(size(x), 1)
+
+      columns(:, 1) = x
+      call heat%matrix%solve(columns, error)
+      x = columns(:, 1)
+   end subroutine solve_scaled
+
+   !> The share of the correction that keeps temperatures in their range.
+   pure real(rk) function share_in_range(heat, state, temperature, correction) result(share)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
-      type(substep_t), intent(inout) :: substep
-      real(rk), allocatable, intent(out) :: values(:)
-      real(rk) :: ab(2)
-      integer(ik) :: at, k
+      real(rk), intent(in) :: temperature(:), correction(:)  !< (unknowns) [K]
+      real(rk), parameter :: beyond = 1.0e-7_rk  ! of the range
+      integer(ik) :: i
 
-      substep%capacity = state%capacity
-      substep%rhs = -substep%dt*heat%known
-      allocate (values(heat%n + size(heat%conduction) + 4*size(heat%links)), source=0.0_rk)
-      at = heat%n
-      associate (dt => substep%dt, before => state%temperature, diagonal => values(:heat%n))
-         do k = 1, size(heat%conduction, kind=ik)
-            values(at + k) = -dt*heat%conduction(k)
-            substep%rhs(heat%row(k)) = substep%rhs(heat%row(k)) &
-                                       + dt*heat%conduction(k)*before(heat%col(k))
+      share = 1.0_rk
+      if (has_sources(heat)) return
+      associate (slack => beyond*(state%range(2) - state%range(1)))
+         do i = 1, heat%n
+            associate (t => temperature(i), c => correction(i))
+               if (c > 0.0_rk) share = min(share, (max(t - state%range(1), 0.0_rk) + slack)/c)
+               if (c < 0.0_rk) share = min(share, (max(state%range(2) - t, 0.0_rk) + slack)/(-c))
+            end associate
          end do
-         at = at + size(heat%conduction, kind=ik)
+      end associate
+   end function share_in_range
+
+   !> Whether heat is supplied, whose temperatures have no range.
+   pure logical function has_sources(heat)
+      class(heat_model_t), intent(in) :: heat
+
+      has_sources = any(abs(heat%sides%heat_flux) > 0.0_rk) .or. allocated(heat%heat%source_power)
+   end function has_sources
+
+   !> Capacities after the halves, and the factors of the matrix of the second one, its rows scaled
+   !! by their diagonals.
+   subroutine factorize(heat, capacity, half, diagonal, error)
+      class(heat_model_t), intent(inout) :: heat
+      real(rk), intent(in) :: capacity(:)  !< (unknowns) before [J/(m K)]
+      type(half_t), intent(inout) :: half(2)
+      real(rk), intent(out) :: diagonal(:)  !< (unknowns) of the matrix [J/(m K)]
+      type(error_t), allocatable, intent(out) :: error
+      integer(ik), allocatable :: col(:), row(:)
+      real(rk), allocatable :: values(:)
+      real(rk) :: ab(2), gain(heat%n)  ! (unknowns) of capacity in a half [J/(m K)]
+      integer(ik) :: i, k
+
+      row = [(i, i=1, heat%n), heat%row, (max(heat%links(k)%ends([1, 1, 2, 2]), 1_ik), &
+                                          k=1, size(heat%links, kind=ik))]
+      col = [(i, i=1, heat%n), heat%col, (max(heat%links(k)%ends([1, 2, 2, 1]), 1_ik), &
+                                          k=1, size(heat%links, kind=ik))]
+      allocate (values(size(row)), source=0.0_rk)
+      gain = 0.0_rk
+      associate (dt => half(2)%dt, links => values(heat%n + size(heat%row) + 1:))
+         values(heat%n + 1:heat%n + size(heat%row)) = -dt*heat%conduction
          do k = 1, size(heat%links, kind=ik)
             associate (link => heat%links(k))
                if (link%ends(1) == 0) cycle
                ab = dt*coefficients(link%conductance, link%flow, link%conducts)
-               values(at + 4*k - 3:at + 4*k) = [ab(1), -ab(2), ab(2), -ab(1)]
-               substep%capacity(link%ends) = substep%capacity(link%ends) &
-                                             + dt*link%flow*[-1.0_rk, 1.0_rk]
-               substep%rhs(link%ends) = substep%rhs(link%ends) &
-                                        + (before(link%ends(1)) - before(link%ends(2))) &
-                                        *[-ab(2), ab(1)]
+               links(4*k - 3:4*k) = [ab(1), -ab(2), ab(2), -ab(1)]
+               gain(link%ends) = gain(link%ends) + dt*link%flow*[-1.0_rk, 1.0_rk]
             end associate
          end do
          do k = 1, size(heat%externals, kind=ik)
             associate (external => heat%externals(k), i => heat%externals(k)%unknown)
                ab = dt*coefficients(external%conductance, external%flow, .true.)
-               diagonal(i) = diagonal(i) + ab(2)
-               substep%capacity(i) = substep%capacity(i) + dt*external%flow
-               substep%rhs(i) = substep%rhs(i) + ab(1)*(external%temperature - before(i))
+               values(i) = values(i) + ab(2)
+               gain(i) = gain(i) + dt*external%flow
             end associate
          end do
-         ! Flows of another step, as for a step to come, may take out more fluid than there is.
-         substep%capacity = max(substep%capacity, 0.0_rk)
-         diagonal = diagonal + substep%capacity
       end associate
-   end subroutine assemble
-
-   !> Factorize the matrix with its rows scaled by their diagonals.
-   subroutine factorize(heat, substep, values, error)
-      class(heat_model_t), intent(inout) :: heat
-      type(substep_t), intent(inout) :: substep
-      real(rk), intent(inout) :: values(:)
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: col(:), row(:)
-      integer(ik) :: i, k
-
-      allocate (row(size(values)), col(size(values)))
-      row(:heat%n) = [(i, i=1, heat%n)]
-      col(:heat%n) = row(:heat%n)
-      row(heat%n + 1:heat%n + size(heat%row)) = heat%row
-      col(heat%n + 1:heat%n + size(heat%row)) = heat%col
-      i = heat%n + size(heat%row, kind=ik)
-      do k = 1, size(heat%links, kind=ik)
-         associate (ends => max(heat%links(k)%ends, 1_ik))
-            row(i + 1:i + 4) = ends([1, 1, 2, 2])
-            col(i + 1:i + 4) = ends([1, 2, 2, 1])
-         end associate
-         i = i + 4
-      end do
-      substep%diagonal = spread(0.0_rk, 1, int(heat%n))
+      ! Flows of another step, as for a step to come, may take out more fluid than there is.
+      half(1)%capacity = max(capacity + gain, 0.0_rk)
+      half(2)%capacity = max(half(1)%capacity + gain, 0.0_rk)
+      values(:heat%n) = values(:heat%n) + half(2)%capacity
+      diagonal = 0.0_rk
       do k = 1, size(values, kind=ik)
-         if (row(k) == col(k)) substep%diagonal(row(k)) = substep%diagonal(row(k)) + values(k)
+         if (row(k) == col(k)) diagonal(row(k)) = diagonal(row(k)) + values(k)
       end do
-      values = values/substep%diagonal(row)
+      values = values/diagonal(row)
       if (.not. heat%matrix%active) then
          call heat%matrix%analyse(heat%n, row, col, mumps_unsymmetric, error)
          if (allocated(error)) return
@@ -187,10 +245,42 @@ contains
       call heat%matrix%factorize(values, error)
    end subroutine factorize
 
-   !> What the limited temperatures add to the upwind flow along fractures [J/m].
-   pure function limited_terms(heat, substep) result(added)
+   !> Heat that flows into the unknowns at given temperatures, less that which uniform temperatures
+   !! would bring with the fluid [J/m].
+   pure function supplied(heat, dt, temperature) result(into)
       class(heat_model_t), intent(in) :: heat
-      type(substep_t), intent(in) :: substep
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
+      real(rk) :: into(heat%n)
+      real(rk) :: ab(2)
+      integer(ik) :: k
+
+      into = -heat%known
+      do k = 1, size(heat%conduction, kind=ik)
+         into(heat%row(k)) = into(heat%row(k)) + heat%conduction(k)*temperature(heat%col(k))
+      end do
+      do k = 1, size(heat%links, kind=ik)
+         associate (link => heat%links(k))
+            if (link%ends(1) == 0) cycle
+            ab = coefficients(link%conductance, link%flow, link%conducts)
+            into(link%ends) = into(link%ends) + (temperature(link%ends(1)) &
+                                                 - temperature(link%ends(2)))*[-ab(2), ab(1)]
+         end associate
+      end do
+      do k = 1, size(heat%externals, kind=ik)
+         associate (external => heat%externals(k), i => heat%externals(k)%unknown)
+            ab = coefficients(external%conductance, external%flow, .true.)
+            into(i) = into(i) + ab(1)*(external%temperature - temperature(i))
+         end associate
+      end do
+      into = dt*into
+   end function supplied
+
+   !> What the limited temperatures add to the upwind flow along fractures [J/m].
+   pure function limited_terms(heat, dt, temperature) result(added)
+      class(heat_model_t), intent(in) :: heat
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
       real(rk) :: added(heat%n)
       real(rk) :: ahead, beyond(2, heat%n), into(2, heat%n), passed
       integer(ik) :: k, next, own
@@ -200,7 +290,7 @@ contains
       into = 0.0_rk
       beyond = 0.0_rk
       do k = 1, size(heat%links, kind=ik)
-         associate (link => heat%links(k), temperature => substep%temperature)
+         associate (link => heat%links(k))
             if (.not. link%is_limited) cycle
             call find_direction(link, own, next)
             into(:, next) = into(:, next) + abs(link%flow)*[1.0_rk, temperature(own)]
@@ -219,14 +309,14 @@ contains
             if (.not. link%is_limited) cycle
             call find_direction(link, own, next)
             if (own >= heat%first_joint .or. .not. into(1, own) > 0.0_rk) cycle
-            associate (before => into(2, own)/into(1, own), here => substep%temperature(own))
-               ahead = substep%temperature(next)
+            associate (before => into(2, own)/into(1, own), here => temperature(own))
+               ahead = temperature(next)
                if (next >= heat%first_joint) then
                   ! The cells behind the joint; at an outlet the temperature goes on as before.
                   ahead = 2.0_rk*here - before
                   if (beyond(1, next) > 0.0_rk) ahead = beyond(2, next)/beyond(1, next)
                end if
-               passed = substep%dt*abs(link%flow)*limited(before, here, ahead)
+               passed = dt*abs(link%flow)*limited(before, here, ahead)
             end associate
             added([own, next]) = added([own, next]) + passed*[-1.0_rk, 1.0_rk]
          end associate
@@ -243,41 +333,43 @@ contains
    end subroutine find_direction
 
    !> Error of a substep relative to the heat that has moved since the start [-].
-   pure real(rk) function step_error(heat, state, substep) result(error)
+   pure real(rk) function step_error(heat, state, half, correction) result(error)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
-      type(substep_t), intent(in) :: substep
+      type(half_t), intent(in) :: half
+      real(rk), intent(in) :: correction(:)  !< (unknowns) [K]
+      real(rk), parameter :: remaining = 0.2_rk  ! of the correction
       real(rk) :: moved
 
       error = 0.0_rk
       if (.not. allocated(state%rate)) return
-      moved = sum(substep%capacity*abs(substep%temperature - heat%initial))
+      moved = sum(half%capacity*abs(half%temperature - heat%initial))
       if (.not. moved > 0.0_rk) return
-      error = sum(substep%capacity*abs(substep%temperature - state%temperature &
-                                       - substep%dt*state%rate)) &
-              /moved*substep%dt/(substep%dt + state%last)
+      error = remaining*sum(half%capacity*abs(correction))/moved
    end function step_error
 
    !> Add the heat that a substep has moved.
-   subroutine book(heat, substep, produced, state)
+   subroutine book(heat, dt, half, produced, state)
       class(heat_model_t), intent(in) :: heat
-      type(substep_t), intent(in) :: substep
+      real(rk), intent(in) :: dt  !< [s]
+      type(half_t), intent(in) :: half(2)  !< mean temperatures, and those after it
       real(rk), intent(inout) :: produced(:, :)  !< (2, wells) [J/(m K)], [J/m]
       type(heat_state_t), intent(inout) :: state
+      real(rk), parameter :: part = 1.0e-5_rk  ! of the heat, whose rounding would be seen
       real(rk) :: ab(2), by_sides, by_wells, passed
       integer(ik) :: k
 
       by_wells = 0.0_rk
-      by_sides = -substep%dt*boundary_outflow(heat%mesh, heat%regions, heat%regions%flux, &
-                                              heat%scalars(substep%temperature))
+      by_sides = -dt*boundary_outflow(heat%mesh, heat%regions, heat%regions%flux, &
+                                      heat%scalars(half(1)%temperature))
       if (allocated(heat%heat%source_power)) then
-         by_sides = by_sides + substep%dt*sum(heat%heat%source_power)
+         by_sides = by_sides + dt*sum(heat%heat%source_power)
       end if
       state%moved = state%moved + abs(by_sides)
       do k = 1, size(heat%externals, kind=ik)
          associate (external => heat%externals(k), &
-                    inside => substep%temperature(heat%externals(k)%unknown))
-            ab = substep%dt*coefficients(external%conductance, external%flow, .true.)
+                    inside => half(1)%temperature(heat%externals(k)%unknown))
+            ab = dt*coefficients(external%conductance, external%flow, .true.)
             passed = ab(1)*external%temperature - ab(2)*inside
             state%moved = state%moved + abs(passed)
             if (external%well == 0) then
@@ -292,28 +384,30 @@ contains
          end associate
       end do
       state%moved = max(state%moved, &
-                        sum(substep%capacity*abs(substep%temperature - heat%initial)))
+                        sum(half(2)%capacity*abs(half(2)%temperature - heat%initial)), &
+                        part*sum(half(2)%capacity*abs(heat%initial)))
       state%by_wells = state%by_wells + by_wells
       state%by_sides = state%by_sides + by_sides
       state%stored = state%stored &
-                     + sum(substep%capacity*(substep%temperature - state%temperature) &
-                           + (substep%capacity - state%capacity)*state%temperature)
+                     + sum(half(2)%capacity*(half(2)%temperature - state%temperature) &
+                           + (half(2)%capacity - state%capacity)*state%temperature)
    end subroutine book
 
    !> Make a substep the present state.
-   pure subroutine accept(heat, substep, state)
+   pure subroutine accept(heat, dt, half, state)
       class(heat_model_t), intent(in) :: heat
-      type(substep_t), intent(in) :: substep
+      real(rk), intent(in) :: dt  !< [s]
+      type(half_t), intent(in) :: half
       type(heat_state_t), intent(inout) :: state
       real(rk) :: rate(heat%n)
 
-      rate = (substep%temperature - state%temperature)/substep%dt
-      if (allocated(state%rate)) state%bend = (rate - state%rate)/(substep%dt + state%last)
+      rate = (half%temperature - state%temperature)/dt
+      if (allocated(state%rate)) state%bend = (rate - state%rate)/(dt + state%last)
       state%rate = rate
-      state%last = substep%dt
-      state%temperature = substep%temperature
-      state%capacity = substep%capacity
-      if (any(abs(heat%sides%heat_flux) > 0.0_rk) .or. allocated(heat%heat%source_power)) return
+      state%last = dt
+      state%temperature = half%temperature
+      state%capacity = half%capacity
+      if (has_sources(heat)) return
       state%beyond_range = max(state%beyond_range, state%range(1) - minval(state%temperature), &
                                maxval(state%temperature) - state%range(2))
    end subroutine accept

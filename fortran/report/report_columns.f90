@@ -149,7 +149,8 @@ module report_columns
       column_t("heat_by_sides_j", "J/m", with_heat, &
          "Heat into the body across its outer boundary so far, and from sources", of_heat), &
       column_t("heat_error_relative", "-", with_heat, &
-         "Numerical error of the balance of heat so far, relative to the heat moved", an_error)]
+       "Numerical error of the balance of heat so far, relative to the heat moved, at least to "// &
+         "1e-5 of that before the first step", an_error)]
 
    type(column_t), parameter :: tip_columns(*) = [ &
       column_t("time_s", "s", with_fluid, "Time, as in history.csv", chosen), &

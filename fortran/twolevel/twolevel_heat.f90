@@ -124,6 +124,14 @@ contains
       call act(scene, problem, now)
    end subroutine predict_heat
 
+   !> Share of the heat that the temperatures which act may have wrong in a step. Where sources heat
+   !! the rock, the pressure is that of the change of temperature in the step.
+   pure real(rk) function slack(heat)
+      type(heat_model_t), intent(in) :: heat
+
+      slack = merge(5.0e-4_rk, 5.0e-3_rk, allocated(heat%heat%source_power))
+   end function slack
+
    !> The rise after a step by the rates, if these hardly change: by their change in the last two
    !! substeps, if this moves a small share of the heat (measured: a quarter of it is wrong at
    !! most), or where a substep may be as long as the step.
@@ -132,13 +140,12 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(heat_state_t), intent(in) :: now
       real(rk), allocatable, intent(inout) :: rise(:)  !< unallocated if it is not to be found so
-      real(rk), parameter :: share = 0.02_rk
       real(rk), allocatable :: change(:)
 
       if (.not. allocated(now%rate)) return
       if (allocated(now%bend)) then
          change = dt*(dt + now%last)*now%bend
-         if (sum(now%capacity*abs(change)) <= share &
+         if (0.25_rk*sum(now%capacity*abs(change)) <= slack(heat) &
              *sum(now%capacity*abs(now%temperature - heat%initial))) then
             rise = now%temperature + dt*now%rate + change - heat%initial
             return
@@ -156,7 +163,6 @@ contains
       type(heat_state_t), intent(in) :: now  !< before the step
       logical, intent(out) :: is_settled
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: tolerance = 5.0e-3_rk  ! of the heat moved since the start [-]
       type(heat_state_t) :: then
 
       is_settled = .true.
@@ -167,7 +173,7 @@ contains
       if (allocated(error)) return
       associate (rise => then%temperature - problem%heat%initial)
          is_settled = sum(then%capacity*abs(rise - now%acting)) &
-                      <= tolerance*sum(then%capacity*abs(rise))
+                      <= slack(problem%heat)*sum(then%capacity*abs(rise))
       end associate
    end subroutine settle_heat
 

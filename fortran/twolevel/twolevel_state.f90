@@ -341,6 +341,12 @@ contains
             area(c) = cell_area(self%problem%mesh, c)
          end do
          error = trend%step_error(self%before, self%now%coarse, dt, area, model%condensed%length)
+         ! The pressure that heat causes may be confined to a small part of the rock.
+         if (allocated(model%rock%temperature)) then
+            error = max(error, trend%step_error(self%before, self%now%coarse, dt, &
+                                                area*abs(model%rock%temperature), &
+                                                model%condensed%length))
+         end if
          if (model%wells%n_all > 0 .and. trend%is_known()) then
             error = max(error, trend%volume_error(self%before%well_flow, &
                                                   self%now%coarse%well_flow, self%now%given, dt, &
