@@ -51,6 +51,9 @@ module growth_interaction
    !> Difference of K_eq/K_IC within which tips are equal: the error of the intensities [-].
    real(rk), parameter :: same_drive = 0.01_rk
 
+   !> Lack of toughness, error included, beyond which tips are alone [-].
+   real(rk), parameter :: far = 0.5_rk
+
    !> The same for tips of one group, for means of the excess over the last segments of the paths:
    !! the meshes make their paths differ, which changes the intensities by more than their errors,
    !! with alternating sign [-].
@@ -177,7 +180,8 @@ contains
    end function matrix_for
 
    !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally,
-   !! by equal shares of their segments: their increments are equal.
+   !! by equal shares of their segments: their increments are equal. Tips far below their toughness
+   !! are alone: many of them in a network are equal by chance, as those without load.
    subroutine find_groups(self, drive, off, gain, is_arrested, increment, interaction, kind)
       class(tip_groups_t), intent(inout) :: self
       real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
@@ -203,7 +207,8 @@ contains
                apart = abs(self%usual(i) - self%usual(j))
                least = same_mean
             end if
-            alike(i, j) = apart <= max(least, hypot(off(i), off(j))) .and. &
+            alike(i, j) = max(drive(i) + off(i), drive(j) + off(j)) > -far .and. &
+                          apart <= max(least, hypot(off(i), off(j))) .and. &
                           abs(gain(i) - gain(j)) <= same_gain*shorter .and. &
                           abs(increment(i) - increment(j)) <= same_gain*shorter .and. &
                           .not. (is_arrested(i) .or. is_arrested(j)) .and. &

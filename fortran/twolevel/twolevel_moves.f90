@@ -265,8 +265,9 @@ contains
    end function overshoots
 
    !> Put a tip on its new segment where the search is to start: at the end where tips may jump, as
-   !! they mostly do by more than a segment; else where its excess is predicted to vanish, but not
-   !! so near the start that the mesh of the whole segment cannot be moved there.
+   !! they mostly do by more than a segment, before a target if they exceed their toughness by far;
+   !! else where its excess is predicted to vanish, but not so near the start that the mesh of the
+   !! whole segment cannot be moved there.
    pure subroutine set_out(segment, excess, may_jump, is_whole)
       type(segment_t), intent(inout) :: segment
       real(rk), intent(in) :: excess  !< K_eq/K_IC - 1 at the start of the segment [-]
@@ -276,7 +277,7 @@ contains
 
       if (.not. segment%is_open) return
       if (.not. may_jump) call segment%set_out(excess)
-      if (.not. is_whole) return
+      if (.not. (is_whole .or. (may_jump .and. excess > excess_max))) return
       call segment%go_to(merge(segment%length, max(segment%reached, first_place*segment%length), &
                                may_jump), has_moved)
    end subroutine set_out

@@ -2,7 +2,7 @@
 !! over cells that were held before and with steps of several lengths.
 program test_coarse_held_cells
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: rk
    use base_timers, only: timers_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t

@@ -18,6 +18,7 @@ program test_growth_groups
    call test_rivals()
    call test_lag()
    call test_parting()
+   call test_far()
    call test_increments()
    call test_separated()
    call checks%finish()
@@ -107,6 +108,22 @@ contains
                               spread(increment, 1, size(same)), interaction, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
+
+   !> Tips far below their toughness are alone, however equal: those without load in a network.
+   subroutine test_far()
+      type(tip_groups_t) :: groups
+      type(interaction_t) :: interaction
+      integer(ik) :: kind(4)
+      real(rk), parameter :: drive(4) = [-1.0_rk, -0.6_rk, -1.0_rk, -0.6_rk]
+
+      call interaction%begin(4)
+      call groups%find_groups(drive, 0.0_rk*drive, 0.0_rk*drive, drive > 0.0_rk, &
+                              spread(increment, 1, size(drive)), interaction, kind)
+      call checks%is_true(all(kind == [1, 2, 3, 4]), "far below the toughness")
+      call groups%find_groups(drive, [0.0_rk, 0.15_rk, 0.0_rk, 0.15_rk], 0.0_rk*drive, &
+                              drive > 0.0_rk, spread(increment, 1, size(drive)), interaction, kind)
+      call checks%is_true(all(kind == [1, 2, 3, 2]), "near it within the error")
+   end subroutine test_far
 
    !> Tips of one group advance by equal shares of their segments: tips with other increments are
    !! not equal.
