@@ -12,7 +12,7 @@ module growth_interaction
    implicit none(type, external)
    private
 
-   public :: tip_groups_t, could_separate, lags_behind, interaction_t
+   public :: group_tip_t, tip_groups_t, could_separate, lags_behind, interaction_t
 
    !> Growth of a tip, in lengths of its path segment, after which its column is measured again [-].
    real(rk), parameter :: holds_for = 8.0_rk
@@ -45,8 +45,22 @@ module growth_interaction
       procedure :: matrix_for
    end type interaction_t
 
-   !> Difference of growth within which tips have advanced equally far, in increments [-].
+   !> What decides whether tips are equal.
+   type :: group_tip_t
+      real(rk) :: drive = 0.0_rk  !< excess over the toughness [-]
+      real(rk) :: off = 0.0_rk  !< estimated error of the excess [-]
+      real(rk) :: gain = 0.0_rk  !< growth [m]
+      real(rk) :: increment = 0.0_rk  !< largest length of a path segment [m]
+      real(rk) :: segment = 0.0_rk  !< length of the present path segment [m]
+      real(rk) :: length = 0.0_rk  !< of the fracture before growth [m]
+      logical :: is_arrested = .false.
+   end type group_tip_t
+
+   !> Difference of growth within which tips have advanced equally far, in path segments [-].
    real(rk), parameter :: same_gain = 0.02_rk
+
+   !> Difference of lengths of fractures within which they are equal [-].
+   real(rk), parameter :: same_length = 1.0e-4_rk
 
    !> Difference of K_eq/K_IC within which tips are equal: the error of the intensities [-].
    real(rk), parameter :: same_drive = 0.01_rk
@@ -180,44 +194,50 @@ contains
    end function matrix_for
 
    !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally,
-   !! by equal shares of their segments: their increments are equal. Tips far below their toughness
-   !! are alone: many of them in a network are equal by chance, as those without load.
-   subroutine find_groups(self, drive, off, gain, is_arrested, increment, interaction, kind)
+   !! by equal shares of their segments: their increments are equal, and so were the lengths of their
+   !! fractures before they grew. In a network tips of unlike fractures are equal by chance, and so
+   !! are many tips far below their toughness, as those without load: these are alone.
+   subroutine find_groups(self, tip, interaction, kind)
       class(tip_groups_t), intent(inout) :: self
-      real(rk), intent(in) :: drive(:)  !< excess of each tip over its toughness [-]
-      real(rk), intent(in) :: off(:)  !< estimated error of the excess [-]
-      real(rk), intent(in) :: gain(:)  !< growth of the tips [m]
-      logical, intent(in) :: is_arrested(:)
-      real(rk), intent(in) :: increment(:)  !< of the tips [m]
+      type(group_tip_t), intent(in) :: tip(:)
       type(interaction_t), intent(in) :: interaction
-      integer(ik), intent(out) :: kind(:)
-      logical :: alike(size(drive), size(drive))
-      real(rk) :: apart, least, shorter
+      integer(ik), intent(out) :: kind(:)  !< (tips)
+      logical :: alike(size(tip), size(tip))
+      real(rk) :: apart, least
       integer(ik) :: i, j
 
-      if (.not. allocated(self%usual)) self%usual = drive
-      if (.not. allocated(self%is_alone)) allocate (self%is_alone(size(drive)), source=.false.)
-      where (.not. gain > 0.0_rk) self%usual = drive
-      do j = 1, size(drive, kind=ik)
-         do i = 1, size(drive, kind=ik)
-            apart = abs(drive(i) - drive(j))
+      if (.not. allocated(self%usual)) self%usual = tip%drive
+      if (.not. allocated(self%is_alone)) allocate (self%is_alone(size(tip)), source=.false.)
+      where (.not. tip%gain > 0.0_rk) self%usual = tip%drive
+      do j = 1, size(tip, kind=ik)
+         do i = 1, size(tip, kind=ik)
+            apart = abs(tip(i)%drive - tip(j)%drive)
             least = same_drive
-            shorter = min(increment(i), increment(j))
-            if (stay_together(self, i, j, gain(i), interaction, shorter)) then
+            if (stay_together(self, i, j, tip(i)%gain, interaction, &
+                              min(tip(i)%increment, tip(j)%increment))) then
                apart = abs(self%usual(i) - self%usual(j))
                least = same_mean
             end if
-            alike(i, j) = max(drive(i) + off(i), drive(j) + off(j)) > -far .and. &
-                          apart <= max(least, hypot(off(i), off(j))) .and. &
-                          abs(gain(i) - gain(j)) <= same_gain*shorter .and. &
-                          abs(increment(i) - increment(j)) <= same_gain*shorter .and. &
-                          .not. (is_arrested(i) .or. is_arrested(j)) .and. &
-                          .not. any(self%is_alone([i, j]))
+            alike(i, j) = apart <= max(least, hypot(tip(i)%off, tip(j)%off)) .and. &
+                          may_be_equal(tip(i), tip(j)) .and. .not. any(self%is_alone([i, j]))
          end do
       end do
       kind = numbered(likes(alike))
       self%kind = kind
    end subroutine find_groups
+
+   !> Whether two tips have equal fractures and have grown equally, near their toughness.
+   pure logical function may_be_equal(one, other)
+      type(group_tip_t), intent(in) :: one, other
+
+      associate (shorter => min(one%increment, other%increment))
+         may_be_equal = max(one%drive + one%off, other%drive + other%off) > -far .and. &
+                        abs(one%gain - other%gain) <= same_gain*min(one%segment, other%segment) &
+                        .and. abs(one%increment - other%increment) <= same_gain*shorter .and. &
+                        abs(one%length - other%length) <= same_length*one%length .and. &
+                        .not. (one%is_arrested .or. other%is_arrested)
+      end associate
+   end function may_be_equal
 
    !> Whether two tips of one group have grown, and equal growth of the two is stable: only
    !! numerical errors could separate them.

@@ -14,11 +14,13 @@ module twolevel_equilibrium
    use base_timers, only: timers_t
    use coarse_state, only: go_back, step_report_t
    use growth_advances, only: advances_t
+   use growth_interaction, only: group_tip_t
    use growth_rules, only: growth_rules_t
-   use growth_network, only: total_length
+   use growth_network, only: fracture_length, total_length
    use growth_segment, only: segment_t
    use growth_targets, only: target_none
    use growth_tip, only: tip_t
+   use mesh_types, only: network_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_heat, only: settle_heat, settlings_max
    use twolevel_levels_state, only: levels_state_t
@@ -32,7 +34,7 @@ module twolevel_equilibrium
    use twolevel_moves, only: arrivals, at_joints, driven_t, excess_max, first_onset, is_in_play, &
                              judge_tips, keep_together, onset, overshoots, separate_tips, set_out, &
                              tolerance
-   use twolevel_refinement, only: find_refinements, is_uncertain
+   use twolevel_refinement, only: again_max, find_refinements, is_uncertain
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
    implicit none(type, external)
@@ -96,7 +98,7 @@ contains
       type(search_t) :: search
       integer :: k
 
-      call begin_search(self%tip, self%rules, self%now, dt, is_last, may_jump, search)
+      call begin_search(self%tip, self%rules, self%start, self%now, dt, is_last, may_jump, search)
       if (allocated(self%step%places)) then
          if (.not. may_jump) call self%now%segment%set_out_to(self%step%places)
          deallocate (self%step%places)
@@ -111,6 +113,8 @@ contains
          ! A tip that jumps does not wait until others are in equilibrium: it changes that.
          if (.not. any_moves .or. (search%may_jump .and. any(wants))) then
             call go_on(self, search, wants, timers, trial, error)
+         else if (any(wants)) then
+            call begin_early(self, search, wants, timers, trial, error)
          end if
          if (search%is_over .or. allocated(error)) return
          call go_back(self%now%coarse, self%before)
@@ -119,9 +123,10 @@ contains
    end subroutine find_equilibrium
 
    !> Put the tips at their predicted positions at the end of the step.
-   subroutine begin_search(tips, rules, now, dt, is_last, may_jump, search)
+   subroutine begin_search(tips, rules, start, now, dt, is_last, may_jump, search)
       type(tip_t), intent(in) :: tips(:)
       type(growth_rules_t), intent(in) :: rules
+      type(network_t), intent(in) :: start  !< before any growth
       type(levels_state_t), intent(inout) :: now
       real(rk), intent(in) :: dt  !< [s]
       logical, intent(in) :: is_last, may_jump
@@ -133,9 +138,7 @@ contains
       allocate (search%kind(size(tips)))
       allocate (search%begun(size(tips)), source=0)
       associate (toughness => rules%toughness, segment => now%segment)
-         call now%groups%find_groups(tips%excess(toughness), tips%relative_error(toughness), &
-                                     segment%gain, tips%arrested, &
-                                     rules%increment_of(tips%fracture), now%interaction, &
+         call now%groups%find_groups(group_tips(tips, rules, start, segment), now%interaction, &
                                      search%kind)
          call segment%restart()
          if (.not. may_jump) then
@@ -145,6 +148,25 @@ contains
       end associate
       call now%stated_errors%begin_step()
    end subroutine begin_search
+
+   !> What decides which tips are equal.
+   pure function group_tips(tips, rules, start, segments) result(equal)
+      type(tip_t), intent(in) :: tips(:)
+      type(growth_rules_t), intent(in) :: rules
+      type(network_t), intent(in) :: start  !< before any growth
+      type(segment_t), intent(in) :: segments(:)  !< (tips)
+      type(group_tip_t) :: equal(size(tips))
+      integer :: i
+
+      equal%drive = tips%excess(rules%toughness)
+      equal%off = tips%relative_error(rules%toughness)
+      equal%gain = segments%gain
+      equal%increment = rules%increment_of(tips%fracture)
+      equal%segment = merge(min(segments%length, equal%increment), equal%increment, &
+                            segments%is_open)
+      equal%length = [(fracture_length(start, tips(i)%fracture), i=1, size(tips))]
+      equal%is_arrested = tips%arrested
+   end function group_tips
 
    !> Solve the coarse level and evaluate the intensities at the trial positions of the tips.
    subroutine find_state(self, search, is_first, timers, report, trial, error)
@@ -184,7 +206,7 @@ contains
                                           count(self%tip%is_free))
       if (.not. is_first) return
       search%unmoved = self%tip%excess(self%rules%toughness)
-      if (.not. search%is_last) then
+      if (.not. (search%is_last .or. self%stepper%has_sudden_onset)) then
          trial%onset = first_onset(self%last%front%tip, self%tip, self%now%segment, &
                                    self%rules%toughness)
       end if
@@ -319,7 +341,7 @@ contains
       if (any_parted) search%advances = advances_t()
       if (any_parted) return
       ! Only now: while other tips still move, they may retreat.
-      if (.not. search%may_jump) then
+      if (.not. (search%may_jump .or. self%stepper%has_sudden_onset)) then
          trial%onset = first_onset(self%last%front%tip, self%tip, self%now%segment, &
                                    self%rules%toughness)
       end if
@@ -344,6 +366,33 @@ contains
          call conclude(self, search, timers, trial, error)
       end if
    end subroutine go_on
+
+   !> Begin new segments while other tips move, where tips exceed their toughness by so much that
+   !! the others will not change it, or end the tries where the step goes too far in any case.
+   subroutine begin_early(self, search, wants, timers, trial, error)
+      class(two_levels_t), intent(inout) :: self
+      type(search_t), intent(inout) :: search
+      logical, intent(in) :: wants(:)  !< (tips) the tip is to begin a new segment
+      type(timers_t), intent(inout) :: timers
+      type(trial_t), intent(inout) :: trial
+      type(error_t), allocatable, intent(out) :: error
+      real(rk), parameter :: by_much = 10.0_rk*tolerance, by_far = 2.0_rk*excess_max
+      logical, dimension(size(wants)) :: begins, far
+      integer(ik) :: i
+
+      associate (excess => self%tip%excess(self%rules%toughness))
+         begins = wants .and. excess > by_much .and. self%tip%path_target == target_none .and. &
+                  .not. (self%now%segment%stays() .or. self%has_gained() .or. is_viscous(self%tip))
+         far = begins .and. &
+               overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
+         begins = begins .and. search%begun < segments_max .and. (excess > by_far .or. .not. far)
+      end associate
+      begins = [(all(begins .or. search%kind /= search%kind(i)), i=1, size(wants))]
+      call self%tape%keep("early", begins)
+      if (.not. any(begins)) return
+      trial%time_error = self%step_error(search%dt)
+      call begin_wanted(self, search, begins, timers, trial, error)
+   end subroutine begin_early
 
    !> Stop tips that have grown by the prescribed gain, unless they reach it too early in the step:
    !! then K_eq would exceed the toughness by more than the tolerance, and the step is cut to the
@@ -413,7 +462,8 @@ contains
       associate (toughness => self%rules%toughness, &
                  far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
                                    self%strides()))
-         if (any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
+         if (self%step%refined < again_max .and. &
+             any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
                                            toughness, self%load_pressure), i=1, size(wants))])) then
             call find_refinements(self, self%before%time, trial%refinements)
             search%is_over = size(trial%refinements) > 0
@@ -430,6 +480,8 @@ contains
          end if
          call self%tape%keep("jumps", trial%jumps)
          call self%tape%keep("may_jump", search%may_jump)
+         ! Windows are refined after a jump, which is long work.
+         if (trial%jumps .and. search%may_jump) self%step%refined = again_max
          search%is_over = trial%jumps .and. .not. search%may_jump
          if (search%is_over) then
             call reject_overshoot(self, search, wants, trial)
@@ -496,6 +548,7 @@ contains
       end if
       call estimate_coarse_errors(self, timers, error)
       if (allocated(error) .or. self%tape%follows) return
+      if (self%step%refined == again_max) return
       call find_refinements(self, self%before%time, trial%refinements)
    end subroutine conclude
 

@@ -33,8 +33,11 @@ module twolevel_refinement
    implicit none(type, external)
    private
 
-   public :: find_refinements, growth_error, growth_error_t, is_uncertain, note_uncertain_tips
+   public :: again_max, find_refinements, growth_error, growth_error_t, is_uncertain, note_uncertain_tips
    public :: keep_refinements, refine_windows
+
+   !> Times that a step is tried again with refined windows. What remains is refined after the step.
+   integer, parameter :: again_max = 1
 
    !> Largest number of refinements in a record.
    integer(ik), parameter :: most_refinements = 100000

@@ -230,6 +230,7 @@ contains
       call archive%item("dt", self%step%dt)
       call archive%item("is_after_switch", self%step%is_after_switch)
       call archive%item("ends_at_switch", self%step%ends_at_switch)
+      call archive%item("refined", self%step%refined)
       call archive%item("is_unstable", self%step%is_unstable)
       call visit_report(archive, "report", self%step%report)
       call archive%list("why_cut", self%step%why_cut)

@@ -58,6 +58,7 @@ module twolevel_state
       !> (tips) positions on their segments in equilibrium before windows were refined, from which
       !! the same step is tried again [m]
       real(rk), allocatable :: places(:)
+      integer :: refined = 0  !< times that windows were refined and the step was tried again
    end type last_step_t
 
    !> Simulation of a scene with a fluid on both levels; `network` is the fine network, which is

@@ -114,8 +114,13 @@ module twolevel_stepping
       real(rk) :: moment = 0.0_rk
       integer :: in_vain = 0  !< cuts of the present step after which tips still advanced too far
       integer :: onset_cuts = 0  !< cuts of the present step to an onset of growth
+      real(rk) :: onset = 0.0_rk  !< share of the present step at which its last such cut was [-]
+      !> growth begins in the present step however short it is, because others grow at its start
+      logical :: has_sudden_onset = .false.
       integer :: arrival_cuts = 0  !< cuts of the present step to the arrival at a target
       integer :: at_switches = 0  !< cuts of the present step at limits of wells
+      !> time error of the present step before its last cut for this error [-]
+      real(rk) :: error_before = huge(1.0_rk)
       integer :: without_headway = 0  !< number of such steps since the last longer one
       logical :: was_cut = .false.  !< the present step has been cut
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
@@ -190,8 +195,12 @@ contains
       type(trial_t), intent(in) :: trial
       real(rk), intent(inout) :: dt  !< [s]
       logical, intent(out) :: is_too_short
+      real(rk), parameter :: steady = 0.95_rk  ! ratio of errors [-]
+      real(rk), parameter :: nearer = 0.25_rk  ! least approach of the onset to the end [-]
+      logical :: is_steady
       real(rk) :: share, least
 
+      is_steady = .false.
       self%was_cut = .true.
       if (trial%converged .and. trial%goes_too_far) then
          self%left_in_vain = dt
@@ -202,7 +211,14 @@ contains
          self%solved = 0
       end if
       least = min(dt, floor_share*self%shortest)
-      if (trial%converged .and. trial%onset < 1.0_rk) then
+      if (trial%converged .and. trial%onset < 1.0_rk .and. self%onset_cuts > 0 .and. &
+          trial%onset < self%onset + nearer*(1.0_rk - self%onset)) then
+         self%has_sudden_onset = .true.
+         self%left_in_vain = dt
+         self%halvings = 0
+         dt = max(min(dt, self%moment), min(dt, 0.5_rk*self%shortest))
+      else if (trial%converged .and. trial%onset < 1.0_rk) then
+         self%onset = trial%onset
          call cut_to(max(0.01_rk, trial%onset), 0.5_rk*self%shortest, self%onset_cuts, dt)
       else if (trial%converged .and. trial%switch < 1.0_rk) then
          ! A pressure that is nearly constant passes a limit long before linear interpolation
@@ -216,6 +232,9 @@ contains
                      self%arrival_cuts, dt)
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
+         ! What happens at the start of the step at once is no error of its length.
+         is_steady = trial%time_error > steady*self%error_before
+         self%error_before = trial%time_error
       else if (trial%converged) then
          ! Not below half the shortest step; to this length at once where the volume that flows in
          ! the step does not matter.
@@ -227,7 +246,7 @@ contains
          dt = 0.5_rk*dt
       end if
       dt = max(dt, least)
-      is_too_short = dt < self%shortest
+      is_too_short = dt < self%shortest .or. is_steady
       self%next = dt
    end subroutine cut
 
@@ -265,8 +284,10 @@ contains
 
       self%in_vain = 0
       self%onset_cuts = 0
+      self%has_sudden_onset = .false.
       self%arrival_cuts = 0
       self%at_switches = 0
+      self%error_before = huge(1.0_rk)
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)

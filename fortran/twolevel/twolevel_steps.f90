@@ -23,7 +23,8 @@ submodule(twolevel_state) twolevel_steps
    use twolevel_notes, only: note_stated_errors, states_errors
    use twolevel_places, only: end_at_tips
    use twolevel_pressure_errors, only: unresolved_depth
-   use twolevel_refinement, only: keep_refinements, refine_windows
+   use twolevel_refinement, only: again_max, find_refinements, keep_refinements, &
+                                  refine_windows
    use twolevel_results, only: cell_states, slip_potency
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_well_rows, only: entry_rows
@@ -229,12 +230,19 @@ contains
       is_last = .false.
       may_jump = self%stepper%expects_jump() .and. &
                  self%step%dt <= moment(self%scene, self%before%time)
+      if (self%step%refined == again_max) then
+         call find_refinements(self, self%before%time, trial%refinements)
+         if (trial%needs_windows()) call try_better_windows(self, trial%refinements, timers, error)
+         if (allocated(error)) return
+      end if
+      self%step%refined = 0
       do
          call self%tape%rewind()
          call keep_try(self, is_last, may_jump)
          call try_length(self, is_last, may_jump, trial, timers, error)
          if (allocated(error)) return
          if (trial%needs_windows()) then
+            self%step%refined = self%step%refined + 1
             call try_better_windows(self, trial%refinements, timers, error)
             if (allocated(error)) return
             cycle

@@ -2,15 +2,13 @@
 !! separate.
 program test_growth_groups
    use base_kinds, only: ik, rk
-   use growth_interaction, only: tip_groups_t, could_separate, lags_behind, interaction_t
+ use growth_interaction, only: group_tip_t, tip_groups_t, could_separate, lags_behind, interaction_t
    use growth_segment, only: segment_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks
    real(rk), parameter :: increment = 5.0e-3_rk
-   real(rk), parameter :: known(2) = 0.0_rk
-   logical, parameter :: neither(2) = .false.
 
    call test_before_growth()
    call test_chance()
@@ -47,8 +45,7 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do i = 1, 100
-         call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
-                                 interaction, kind)
+         call groups%find_groups(tips_with(drive, gain), interaction, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
          drive = [1.0_rk, 0.94_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
@@ -57,8 +54,7 @@ contains
       end do
       ! The very first moment of a piece says little.
       call groups%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
-      call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
-                              interaction, kind)
+      call groups%find_groups(tips_with(drive, gain), interaction, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
 
@@ -99,13 +95,11 @@ contains
 
       call interaction%begin(3)
       same = 1.0_rk
-      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              spread(increment, 1, size(same)), interaction, kind)
+      call groups%find_groups(tips_with(same), interaction, kind)
       call checks%is_true(all(kind == 1), "all alike")
       call groups%remove_tip(2_ik)
       call groups%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
-      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              spread(increment, 1, size(same)), interaction, kind)
+      call groups%find_groups(tips_with(same), interaction, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
 
@@ -114,30 +108,44 @@ contains
       type(tip_groups_t) :: groups
       type(interaction_t) :: interaction
       integer(ik) :: kind(4)
+      type(group_tip_t), allocatable :: tip(:)
       real(rk), parameter :: drive(4) = [-1.0_rk, -0.6_rk, -1.0_rk, -0.6_rk]
 
       call interaction%begin(4)
-      call groups%find_groups(drive, 0.0_rk*drive, 0.0_rk*drive, drive > 0.0_rk, &
-                              spread(increment, 1, size(drive)), interaction, kind)
+      call groups%find_groups(tips_with(drive), interaction, kind)
       call checks%is_true(all(kind == [1, 2, 3, 4]), "far below the toughness")
-      call groups%find_groups(drive, [0.0_rk, 0.15_rk, 0.0_rk, 0.15_rk], 0.0_rk*drive, &
-                              drive > 0.0_rk, spread(increment, 1, size(drive)), interaction, kind)
+      tip = tips_with(drive)
+      tip([2, 4])%off = 0.15_rk
+      call groups%find_groups(tip, interaction, kind)
       call checks%is_true(all(kind == [1, 2, 3, 2]), "near it within the error")
    end subroutine test_far
 
-   !> Tips of one group advance by equal shares of their segments: tips with other increments are
-   !! not equal.
+   !> Tips of one group advance by equal shares of their segments: tips with other increments, or of
+   !! fractures with other lengths, are not equal.
    subroutine test_increments()
       type(tip_groups_t) :: groups
       type(interaction_t) :: interaction
       integer(ik) :: kind(4)
+      type(group_tip_t), allocatable :: tip(:)
       real(rk) :: same(4)
 
       call interaction%begin(4)
       same = 1.0_rk
-      call groups%find_groups(same, 0.0_rk*same, 0.0_rk*same, same < 0.0_rk, &
-                              increment*[1.0_rk, 2.0_rk, 1.0_rk, 1.01_rk], interaction, kind)
+      tip = tips_with(same)
+      tip%increment = increment*[1.0_rk, 2.0_rk, 1.0_rk, 1.01_rk]
+      call groups%find_groups(tip, interaction, kind)
       call checks%is_true(all(kind == [1, 2, 1, 1]), "other increments")
+      tip = tips_with(same)
+      tip%length = [1.0_rk, 1.0_rk, 1.01_rk, 1.00001_rk]
+      call groups%find_groups(tip, interaction, kind)
+      call checks%is_true(all(kind == [1, 1, 2, 1]), "other fractures")
+      tip = tips_with(same)
+      tip%gain = 0.01_rk*increment*[1.0_rk, 2.0_rk, 1.0_rk, 2.0_rk]
+      call groups%find_groups(tip, interaction, kind)
+      call checks%is_true(all(kind == 1), "equally far on whole segments")
+      tip%segment = 0.25_rk*increment
+      call groups%find_groups(tip, interaction, kind)
+      call checks%is_true(all(kind == [1, 2, 1, 2]), "not on a quarter")
    end subroutine test_increments
 
    !> Tips that have separated by chance, and with a reason: K_eq of one has fallen, or was smaller
@@ -160,20 +168,34 @@ contains
                           "within the errors")
    end subroutine test_separated
 
+   !> Tips of equal fractures that have grown equally.
+   function tips_with(drive, gain) result(tip)
+      real(rk), intent(in) :: drive(:)  !< excess over the toughness [-]
+      real(rk), intent(in), optional :: gain  !< [m]
+      type(group_tip_t), allocatable :: tip(:)
+
+      allocate (tip(size(drive)))
+      tip%drive = drive
+      if (present(gain)) tip%gain = gain
+      tip%increment = increment
+      tip%segment = increment
+      tip%length = 1.0_rk
+   end function tips_with
+
    !> Whether two tips that have not grown yet, or have grown by `gain`, are one group.
    logical function are_one(one, other, off, gain)
       real(rk), intent(in) :: one, other, off  !< [-]
       real(rk), intent(in), optional :: gain(2)  !< [m]
       type(tip_groups_t) :: groups
       type(interaction_t) :: interaction
+      type(group_tip_t), allocatable :: tip(:)
       integer(ik) :: kind(2)
-      real(rk) :: come(2)
 
       call interaction%begin(2)
-      come = 0.0_rk
-      if (present(gain)) come = gain
-      call groups%find_groups([one, other], [off, off], come, neither, &
-                              spread(increment, 1, 2), interaction, kind)
+      tip = tips_with([one, other])
+      tip%off = off
+      if (present(gain)) tip%gain = gain
+      call groups%find_groups(tip, interaction, kind)
       are_one = kind(1) == kind(2)
    end function are_one
 
@@ -199,8 +221,7 @@ contains
       drive = 1.0_rk
       gain = 0.0_rk
       do steps = 0, 100
-         call groups%find_groups(drive, known, [gain, gain], neither, spread(increment, 1, 2), &
-                                 interaction, kind)
+         call groups%find_groups(tips_with(drive, gain), interaction, kind)
          if (kind(1) /= kind(2)) return
          drive = [1.0_rk, 1.0_rk - lack]
          call groups%accept(drive, [moved, moved], spread(increment, 1, 2))
