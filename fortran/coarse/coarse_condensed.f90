@@ -16,6 +16,7 @@
 !! cost of its elimination with the cube. The rock is then factorized without its fractures, and S q
 !! costs one solution with these factors (coarse_coupling).
 module coarse_condensed
+   use algebra_lapack, only: symmetric_product
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
@@ -212,7 +213,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (self%is_full) then
-         force = matmul(self%stiffness, q)
+         force = symmetric_product(self%stiffness, q)
       else
          if (.not. allocated(self%rock)) allocate (self%rock(self%coupling%n_bulk))
          call self%coupling%bulk_load(q, self%rock)

@@ -152,8 +152,7 @@ contains
       real(rk) :: on_kept(size(self%kept))
 
       if (self%by_fronts) then
-         rhs(at_component(self%rows%fixed, 1)) = 0.0_rk
-         rhs(at_component(self%rows%fixed, 2)) = 0.0_rk
+         call clear_fixed(self%rows%fixed, rhs)
          call self%fronts%condense(rhs, on_kept, error)
          reduced = 0.0_rk
          reduced(self%kept) = on_kept
@@ -317,11 +316,9 @@ contains
       pressure = minval(self%scale, mask=is_pressure)
       where (is_pressure) known = pressure/self%scale
       where (self%rows%matrix%is_difference()) known = 0.0_rk
-      known(at_component(self%rows%fixed, 1)) = 0.0_rk
-      known(at_component(self%rows%fixed, 2)) = 0.0_rk
+      call clear_fixed(self%rows%fixed, known)
       load = times_scaled(self%rows, known)
-      load(at_component(self%rows%fixed, 1)) = 0.0_rk
-      load(at_component(self%rows%fixed, 2)) = 0.0_rk
+      call clear_fixed(self%rows%fixed, load)
       if (size(schur) == 0) then
          found = load
          call self%fronts%solve(found, error)
@@ -462,6 +459,15 @@ contains
          rows%entry = merge(order, -order, rows%blocks%item == row(order))
       end associate
    end subroutine find_rows
+
+   !> Set the entries of fixed jumps to zero.
+   pure subroutine clear_fixed(fixed, values)
+      integer(ik), intent(in) :: fixed(:)  !< blocks
+      real(rk), intent(inout) :: values(:)  !< (4 per block)
+
+      values(at_component(fixed, 1)) = 0.0_rk
+      values(at_component(fixed, 2)) = 0.0_rk
+   end subroutine clear_fixed
 
    !> The scaled entries of one block row, of fixed jumps the unit matrix.
    pure subroutine give(self, element, n, matrix)

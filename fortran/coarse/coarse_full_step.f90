@@ -8,6 +8,7 @@
 !! rock conducts far less. It is omitted from the links, and the step is improved until it satisfies
 !! the complete equations.
 module coarse_full_step
+   use algebra_lapack, only: symmetric_product
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use coarse_slopes, only: slopes_t
@@ -52,7 +53,8 @@ contains
    !! there are many unknowns and the step can be improved until it satisfies all equations.
    subroutine find_full_step(stiffness, slopes, kinds, residual, stress_scale, with_condition, &
                              step, quality)
-      real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
+      !> S of coarse_condensed, symmetric [Pa]
+      real(rk), intent(in), contiguous :: stiffness(:, :)
       type(slopes_t), intent(inout) :: slopes  !< numbered by row afterwards
       type(kinds_t), intent(in) :: kinds
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
@@ -124,7 +126,7 @@ contains
 
    !> Improve a step with approximate links until it satisfies the complete equations.
    subroutine improve(stiffness, slopes, residual, reduced, step, worst, is_good)
-      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      real(rk), intent(in), contiguous :: stiffness(:, :)  !< [Pa]
       type(slopes_t), intent(in) :: slopes
       real(rk), intent(in) :: residual(:)  !< (n) before the step [Pa]
       type(reduced_t), intent(inout) :: reduced
@@ -159,7 +161,8 @@ contains
          real(rk), intent(in) :: x(:)  !< [Pa]
          real(rk) :: answer(size(x))  !< [Pa]
 
-         call slopes%apply(x, matmul(stiffness, x(slopes%x_of_q)*slopes%q_per_x), answer)
+         call slopes%apply(x, symmetric_product(stiffness, x(slopes%x_of_q)*slopes%q_per_x), &
+                           answer)
       end function matrix_product
 
    end subroutine improve

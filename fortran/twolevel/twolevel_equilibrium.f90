@@ -24,17 +24,16 @@ module twolevel_equilibrium
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_heat, only: settle_heat, settlings_max
    use twolevel_levels_state, only: levels_state_t
-   use twolevel_segments, only: are_at_ligaments, begin_segments, can_join, join_targets, &
-                                shared_excesses
+   use twolevel_search, only: begin_early, begin_wanted, join, search_t, see_overshoot, stop_gained
+   use twolevel_segments, only: are_at_ligaments, can_join, shared_excesses
    use twolevel_places, only: advances, place_tips
    use twolevel_probe, only: evaluated, measure_interaction, previous_try_t
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
-   use twolevel_tip_layers, only: close_tips, find_tip_layers, is_viscous
-   use twolevel_moves, only: arrivals, at_joints, driven_t, excess_max, first_onset, is_in_play, &
-                             judge_tips, keep_together, onset, overshoots, separate_tips, set_out, &
-                             tolerance
-   use twolevel_refinement, only: again_max, find_refinements, is_uncertain
+   use twolevel_tip_layers, only: close_tips, find_tip_layers
+   use twolevel_moves, only: driven_t, first_onset, is_in_play, judge_tips, keep_together, &
+                             separate_tips, tolerance
+   use twolevel_refinement, only: again_max, find_refinements
    use twolevel_well_limits, only: share_before_switch
    use twolevel_schedule, only: last_switch
    implicit none(type, external)
@@ -55,26 +54,6 @@ module twolevel_equilibrium
    real(rk), parameter :: lack_of_far = 0.1_rk
 
    real(rk), parameter :: sharp = 0.15_rk  !< kinks behind which K_eq falls at once [rad]
-
-   !> New segments that a tip may begin in a step without a jump. The step control aims at less than
-   !! one; a step that is a little longer need not be tried again.
-   integer, parameter :: segments_max = 2
-
-   !> State of the tries of a step.
-   type :: search_t
-      real(rk) :: dt = 0.0_rk  !< [s]
-      real(rk) :: moment = 0.0_rk  !< step within which the time of a jump does not matter [s]
-      logical :: is_last = .false.  !< last try: the time error is not checked
-      logical :: may_jump = .false.  !< tips may advance by several segments in the step
-      ! Data of the tries
-      real(rk), allocatable :: unmoved(:)  !< (tips) excess in the first try [-]
-      integer(ik), allocatable :: kind(:)  !< (tips) number of the tip group, from 1
-      integer, allocatable :: begun(:)  !< (tips) number of new segments that the tip has begun
-      type(previous_try_t) :: previous_try
-      type(advances_t) :: advances  !< search for the positions of the tips on their segments
-      integer :: settlings = 0  !< tries with the flows of the last one, which moved other heat
-      logical :: is_over = .false.  !< the tries have ended
-   end type search_t
 
 contains
 
@@ -252,48 +231,6 @@ contains
       if (.not. allocated(error) .and. allocated(failure)) call move_alloc(failure, error)
    end subroutine solve_coarse
 
-   !> End the tries after the first one, where a tip would have to begin a segment but exceeds its
-   !! toughness by so much that the growth of the others cannot change it: the step goes too far.
-   subroutine see_overshoot(self, search, trial)
-      class(two_levels_t), intent(in) :: self
-      type(search_t), intent(inout) :: search
-      type(trial_t), intent(inout) :: trial
-      real(rk), parameter :: by_far = 2.0_rk*excess_max
-      logical :: far(size(self%tip))
-
-      far = self%tip%is_loaded() .and. self%tip%path_target == target_none .and. &
-            .not. (self%now%segment%is_open .or. self%now%segment%stays() .or. &
-                   self%tip%arrested .or. self%has_gained() .or. is_viscous(self%tip)) .and. &
-            search%unmoved > by_far .and. &
-            overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
-      search%is_over = any(far)
-      if (search%is_over) call reject_overshoot(self, search, far, trial)
-   end subroutine see_overshoot
-
-   !> Reject a step in which tips go too far, with the share of it in which they would not.
-   pure subroutine reject_overshoot(self, search, far, trial)
-      class(two_levels_t), intent(in) :: self
-      type(search_t), intent(in) :: search
-      logical, intent(in) :: far(:)  !< (tips)
-      type(trial_t), intent(inout) :: trial
-      real(rk), parameter :: aim = 0.75_rk*excess_max
-
-      trial%goes_too_far = .true.
-      associate (before => self%last%front%tip%excess(self%rules%toughness), &
-                 after => search%unmoved)
-         trial%was_beyond = any(far .and. before > excess_max)
-         ! Onset at the time when the tips reach the toughness, not at the start of the step.
-         trial%onset = onset(before, after, far)
-         trial%admissible = minval([1.0_rk, pack((aim - before)/(after - before), &
-                                                 far .and. after > aim .and. before < aim)])
-         ! Growth that raises K_eq is a jump, in a step of any length.
-         if (any(far .and. search%begun > 0 .and. &
-                 self%tip%excess(self%rules%toughness) > after)) then
-            trial%admissible = min(trial%admissible, search%moment/search%dt)
-         end if
-      end associate
-   end subroutine reject_overshoot
-
    !> Move the tips to where their excess is predicted to vanish.
    subroutine move_tips(self, search, timers, any_moves, wants, error)
       class(two_levels_t), intent(inout) :: self
@@ -366,147 +303,6 @@ contains
          call conclude(self, search, timers, trial, error)
       end if
    end subroutine go_on
-
-   !> Begin new segments while other tips move, where tips exceed their toughness by so much that
-   !! the others will not change it, or end the tries where the step goes too far in any case.
-   subroutine begin_early(self, search, wants, timers, trial, error)
-      class(two_levels_t), intent(inout) :: self
-      type(search_t), intent(inout) :: search
-      logical, intent(in) :: wants(:)  !< (tips) the tip is to begin a new segment
-      type(timers_t), intent(inout) :: timers
-      type(trial_t), intent(inout) :: trial
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: by_much = 10.0_rk*tolerance, by_far = 2.0_rk*excess_max
-      logical, dimension(size(wants)) :: begins, far
-      integer(ik) :: i
-
-      associate (excess => self%tip%excess(self%rules%toughness))
-         begins = wants .and. excess > by_much .and. self%tip%path_target == target_none .and. &
-                  .not. (self%now%segment%stays() .or. self%has_gained() .or. is_viscous(self%tip))
-         far = begins .and. &
-               overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
-         begins = begins .and. search%begun < segments_max .and. (excess > by_far .or. .not. far)
-      end associate
-      begins = [(all(begins .or. search%kind /= search%kind(i)), i=1, size(wants))]
-      call self%tape%keep("early", begins)
-      if (.not. any(begins)) return
-      trial%time_error = self%step_error(search%dt)
-      call begin_wanted(self, search, begins, timers, trial, error)
-   end subroutine begin_early
-
-   !> Stop tips that have grown by the prescribed gain, unless they reach it too early in the step:
-   !! then K_eq would exceed the toughness by more than the tolerance, and the step is cut to the
-   !! time at which the excess vanishes. Where tips may jump, linear interpolation does not give
-   !! this time: the step is halved, until the last try.
-   subroutine stop_gained(self, search, wants, trial)
-      class(two_levels_t), intent(inout) :: self
-      type(search_t), intent(inout) :: search
-      logical, intent(inout) :: wants(:)  !< (tips) the tip is to begin a new segment
-      type(trial_t), intent(inout) :: trial
-      logical :: stops(size(wants))
-
-      stops = wants .and. self%has_gained()
-      if (.not. any(stops)) return
-      wants = wants .and. .not. stops
-      trial%goes_too_far = any(stops .and. search%begun > 0) .and. .not. search%may_jump
-      stops = stops .and. self%tip%excess(self%rules%toughness) > tolerance &
-              .and. .not. search%is_last
-      trial%gains_all = any(stops)
-      if (trial%gains_all .and. search%may_jump) then
-         trial%arrival = 0.5_rk
-      else if (trial%gains_all) then
-         trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
-                                         self%rules%toughness, 0.0_rk), mask=stops)
-      end if
-      trial%is_late = trial%gains_all
-      search%is_over = trial%goes_too_far .or. trial%is_late
-   end subroutine stop_gained
-
-   !> Connect tips to their targets, unless they reach them too early in the step. The time error is
-   !! that up to the connection, which is a jump.
-   subroutine join(self, search, joins, trial)
-      class(two_levels_t), intent(inout) :: self
-      type(search_t), intent(inout) :: search
-      logical, intent(in) :: joins(:)  !< (tips)
-      type(trial_t), intent(inout) :: trial
-
-      if (.not. search%may_jump) then
-         trial%goes_too_far = any(joins .and. search%begun > 0)
-         trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
-                                         self%rules%toughness, at_joints), mask=joins)
-         trial%moment = search%moment
-         trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
-         search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)
-         call self%tape%keep("over", search%is_over)
-         if (search%is_over) return
-      end if
-      call self%pace%see_joints(self%tape, self%tip%excess(self%rules%toughness), joins)
-      call join_targets(self%front_state_t, self%now, self%rules, joins)
-      trial%has_joined = .true.
-      search%previous_try = previous_try_t()
-      search%advances = advances_t()
-   end subroutine join
-
-   !> Begin new segments, unless the step goes too far, or the intensities are not accurate enough.
-   subroutine begin_wanted(self, search, wants, timers, trial, error)
-      class(two_levels_t), intent(inout) :: self
-      type(search_t), intent(inout) :: search
-      logical, intent(in) :: wants(:)  !< (tips)
-      type(timers_t), intent(inout) :: timers
-      type(trial_t), intent(inout) :: trial
-      type(error_t), allocatable, intent(out) :: error
-      real(rk) :: beyond(size(self%tip)), excess(size(self%tip))
-      integer(ik) :: i
-
-      beyond = self%now%segment%beyond_end(search%dt)
-      associate (toughness => self%rules%toughness, &
-                 far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
-                                   self%strides()))
-         if (self%step%refined < again_max .and. &
-             any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
-                                           toughness, self%load_pressure), i=1, size(wants))])) then
-            call find_refinements(self, self%before%time, trial%refinements)
-            search%is_over = size(trial%refinements) > 0
-         end if
-         call self%tape%keep("over", search%is_over)
-         if (search%is_over) return
-         ! A tip that stays at the end of its segment for a part of the step is slower than it will
-         ! be: where viscosity decides, its excess says little.
-         if (any(wants .and. (search%begun >= segments_max .or. &
-                              (far .and. .not. is_viscous(self%tip))))) then
-            trial%jumps = .true.
-            trial%time_error = 0.0_rk  ! jumps have no rates
-            search%may_jump = search%may_jump .or. search%dt <= search%moment
-         end if
-         call self%tape%keep("jumps", trial%jumps)
-         call self%tape%keep("may_jump", search%may_jump)
-         ! Windows are refined after a jump, which is long work.
-         if (trial%jumps .and. search%may_jump) self%step%refined = again_max
-         search%is_over = trial%jumps .and. .not. search%may_jump
-         if (search%is_over) then
-            call reject_overshoot(self, search, wants, trial)
-            return
-         end if
-      end associate
-      excess = self%tip%excess(self%rules%toughness)
-      excess = [(maxval(excess, mask=wants .and. search%kind == search%kind(i)), i=1, size(wants))]
-      call begin_segments(self, wants, timers, error)
-      if (allocated(error)) return
-      do i = 1, size(wants)
-         if (.not. wants(i)) cycle
-         if (is_viscous(self%tip(i)) .and. .not. search%may_jump) then
-            call self%now%segment(i)%set_out_to(beyond(i))
-         else
-            call set_out(self%now%segment(i), excess(i), search%may_jump, &
-                         self%tip(i)%path_target == target_none)
-         end if
-      end do
-      if (.not. search%may_jump) call keep_together(self%now%segment, search%kind)
-      ! Without the tips whose whole segment is a ligament.
-      where (wants .and. .not. self%now%segment%stays()) search%begun = search%begun + 1
-      search%previous_try = previous_try_t()  ! the segments have changed
-      search%advances = advances_t()
-   end subroutine begin_wanted
 
    !> End the tries: no tip is to advance. If the tips that have not been evaluated do not exceed
    !! the toughness either, and all intensities are accurate enough, the state is an equilibrium.

@@ -1,6 +1,6 @@
 !> The declarations of LAPACK: systems whose solutions are whole numbers, and matrices it refuses.
 program test_algebra_lapack
-   use algebra_lapack, only: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs
+   use algebra_lapack, only: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, symmetric_product
    use base_kinds, only: ik, rk
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -12,6 +12,7 @@ program test_algebra_lapack
    call positive_definite()
    call refused()
    call estimated_norm()
+   call products()
    call checks%finish()
 
 contains
@@ -108,5 +109,46 @@ contains
       end do
       call checks%is_close(norm, 4.0_rk, tolerance, "dlacn2")
    end subroutine estimated_norm
+
+   !> The products of a symmetric matrix with vectors: row i of a matrix of ones on and next to the
+   !! diagonal sums up three entries. They have the same bits wherever the arrays lie in memory, and
+   !! only one triangle is read.
+   subroutine products()
+      integer(ik), parameter :: n = 131
+      real(rk) :: store(n*n + 8), x_store(n + 8), x(n), y(n), first(n)
+      integer(ik) :: i, shift
+
+      x = [(sin(real(i, rk)), i=1, n)]
+      do shift = 0, 7
+         x_store(shift + 1:shift + n) = x
+         call fill(store(shift + 1:shift + n*n))
+         call multiply(store(shift + 1:shift + n*n), x_store(shift + 1:shift + n), y)
+         if (shift == 0) first = y
+         call checks%is_true(all(abs(y - first) <= 0.0_rk), "the same bits")
+      end do
+      y = y - x
+      y(2:) = y(2:) - x(:n - 1)
+      y(:n - 1) = y(:n - 1) - x(2:)
+      call checks%is_close(maxval(abs(y)), 0.0_rk, tolerance, "symmetric product")
+   end subroutine products
+
+   pure subroutine fill(matrix)
+      real(rk), intent(out) :: matrix(131, 131)
+      integer(ik) :: i, j
+
+      do j = 1, 131
+         do i = 1, 131
+            matrix(i, j) = merge(1.0_rk, 0.0_rk, i - j <= 1 .and. i >= j)
+            if (i < j) matrix(i, j) = huge(1.0_rk)
+         end do
+      end do
+   end subroutine fill
+
+   subroutine multiply(matrix, x, y)
+      real(rk), intent(in) :: matrix(131, 131), x(:)
+      real(rk), intent(out) :: y(:)
+
+      y = symmetric_product(matrix, x)
+   end subroutine multiply
 
 end program test_algebra_lapack
