@@ -291,6 +291,9 @@ contains
       if (self%tolerance > 0.0_rk) then
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
+         ! Within a time that does not matter growth is a jump, however many segments it takes.
+         self%next = max(self%next, min(self%moment, self%longest, dt*2.0_rk**min( &
+                                        most_powers, powers_of_time(self, trial))))
          call approach(self, trial, dt)
          call lengthen_slowly(self)
       else
@@ -362,6 +365,15 @@ contains
    pure integer function powers(self, trial)
       class(stepper_t), intent(in) :: self
       type(trial_t), intent(in) :: trial
+
+      powers = powers_of_time(self, trial)
+      if (trial%advance > 0.0_rk) powers = min(powers, lower_power(most/trial%advance))
+   end function powers
+
+   !> The same by the time error alone.
+   pure integer function powers_of_time(self, trial) result(powers)
+      class(stepper_t), intent(in) :: self
+      type(trial_t), intent(in) :: trial
       integer, parameter :: any_number = 60
       real(rk), parameter :: aim = 0.5_rk  ! share of the tolerance [-]
 
@@ -369,8 +381,7 @@ contains
       if (self%tolerance > 0.0_rk .and. trial%time_error > 0.0_rk) then
          powers = min(powers, lower_power(sqrt(aim*self%tolerance/trial%time_error)))
       end if
-      if (trial%advance > 0.0_rk) powers = min(powers, lower_power(most/trial%advance))
-   end function powers
+   end function powers_of_time
 
    !> Exponent of the largest power of two that does not exceed a ratio.
    pure integer function lower_power(ratio)

@@ -26,6 +26,7 @@ program test_twolevel_stepping
    call test_approach()
    call test_unsolved()
    call test_sudden()
+   call test_at_once()
    call test_headway()
    call test_limits_of_wells()
    call test_increments()
@@ -222,7 +223,51 @@ contains
       stepper%next = 40.0_rk
       call stepper%step_done(trial_t(converged=.true., advance=far), 40.0_rk)
       call checks%is_close(stepper%next, 20.0_rk, 0.0_rk, "also where steps are given")
+      call stepper%begin(chosen)
+      stepper%moment = 100.0_rk
+      call stepper%step_done(trial_t(converged=.true., advance=far), 10.0_rk)
+      call checks%is_close(stepper%next, 40.0_rk, 0.0_rk, "as far as a tip runs in a moment")
+      call stepper%step_done(trial_t(converged=.true., advance=far), 40.0_rk)
+      call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "and no longer than this moment")
+      call stepper%step_done(trial_t(converged=.true., advance=far), 300.0_rk)
+      call checks%is_close(stepper%next, 150.0_rk, 0.0_rk, "beyond it, segments count")
+      call stepper%step_done(trial_t(converged=.true., advance=far, time_error=0.02_rk), 10.0_rk)
+      call checks%is_close(stepper%next, 5.0_rk, 0.0_rk, "and the time error always")
    end subroutine test_advance
+
+   !> What happens at the start of a step at once does not become less with the step: it is not cut
+   !! again for the same time error; an onset that stays at the same share is caused by a jump.
+   subroutine test_at_once()
+      type(stepper_t) :: stepper
+      type(trial_t) :: trial
+      real(rk) :: dt
+      logical :: is_too_short
+
+      call stepper%begin(chosen)
+      trial = trial_t(converged=.true., time_error=0.02_rk)
+      dt = 64.0_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(.not. is_too_short, "an error of time, as far as is known")
+      trial%time_error = 0.0199_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(is_too_short .and. dt > 1.0_rk, "not one of time")
+      call stepper%step_done(trial, dt)
+      dt = 64.0_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(.not. is_too_short, "each step by itself")
+      trial%time_error = 0.014_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(.not. is_too_short, "as the root of time: not at once")
+
+      stepper%moment = 0.5_rk
+      trial = trial_t(converged=.true., onset=0.55_rk)
+      dt = 64.0_rk
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(.not. stepper%has_sudden_onset, "an onset within the step")
+      call stepper%cut(trial, dt, is_too_short)
+      call checks%is_true(stepper%has_sudden_onset, "at the same share of a shorter one")
+      call checks%is_close(dt, 0.5_rk, 0.0_rk, "in which tips may jump")
+   end subroutine test_at_once
 
    !> A step ends where a tip begins to grow.
    subroutine test_onset()
