@@ -2,6 +2,7 @@
 !! refined, how far tips advance, in which direction path segments begin, which tips join their
 !! targets. Pressures and contact are solved, and the length of the step is found (twolevel_pace).
 submodule(twolevel_state:twolevel_steps) twolevel_replay
+use report_rows, only: event_replay
 implicit none(type, external)
 
 contains
