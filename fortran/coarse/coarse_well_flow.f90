@@ -281,8 +281,8 @@ contains
       by_flow = by_flow*eq%unit/eq%dt
    end subroutine find_entry
 
-   !> Add the pressure of a place: that of its cells or joint, with the loss of its flow over the way
-   !! to them.
+   !> Add the pressure of a place: that of its cells or joint, with the loss of its flow over the
+   !! way to them.
    pure subroutine add_pressure(place, flow, x, eq, pressure, by_flow)
       integer(ik), intent(in) :: place
       real(rk), intent(in) :: flow  !< [m2/s]

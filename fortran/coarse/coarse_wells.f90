@@ -41,8 +41,8 @@ module coarse_wells
       real(rk), allocatable :: entry_loss(:)  !< (n_entries) R in the loss R |q| q [Pa s2/m4]
       real(rk), allocatable :: share(:, :)  !< (fracture cells, places) of its flow, into each [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, places) [-]
-      !> (fracture cells, places) pressure of the place above that of its cells, over the loss of its
-      !! flow in half of each of them [-]
+      !> (fracture cells, places) pressure of the place above that of its cells, over the loss of
+      !! its flow in half of each of them [-]
       real(rk), allocatable :: path(:, :)
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]

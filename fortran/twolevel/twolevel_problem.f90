@@ -57,6 +57,7 @@ module twolevel_problem
       procedure :: find_values
       procedure :: well_pressure
       procedure :: entry_pressure
+      procedure :: beside_others
       procedure :: well_in_situ
       procedure :: entry_in_situ
       procedure :: rock_pressure
@@ -346,6 +347,33 @@ contains
                     *sum(path*(s(2, :) - s(1, :))/state%aperture**3*self%thickness(state))
       end associate
    end function entry_pressure
+
+   !> What the flows of other wells on the way of an entry to the same cells may change in its
+   !! pressure, which entry_pressure leaves out [Pa].
+   pure real(rk) function beside_others(self, state, entry, flow) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: entry  !< number among those of all wells
+      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+      real(rk) :: half_cells(size(state%pressure))
+      integer(ik) :: e
+
+      pressure = 0.0_rk
+      if (.not. any(self%path(:, entry) > 0.0_rk)) return
+      associate (s => self%mesh%fracture%cell_s)
+         half_cells = 6.0_rk*self%model%settings%viscosity*(s(2, :) - s(1, :))/state%aperture**3 &
+                      *self%thickness(state)
+      end associate
+      do e = 1, size(self%entries, kind=ik)
+         if (e == entry) cycle
+         if (any((self%path(:, e) > 0.0_rk) .neqv. (self%path(:, entry) > 0.0_rk))) cycle
+         associate (own => self%joint_share(:, entry), other => self%joint_share(:, e))
+            if (any((own > 0.0_rk) .neqv. (other > 0.0_rk))) cycle
+         end associate
+         pressure = pressure + abs(flow(self%well_of(e))) &
+                    *sum(min(self%path(:, e), self%path(:, entry))*half_cells)
+      end do
+   end function beside_others
 
    !> Pressure in situ at a well, at its first entry [Pa].
    pure real(rk) function well_in_situ(self, well) result(pressure)

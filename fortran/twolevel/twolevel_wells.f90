@@ -53,8 +53,8 @@ contains
       of = [((w, e=1, wells(w)%entry_count()), w=1, size(wells, kind=ik))]
    end function wells_of_entries
 
-   !> Share of each well's rate in each cell of its fracture, by its length; those of wells at points
-   !! are found on each mesh (place_wells).
+   !> Share of each well's rate in each cell of its fracture, by its length; those of wells at
+   !! points are found on each mesh (place_wells).
    pure subroutine share_wells(wells, fracture, share)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture

@@ -170,8 +170,10 @@ def placed(draw: Draw) -> Scene:
     """Two or three wells at places of one fracture or of two that cross; cells coarse to fine."""
     length = draw.among(1.0, 10.0, 50.0)
     scene, (_, least) = base(draw, length)
-    half = 0.5 * length
-    lines = [[(-half, 0.0), (half, 0.0)], [(-0.3 * half, -half), (0.4 * half, half)]]
+    lines = []
+    for angle in (draw.between(0.1, 1.4), draw.between(1.7, 3.0)):
+        end = 0.5 * length * np.round([math.cos(angle), math.sin(angle)], 3)
+        lines.append([-end, end])
     lines = lines[: draw.among(1, 1, 2)]
     add_fractures(draw, scene, [np.array(line) for line in lines], "slide")
     aperture = draw.decades(2e-5, 5e-4)
@@ -184,10 +186,10 @@ def placed(draw: Draw) -> Scene:
     rate = drop * aperture**3 / (12.0 * scene["fluid"]["viscosity"] * length)
     scene["injection"] = []
     for i in range(draw.among(2, 2, 3)):
-        line = draw.among(*lines)
+        f = draw.among(*range(len(lines)))
         share = draw.between(0.02, 0.98)
-        x, y = ((1.0 - share) * line[0][k] + share * line[1][k] for k in range(2))
-        well = {"fracture": f"f{lines.index(line) + 1}", "x": x, "y": y}
+        x, y = (float(f"{v:.6g}") for v in (1.0 - share) * lines[f][0] + share * lines[f][1])
+        well = {"fracture": f"f{f + 1}", "x": x, "y": y}
         if i == 1 and draw.among(True, False):
             well["pressure"] = start
         else:
