@@ -57,7 +57,7 @@ module twolevel_problem
       procedure :: find_values
       procedure :: well_pressure
       procedure :: entry_pressure
-      procedure :: beside_others
+      procedure :: unresolved_at
       procedure :: well_in_situ
       procedure :: entry_in_situ
       procedure :: rock_pressure
@@ -348,32 +348,46 @@ contains
       end associate
    end function entry_pressure
 
-   !> What the flows of other wells on the way of an entry to the same cells may change in its
-   !! pressure, which entry_pressure leaves out [Pa].
-   pure real(rk) function beside_others(self, state, entry, flow) result(pressure)
+   !> What may be missing in the pressure of an entry at a point: twice the loss of the flows of
+   !! other wells on its way to the same cells, as the others lack that of its flow too; and what
+   !! leaks off or is stored on this way, u: 12 mu u l/(8 a^3) in a cell of length l [Pa].
+   pure real(rk) function unresolved_at(self, state, entry, flow) result(pressure)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
       integer(ik), intent(in) :: entry  !< number among those of all wells
       real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
-      real(rk) :: half_cells(size(state%pressure))
-      integer(ik) :: e
+      real(rk) :: half_cells(size(state%pressure)), uptake(size(state%pressure))
+      integer(ik) :: b, e, k
 
       pressure = 0.0_rk
-      if (.not. any(self%path(:, entry) > 0.0_rk)) return
+      if (self%entries(entry)%fracture == 0 .or. .not. self%entries(entry)%at_point) return
       associate (s => self%mesh%fracture%cell_s)
          half_cells = 6.0_rk*self%model%settings%viscosity*(s(2, :) - s(1, :))/state%aperture**3 &
                       *self%thickness(state)
       end associate
+      uptake = state%injection
+      do k = 1, size(state%flow, kind=ik)
+         associate (cells => self%model%connections(:, k))
+            uptake(cells) = uptake(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
+         end associate
+      end do
+      do b = 1, self%model%joints%branch_count()
+         associate (cell => self%model%joints%cell(b))
+            uptake(cell) = uptake(cell) - state%branch_flow(b)
+         end associate
+      end do
+      pressure = 0.25_rk*sum(self%share(:, entry)*half_cells*abs(uptake))
+      if (.not. any(self%path(:, entry) > 0.0_rk)) return
       do e = 1, size(self%entries, kind=ik)
          if (e == entry) cycle
          if (any((self%path(:, e) > 0.0_rk) .neqv. (self%path(:, entry) > 0.0_rk))) cycle
          associate (own => self%joint_share(:, entry), other => self%joint_share(:, e))
             if (any((own > 0.0_rk) .neqv. (other > 0.0_rk))) cycle
          end associate
-         pressure = pressure + abs(flow(self%well_of(e))) &
+         pressure = pressure + 2.0_rk*abs(flow(self%well_of(e))) &
                     *sum(min(self%path(:, e), self%path(:, entry))*half_cells)
       end do
-   end function beside_others
+   end function unresolved_at
 
    !> Pressure in situ at a well, at its first entry [Pa].
    pure real(rk) function well_in_situ(self, well) result(pressure)

@@ -382,7 +382,7 @@ contains
       type(well_row_t), intent(inout) :: rows(:)
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
-      real(rk) :: beside, by_length, changes(3*size(rows)), first(size(scene%fractures)), flow
+      real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, missing
       real(rk) :: share
       integer(ik) :: w
 
@@ -395,15 +395,14 @@ contains
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
             share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
-            ! The others' pressures depend on its flow as well.
-            beside = 2.0_rk*problem%beside_others(state, findloc(problem%well_of, w, dim=1, &
-                                                                 kind=ik), rows%flow)
-            error%pressure = time(w) + share*changes(w) + by_length + beside &
+            missing = problem%unresolved_at(state, findloc(problem%well_of, w, dim=1, kind=ik), &
+                                            rows%flow)
+            error%pressure = time(w) + share*changes(w) + by_length + missing &
                              + of_solution*abs(row%pressure)
             if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
             if (.not. well%has_given_flow()) then
                flow = max(share, self%of_flow) + self%of_drive &
-                      + min(1.0_rk, beside/max(tiny(1.0_rk), changes(w)))
+                      + min(1.0_rk, missing/max(tiny(1.0_rk), changes(w)))
                error%injected = time(2*n + w) + max(flow*abs(row%injected), self%of_held)
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)
