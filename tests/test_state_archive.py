@@ -127,14 +127,14 @@ MADE_AGAIN = {
         "end_time": _RULE,
     },
     "front_t": {"rules": _RULE},
-    "coarse_problem_t": _each("joint_share rock_cell entries well_of heat heat_field", _RULE)
+    "coarse_problem_t": _each("joint_share path rock_cell entries well_of heat heat_field", _RULE)
     | dict.fromkeys(["heat_after", "heat_span", "heat_flows"], "of the tries of a step"),
     "coarse_model_t": _each("rock sides in_situ regions matrix layers drained may_hold", _RULE)
     | {"rock_resistance": _RULE, "weight": _RULE},
     "condensed_t": _each("is_full stiffness coupling body normal length n", _RULE)
     | {"layout": _RULE, "analysed": _RULE},
     "rock_wells_t": _each("n cell rings ring_number ring_of", _RULE),
-    "wells_t": _each("n n_all number share joint_share is_between storage", _RULE)
+    "wells_t": _each("n n_all number share joint_share path storage", _RULE)
     | _each("friction turbulence pressure_in_situ n_entries of_entry entry_loss", _RULE),
     "joints_t": _each("n point is_outlet pressure_in_situ branches cell joint", _RULE)
     | {"end": _RULE, "beyond": _RULE},

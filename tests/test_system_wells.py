@@ -230,7 +230,7 @@ def test_the_end_of_a_well_with_storage_shuts_it_in(body: str, well: str, tmp_pa
     assert float(after[0]["flow_m2_s"]) > 0.0
 
 
-@pytest.mark.parametrize("place", [0.0, 0.25])
+@pytest.mark.parametrize("place", [0.0, 0.25, 0.4])
 def test_the_pressure_that_a_well_needs(place: float, tmp_path: Path) -> None:
     """By the cubic law: at 0 the well stands between two cells, with half of each on its way."""
     at = f"name = 'w', fracture = 'f', x = {place}, y = 0.0"
@@ -391,3 +391,34 @@ def test_pressures_that_differ_in_one_cell(tmp_path: Path) -> None:
             loss = head - float(row["pressure_pa"])
             flow = float(row["flow_m2_s"])
             assert 1e14 * abs(flow) * flow == pytest.approx(loss, rel=1e-6)
+
+
+@pytest.mark.parametrize("control", ["rate = -2e-8", "pressure = 5e6"])
+@pytest.mark.parametrize(
+    ("injector", "producer", "distance"),
+    [
+        ((-0.32, 0.0), (0.23, 0.0), 0.55),  # cells of 0.1
+        ((-0.5, 0.0), (0.5, 0.0), 1.0),  # at both tips
+        ((-0.03, 0.0), (0.0, 0.02), 0.05),  # in two fractures, beside their crossing
+        ((0.0, 0.0), (0.0, 0.31), 0.31),  # from the crossing
+    ],
+)
+def test_wells_lie_at_their_exact_places(
+    tmp_path: Path,
+    control: str,
+    injector: tuple[float, float],
+    producer: tuple[float, float],
+    distance: float,
+) -> None:
+    """Between two wells the pressure falls by 12 mu q over their distance, wherever they lie."""
+    text = PIPE.replace("x = -1.0, 1.0, y = 0.0, 0.0", "x = -0.5, 0.5, y = 0.0, 0.0")
+    text = text.replace("size_fracture = 0.5", "size_fracture = 0.1").replace("1.0e-4", "3.0e-5")
+    text = text.replace(", pressure = 0.0 /", " /")
+    text += "&fracture name = 'g', x = 0, 0, y = -0.5, 0.5, friction = 1.0, aperture = 3e-5 /\n"
+    other = "f" if producer[1] == 0.0 else "g"
+    text += f"&injection fracture = 'f', x = {injector[0]}, y = 0.0, rate = 2e-8 /\n"
+    text += f"&injection fracture = '{other}', x = {producer[0]}, y = {producer[1]}, {control} /\n"
+    text += "&initial pressure = 5e6 /\n"
+    out = run(tmp_path, text)
+    first, second = (float(row["pressure_pa"]) for row in rows(out / "wells.csv")[-2:])
+    assert first - second == pytest.approx(12e-3 * 2e-8 * distance / 3e-5**3, rel=1e-4)

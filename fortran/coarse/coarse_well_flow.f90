@@ -6,8 +6,8 @@
 !!                        max(r - Q, min(p_w - P, r)) = 0; in extraction with all signs changed
 !!   shut                 q = 0
 !! with the storage C and the pressure at the head p_w = p + (R + R2 |q|) q. p is that of the cells
-!! or the joint that the well supplies, by their shares; a well between two cells is half a cell
-!! away from their middles. All terms rise with q, so that Newton's method on the active one ends.
+!! or the joint that the well supplies, by their shares, and the loss of q over the way to their
+!! middles. All terms rise with q, so that Newton's method on the active one ends.
 !!
 !! A well with entries into several fractures supplies no cell itself. Each entry e has its flow q_e
 !! as an unknown, with a loss R_e, and all entries have the pressure of the well:
@@ -112,7 +112,7 @@ contains
                call eq%slopes%add(at, flow, -share)
             end if
             call eq%slopes%add(row, at, per_pressure*share)
-            if (eq%paths%wells%is_between(place)) then
+            if (eq%paths%wells%path(i, place) > 0.0_rk) then
                call add_opening(place, row, i, x, per_pressure, eq)
             end if
          end associate
@@ -281,8 +281,8 @@ contains
       by_flow = by_flow*eq%unit/eq%dt
    end subroutine find_entry
 
-   !> Add the pressure of a place: that of its cells or joint, with the loss of its flow up to their
-   !! middles if it lies between two.
+   !> Add the pressure of a place: that of its cells or joint, with the loss of its flow over the
+   !! way to them.
    pure subroutine add_pressure(place, flow, x, eq, pressure, by_flow)
       integer(ik), intent(in) :: place
       real(rk), intent(in) :: flow  !< [m2/s]
@@ -294,13 +294,13 @@ contains
       integer(ik) :: i, j
 
       do i = 1, eq%layout%n_cells
-         associate (share => eq%paths%wells%share(i, place))
+         associate (share => eq%paths%wells%share(i, place), path => eq%paths%wells%path(i, place))
             if (.not. share > 0.0_rk) cycle
             pressure = pressure + share*x(eq%layout%at_pressure(i))
-            if (.not. eq%paths%wells%is_between(place)) cycle
+            if (.not. path > 0.0_rk) cycle
             call half_cell(i, x, eq, resistance, slope)
-            pressure = pressure + share**2*resistance*flow
-            by_flow = by_flow + share**2*resistance
+            pressure = pressure + path*resistance*flow
+            by_flow = by_flow + path*resistance
          end associate
       end do
       do j = 1, eq%layout%n_joints
@@ -342,14 +342,14 @@ contains
 
       jumps = eq%layout%at_jump(i, both)
       call half_cell(i, x, eq, resistance, slope)
-      by_jump = 0.5_rk*eq%paths%wells%share(i, place)**2*slope*x(eq%layout%at_well(place)) &
+      by_jump = 0.5_rk*eq%paths%wells%path(i, place)*slope*x(eq%layout%at_well(place)) &
                 *eq%unit/eq%dt/eq%stiffness
       do end = 1, 2
          call eq%slopes%add(row, jumps(end), per_pressure*by_jump)
       end do
       if (.not. allocated(eq%paths%settings%fluid_law)) return
       call eq%find_thickness(x, i, thickness, by_pressure)
-      by_pressure = eq%paths%wells%share(i, place)**2*resistance*by_pressure/thickness &
+      by_pressure = eq%paths%wells%path(i, place)*resistance*by_pressure/thickness &
                     *x(eq%layout%at_well(place))*eq%unit/eq%dt
       call eq%slopes%add(row, eq%layout%at_pressure(i), per_pressure*by_pressure)
    end subroutine add_opening

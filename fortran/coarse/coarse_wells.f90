@@ -41,8 +41,9 @@ module coarse_wells
       real(rk), allocatable :: entry_loss(:)  !< (n_entries) R in the loss R |q| q [Pa s2/m4]
       real(rk), allocatable :: share(:, :)  !< (fracture cells, places) of its flow, into each [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, places) [-]
-      !> (places) it lies between two cells, half a cell away from the middles of both
-      logical, allocatable :: is_between(:)
+      !> (fracture cells, places) pressure of the place above that of its cells, over the loss of
+      !! its flow in half of each of them [-]
+      real(rk), allocatable :: path(:, :)
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
       real(rk), allocatable :: turbulence(:)  !< (n_all) and per its square [Pa s2/m4]

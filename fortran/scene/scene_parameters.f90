@@ -119,10 +119,10 @@ module scene_parameters
                  "except at a tip, since each face has separate nodes."), &
       group_t("injection", repeated=.true., scenes=in_fluid, &
          meaning="A well, at a rate, at a pressure, or at a rate up to a pressure, in stages. "// &
-                 "It supplies the initial length of a fracture, or its cell nearest to a point "// &
-                 "(half each of two equally near ones), at an intersection all fractures; or "// &
-                 "the rock around a point. No step straddles the beginning of a stage, or the "// &
-                 "time at which a limit is reached or left."), &
+                 "It supplies the initial length of a fracture, or the place on it nearest to "// &
+                 "a point, at an intersection all fractures; or the rock around a point. No "// &
+                 "step straddles the beginning of a stage, or the time at which a limit is "// &
+                 "reached or left."), &
       group_t("initial", implied=.true., scenes=in_fluid, meaning="State before the first step."), &
       group_t("heat", scenes=in_fluid, &
          meaning="Heat in rock and fractures: conduction, and what the fluid carries; none "// &

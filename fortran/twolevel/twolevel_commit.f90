@@ -161,8 +161,8 @@ contains
       if (size(self%scene%injections) == 0) return
       call self%well_results%book(self%scene, self%problem, self%now%coarse, self%now%at_limit, &
                                   merge(0.0_rk, self%step%dt, self%is_initial), rows)
-      call self%value_errors%note_wells(self%scene, self%problem, rows, self%now%stated_errors, &
-                                        facts_of(self))
+      call self%value_errors%note_wells(self%scene, self%problem, self%now%coarse, rows, &
+                                        self%now%stated_errors, facts_of(self))
       call add_well_temperatures(self%problem%heat, self%now%heat, rows)
       self%chronicle%wells = [self%chronicle%wells, rows]
       if (.not. self%scene%has_entries()) return

@@ -127,7 +127,11 @@ contains
          e%pressure = cell_pressure_errors(scene, problem, state, errors, jumps) &
                       + 0.5_rk*unevenness(fracture, fields%pressure) &
                       + of_solution*abs(fields%pressure)
-         e%flow = of_neighbours*unevenness(fracture, fields%flow)
+         ! Beside a well at a point the flow changes within the cell.
+         e%flow = of_neighbours*unevenness(fracture, fields%flow) &
+                  + 0.5_rk*merge(abs(state%injection), 0.0_rk, &
+                                 any(problem%share > 0.0_rk .and. &
+                                     spread(problem%entries%at_point, 1, size(length)), dim=2))
          around = round_tips(problem, state%time - errors%start)
          do f = 1, maxval(fracture%cell_fracture)
             own = fracture%cell_fracture == f

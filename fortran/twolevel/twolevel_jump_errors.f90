@@ -92,7 +92,8 @@ contains
             opened = opened + self%error_n
          end where
          self%volume = sum(length*opened)
-         self%slipped = sum(length*((self%slip%of_slip_sum + facts%of_length)*self%t + slid))
+         self%slipped = sum(length*((self%slip%of_slip_sum + facts%of_length) &
+                                    *merge(moved, self%t, is_open) + slid))
       end associate
    end subroutine find
 

@@ -7,8 +7,9 @@
 !!   sqrt(pi)/(2 z), and below 0.15/z**2 (measured: 0.07/z**2).
 !! - The first pressure of a fracture, if it is that of the rock around it: the load has changed the
 !!   latter from place to place, and a cell has its mean. Error: 1.5 times the mean difference of
-!!   the fracture's cells from their neighbours; it opens faces that are open. It falls as the
-!!   rock drains, 1/(1 + 16 c t/h**2), as far as the rock takes up what the fractures hold.
+!!   the fracture's cells from their neighbours, and .05 % of the change by the load; it opens faces
+!!   that are open. It falls as the rock drains, 1/(1 + 16 c t/h**2), as far as the rock takes up
+!!   what the fractures hold; in a sealed body to .05 %.
 !! - The pressure of a well in the rock: the radius at which the flow has the cell's pressure, 0.151
 !!   times the root of the cell's area A, is known within 1.1 % (verification/wells_in_rock). As the
 !!   pressure is proportional to the logarithm of the distance over the well's radius, its relative
@@ -30,8 +31,8 @@ module twolevel_pressure_errors
    private
 
    public :: fracture_means, have_given_pressure, held_at_first, leaking_share, least, &
-             mean_in_rock, mean_pressure, of_first_pressure, of_layers, of_steps, of_well_in_rock, &
-             round_tips, skempton, stress_means, undrained_share, unresolved_depth
+             least_first, mean_in_rock, mean_pressure, of_first_pressure, of_layers, of_steps, &
+             of_well_in_rock, round_tips, skempton, stress_means, undrained_share, unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
    real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
@@ -42,6 +43,7 @@ module twolevel_pressure_errors
    !> the same by a side of the body, times the cell's area over its squared distance
    real(rk), parameter :: by_side = 0.45_rk
    real(rk), parameter :: of_spread = 1.5_rk  !< of first pressures, over their differences [-]
+   real(rk), parameter :: least_first = 5.0e-4_rk  !< of first pressures, over their changes [-]
    real(rk), parameter :: least = 0.005_rk  !< least relative error in space of a change [-]
 
 contains
@@ -266,10 +268,12 @@ contains
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      real(rk) :: error(size(scene%fractures))
+      real(rk) :: error(size(scene%fractures)), start, uneven(problem%mesh%fracture%n_cells)
 
-      error = of_spread*fracture_means(scene, problem, unevenness(problem%mesh%fracture, &
-                                                                  problem%fracture_pressure(state)))
+      start = merge(0.0_rk, scene%initial%pressure, allocated(problem%model%in_situ))
+      uneven = unevenness(problem%mesh%fracture, problem%fracture_pressure(state))
+      error = of_spread*fracture_means(scene, problem, uneven) &
+              + least_first*abs(fracture_means(scene, problem, state%pressure - start))
    end function of_first_pressure
 
    !> What closed fractures and joints hold by these errors [m2].

@@ -22,8 +22,8 @@ module twolevel_problem
    use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
-   use twolevel_wells, only: ask_wells, between_cells, control_wells, entries_of, feed_joints, &
-                             mean_pressure, rate, wells_of_entries
+   use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, rate, &
+                             wells_of_entries
    implicit none(type, external)
    private
 
@@ -38,6 +38,7 @@ module twolevel_problem
       integer(ik), allocatable :: well_of(:)  !< (entries) number of the well
       real(rk), allocatable :: share(:, :)  !< (fracture cells, entries) of each entry's flow [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, entries) of each entry's flow [-]
+      real(rk), allocatable :: path(:, :)  !< (fracture cells, entries) of place_wells [-]
       !> (wells) cells of the wells in the rock; 0: other wells
       integer(ik), allocatable :: rock_cell(:)
       type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
@@ -55,6 +56,8 @@ module twolevel_problem
       procedure :: advance
       procedure :: find_values
       procedure :: well_pressure
+      procedure :: entry_pressure
+      procedure :: unresolved_at
       procedure :: well_in_situ
       procedure :: entry_in_situ
       procedure :: rock_pressure
@@ -85,9 +88,9 @@ contains
       associate (wells => scene%injections)
          self%entries = entries_of(wells)
          self%well_of = wells_of_entries(wells)
-         call feed_joints(self%entries, self%mesh%fracture, self%model%joints, self%share, &
-                          self%joint_share)
-         call control_wells(wells, self%share, self%joint_share, self%model%wells)
+         call place_wells(self%entries, self%mesh%fracture, self%model%joints, &
+                          self%model%cells%roughness, self%share, self%joint_share, self%path)
+         call control_wells(wells, self%share, self%joint_share, self%path, self%model%wells)
          call part_twins(self, scene)
          if (allocated(self%model%in_situ)) then
             self%model%wells%pressure_in_situ = &
@@ -122,7 +125,8 @@ contains
                  s => self%mesh%fracture%cell_s)
          is_twin = .false.
          do w = 1, wells%n
-            if (wells%is_between(w) .or. wells%friction(w) + wells%turbulence(w) > 0.0_rk) cycle
+            if (any(wells%path(:, w) > 0.0_rk)) cycle
+            if (wells%friction(w) + wells%turbulence(w) > 0.0_rk) cycle
             if (wells%first_entry(w) /= w) cycle
             do k = 1, wells%n
                if (k == w) cycle
@@ -307,32 +311,83 @@ contains
       end do
    end subroutine feed_rock
 
-   !> Mean pressure at the wells; 0 without any [Pa]. The pressure of a cell is that at its middle;
-   !! a well between two cells is half a cell away, and the pressure loss of the flow over this
-   !! distance is added.
+   !> Mean pressure at the wells in fractures, at the rates of the step to this state; 0 without any
+   !! [Pa].
    pure real(rk) function well_pressure(self, state)
       class(coarse_problem_t), intent(in) :: self
       type(state_t), intent(in) :: state
-      real(rk) :: pressure(size(state%pressure))
-      logical :: between(size(self%share, 2))
-      integer(ik) :: w
+      real(rk) :: flow
+      integer(ik) :: e, k
 
-      pressure = self%fracture_pressure(state)
-      between = between_cells(self%entries, self%share)
-      do w = 1, size(between, kind=ik)
+      well_pressure = 0.0_rk
+      do e = 1, size(self%entries, kind=ik)
+         if (self%entries(e)%fracture == 0) cycle
+         k = maxloc(self%share(:, e), dim=1, kind=ik)
+         flow = state%injection(k)/max(self%share(k, e), tiny(1.0_rk))
+         well_pressure = well_pressure + self%entry_pressure(state, e, flow)
+      end do
+      well_pressure = well_pressure/max(1, count(self%entries%fracture > 0))
+   end function well_pressure
+
+   !> Pressure where an entry meets its fracture: that of the cells or the joint that it supplies,
+   !! weighted by its shares, plus the loss of its flow over the way to them [Pa].
+   pure real(rk) function entry_pressure(self, state, entry, flow) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: entry  !< number among those of all wells
+      real(rk), intent(in) :: flow  !< [m2/s]
+
+      associate (share => self%share(:, entry), path => self%path(:, entry), &
+                 s => self%mesh%fracture%cell_s)
+         pressure = self%entry_in_situ(entry) + dot_product(share, state%pressure) &
+                    + dot_product(self%joint_share(:, entry), state%joint_pressure)
          ! Before the first step nothing flows.
-         if (.not. (between(w) .and. allocated(self%model%condensed%length))) cycle
-         associate (length => self%model%condensed%length, &
-                    viscosity => self%model%settings%viscosity, thickness => self%thickness(state))
-            where (self%share(:, w) > 0.0_rk)
-               pressure = pressure + 6.0_rk*viscosity*length*state%injection &
-                          /state%aperture**3*thickness
-            end where
+         if (.not. (any(path > 0.0_rk) .and. abs(flow) > 0.0_rk)) return
+         pressure = pressure + flow*6.0_rk*self%model%settings%viscosity &
+                    *sum(path*(s(2, :) - s(1, :))/state%aperture**3*self%thickness(state))
+      end associate
+   end function entry_pressure
+
+   !> What may be missing in the pressure of an entry at a point: twice the loss of the flows of
+   !! other wells on its way to the same cells, as the others lack that of its flow too; and what
+   !! leaks off or is stored on this way, u: 12 mu u l/(8 a^3) in a cell of length l [Pa].
+   pure real(rk) function unresolved_at(self, state, entry, flow) result(pressure)
+      class(coarse_problem_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: entry  !< number among those of all wells
+      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+      real(rk) :: half_cells(size(state%pressure)), uptake(size(state%pressure))
+      integer(ik) :: b, e, k
+
+      pressure = 0.0_rk
+      if (self%entries(entry)%fracture == 0 .or. .not. self%entries(entry)%at_point) return
+      associate (s => self%mesh%fracture%cell_s)
+         half_cells = 6.0_rk*self%model%settings%viscosity*(s(2, :) - s(1, :))/state%aperture**3 &
+                      *self%thickness(state)
+      end associate
+      uptake = state%injection
+      do k = 1, size(state%flow, kind=ik)
+         associate (cells => self%model%connections(:, k))
+            uptake(cells) = uptake(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
          end associate
       end do
-      well_pressure = mean_pressure(self%share, pressure, self%joint_share, &
-                                    self%joint_pressure(state))
-   end function well_pressure
+      do b = 1, self%model%joints%branch_count()
+         associate (cell => self%model%joints%cell(b))
+            uptake(cell) = uptake(cell) - state%branch_flow(b)
+         end associate
+      end do
+      pressure = 0.25_rk*sum(self%share(:, entry)*half_cells*abs(uptake))
+      if (.not. any(self%path(:, entry) > 0.0_rk)) return
+      do e = 1, size(self%entries, kind=ik)
+         if (e == entry) cycle
+         if (any((self%path(:, e) > 0.0_rk) .neqv. (self%path(:, entry) > 0.0_rk))) cycle
+         associate (own => self%joint_share(:, entry), other => self%joint_share(:, e))
+            if (any((own > 0.0_rk) .neqv. (other > 0.0_rk))) cycle
+         end associate
+         pressure = pressure + 2.0_rk*abs(flow(self%well_of(e))) &
+                    *sum(min(self%path(:, e), self%path(:, entry))*half_cells)
+      end do
+   end function unresolved_at
 
    !> Pressure in situ at a well, at its first entry [Pa].
    pure real(rk) function well_in_situ(self, well) result(pressure)

@@ -17,7 +17,7 @@ submodule(twolevel_state) twolevel_remeshing
    use twolevel_setup, only: choose_first_step
    use twolevel_overlaps, only: fracture_overlaps, kept_faces, overlaps_t
    use twolevel_transfer, only: hand_over, transfer_cells, transfer_state
-   use twolevel_wells, only: entries_of, transfer_shares
+   use twolevel_wells, only: transfer_shares
    implicit none(type, external)
 
 contains
@@ -180,7 +180,7 @@ contains
       call transfer_state(map, old%mesh, new%mesh, new%model%cells, is_prefilled, now%coarse, &
                           state, prefilled)
       associate (before => old%mesh%fracture, after => new%mesh%fracture)
-         new%share = transfer_shares(entries_of(scene%injections), before, after, old%share)
+         new%share = transfer_shares(before, after, old%share)
          overlaps = fracture_overlaps(before, after)
          now%grown = pack([(i, i=1, after%n_cells)], overlaps%is_new([(i, i=1, after%n_cells)]))
       end associate

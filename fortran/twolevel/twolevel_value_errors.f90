@@ -22,9 +22,9 @@ module twolevel_value_errors
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
    use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
-                                       leaking_share, least, mean_in_rock, mean_pressure, &
-                                       of_first_pressure, of_layers, of_steps, of_well_in_rock, &
-                                       stress_means, undrained_share
+                                       leaking_share, least, least_first, mean_in_rock, &
+                                       mean_pressure, of_first_pressure, of_layers, of_steps, &
+                                       of_well_in_rock, stress_means, undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
@@ -246,12 +246,13 @@ contains
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         first = min(1.0_rk, maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
-         first = min(held_at_first(scene, problem, state, self%of_first), &
-                     half*first*abs(row%fracture_fluid))
+         first = held_at_first(scene, problem, state, self%of_first)
+         associate (share => maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
+            if (share < 1.0_rk) first = min(first, half*share*abs(row%fracture_fluid))
+         end associate
          leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
                 *abs(row%leakoff) + first + lost
-         held = time(fracture_fluid) + error%fracture_volume - time(volume) &
+         held = time(fracture_fluid) + max(self%of_held, self%of_start - self%of_held) &
                 + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
          error%fracture_fluid = held
@@ -290,10 +291,9 @@ contains
          if (fracture%n_cells == 0) return
          longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
          error%connected_length = grown
-         if (row%stimulated_length > 0.0_rk) error%stimulated_length = grown + 2.0_rk*longest
-         if (row%connected_stimulated > 0.0_rk) then
-            error%connected_stimulated = grown + 2.0_rk*longest
-         end if
+         if (.not. (row%stimulated_length > 0.0_rk .or. row%max_slip > 0.0_rk)) return
+         error%stimulated_length = grown + 2.0_rk*longest
+         error%connected_stimulated = error%stimulated_length
       end associate
    end subroutine note_rest
 
@@ -308,7 +308,7 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> What is left of the errors of the fractures' first pressures [Pa].
+   !> What is left of the errors of the fractures' first pressures: sealed rock keeps them [Pa].
    function undrained(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
@@ -317,6 +317,9 @@ contains
 
       error = self%of_first*undrained_share(scene, problem, self%quantities%time - self%start, &
                                             self%held)
+      if (any(scene%sides%pressure_given) .or. allocated(problem%model%in_situ)) return
+      error = max(error, least_first*abs(self%fractures%first &
+                                         - scene%initial%pressure))
    end function undrained
 
    !> Remaining error of the first pressure in each fracture cell; none at a given pressure [Pa].
@@ -371,29 +374,35 @@ contains
    end function time_share
 
    !> Errors of the wells after a step; also those of rate and injectivity of the row.
-   subroutine note_wells(self, scene, problem, rows, stated, facts)
+   subroutine note_wells(self, scene, problem, state, rows, stated, facts)
       class(value_errors_t), intent(inout) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
       type(well_row_t), intent(inout) :: rows(:)
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
-      real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, share
-      integer :: w
+      real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, missing
+      real(rk) :: share
+      integer(ik) :: w
 
       if (size(rows) == 0) return
       call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
       by_length = merge(abs(stated%slope)*max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       changes = self%wells%changes()
       first = self%undrained(scene, problem)
-      do w = 1, size(rows)
+      do w = 1, size(rows, kind=ik)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
             share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
-            error%pressure = time(w) + share*changes(w) + by_length + of_solution*abs(row%pressure)
+            missing = problem%unresolved_at(state, findloc(problem%well_of, w, dim=1, kind=ik), &
+                                            rows%flow)
+            error%pressure = time(w) + share*changes(w) + by_length + missing &
+                             + of_solution*abs(row%pressure)
             if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
             if (.not. well%has_given_flow()) then
-               flow = max(share, self%of_flow) + self%of_drive
+               flow = max(share, self%of_flow) + self%of_drive &
+                      + min(1.0_rk, missing/max(tiny(1.0_rk), changes(w)))
                error%injected = time(2*n + w) + max(flow*abs(row%injected), self%of_held)
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)

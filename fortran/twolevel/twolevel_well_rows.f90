@@ -6,7 +6,7 @@ module twolevel_well_rows
    use report_rows, only: entry_row_t, well_row_t
    use scene_types, only: scene_t
    use twolevel_problem, only: coarse_problem_t
-   use twolevel_wells, only: between_cells, rate
+   use twolevel_wells, only: rate
    implicit none(type, external)
    private
 
@@ -124,13 +124,8 @@ contains
       real(rk) :: flow(size(pressure))
       integer(ik) :: w
 
-      if (size(pressure) == 1 .and. all(scene%injections%fracture > 0) .and. &
-          .not. scene%has_entries()) then
-         pressure = problem%well_pressure(state)
-      else
-         flow = well_flows(scene, problem, since, state)
-         pressure = [(pressure_at(problem, state, w, flow(w)), w=1, size(flow, kind=ik))]
-      end if
+      flow = well_flows(scene, problem, since, state)
+      pressure = [(pressure_at(problem, state, w, flow(w)), w=1, size(flow, kind=ik))]
    end function well_pressures
 
    !> Fill in the columns that are unknowns, for a well whose rate depends on pressures.
@@ -167,41 +162,17 @@ contains
       integer(ik) :: entry, k
 
       entry = findloc(problem%well_of, w, dim=1, kind=ik)
-      if (allocated(problem%entries(entry)%entries)) then
+      if (problem%entries(entry)%fracture == 0) then
+         pressure = problem%entry_in_situ(entry) + state%unknowns(3, problem%rock_cell(w)) &
+                    + problem%model%rock_wells%beyond_cell(w, flow, state%rings)
+      else if (allocated(problem%entries(entry)%entries)) then
          k = findloc(problem%model%wells%number, w, dim=1, kind=ik)
          call problem%model%wells%lost(k, flow, lost, slope)
          pressure = problem%well_in_situ(w) + state%well_head(k) - lost
       else
-         pressure = pressure_at_entry(problem, state, entry, flow)
+         pressure = problem%entry_pressure(state, entry, flow)
       end if
    end function pressure_at
-
-   !> Pressure where an entry meets fracture or rock: that of the cells or the joint that it
-   !! supplies, weighted by its shares, plus the loss of the flow up to the middle of the cell [Pa].
-   pure real(rk) function pressure_at_entry(problem, state, entry, flow) result(pressure)
-      type(coarse_problem_t), intent(in) :: problem
-      type(state_t), intent(in) :: state
-      integer(ik), intent(in) :: entry  !< number among those of all wells
-      real(rk), intent(in) :: flow  !< [m2/s]
-      logical :: between(size(problem%entries))
-
-      pressure = problem%entry_in_situ(entry)
-      associate (w => problem%well_of(entry), share => problem%share(:, entry), &
-                 s => problem%mesh%fracture%cell_s)
-         if (problem%entries(entry)%fracture == 0) then
-            pressure = pressure + state%unknowns(3, problem%rock_cell(w)) &
-                       + problem%model%rock_wells%beyond_cell(w, flow, state%rings)
-            return
-         end if
-         pressure = pressure + dot_product(share, state%pressure) &
-                    + dot_product(problem%joint_share(:, entry), state%joint_pressure)
-         between = between_cells(problem%entries, problem%share)
-         if (.not. between(entry)) return
-         ! The lengths of the condensed matrix may not exist before the first step.
-         pressure = pressure + flow*6.0_rk*problem%model%settings%viscosity &
-                    *sum(share**2*(s(2, :) - s(1, :))/state%aperture**3*problem%thickness(state))
-      end associate
-   end function pressure_at_entry
 
    !> Rows of the entries of a state, without their errors.
    pure function entry_rows(problem, state) result(rows)
@@ -222,7 +193,7 @@ contains
                row%fracture = problem%entries(entry)%fracture
                row%flow = state%well_flow(wells%n_all + e)
                if (abs(state%well_flow(w)) > 0.0_rk) row%share = row%flow/state%well_flow(w)
-               row%pressure = pressure_at_entry(problem, state, entry, row%flow)
+               row%pressure = problem%entry_pressure(state, entry, row%flow)
             end associate
          end do
       end associate

@@ -1,20 +1,26 @@
 !> Wells: the fracture cells that they supply, their prescribed rates and pressures, and the times
 !! at which these change.
+!!
+!! A well at a point of a fracture lies between the middle of its cell and that of the next cell, or
+!! a joint, and flow along the fracture is linear there. With the distances d1, d2 from these two,
+!! and l = d1 + d2,
+!!   q1 = q d2/l,   q2 = q d1/l,   p = p1 d2/l + p2 d1/l + R q d1 d2/l^2
+!! R being the resistance between the two, give the same flow and pressure as a well at its exact
+!! place. Behind the last middle before a tip nothing flows on: q1 = q, p = p1 + R q over d1.
 module twolevel_wells
    use base_kinds, only: ik, rk
-   use base_plane, only: nearest_place, norm2
-   use base_tolerances, only: same_place, same_value
+   use base_plane, only: nearest_share, point_distance
+   use base_tolerances, only: same_value
    use coarse_joints, only: joints_t
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut, wells_t
-   use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
    use scene_types, only: injection_t, no_limit
    use twolevel_overlaps, only: fracture_overlaps, overlaps_t
    implicit none(type, external)
    private
 
-   public :: ask_wells, between_cells, control_wells, entries_of, feed_joints, mean_pressure
-   public :: rate, share_wells, transfer_shares, wells_of_entries
+   public :: ask_wells, control_wells, entries_of, place_wells, rate, share_wells, transfer_shares
+   public :: wells_of_entries
 
 contains
 
@@ -47,83 +53,115 @@ contains
       of = [((w, e=1, wells(w)%entry_count()), w=1, size(wells, kind=ik))]
    end function wells_of_entries
 
-   !> Share of each well's rate in each fracture cell: 1 in the cell nearest to the well's point, or
-   !! one half in each of two cells at the same distance, or in every cell of the fracture by its
-   !! length.
+   !> Share of each well's rate in each cell of its fracture, by its length; those of wells at
+   !! points are found on each mesh (place_wells).
    pure subroutine share_wells(wells, fracture, share)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), allocatable, intent(out) :: share(:, :)  !< (fracture cells, wells) [-]
-      real(rk) :: distance(fracture%n_cells)
-      integer(ik) :: i, w
+      integer(ik) :: w
 
       allocate (share(fracture%n_cells, size(wells)), source=0.0_rk)
       do w = 1, size(wells, kind=ik)
          if (wells(w)%fracture == 0) cycle
-         associate (well => wells(w))
-            do i = 1, fracture%n_cells
-               distance(i) = huge(1.0_rk)
-               if (fracture%cell_fracture(i) /= well%fracture) cycle
-               share(i, w) = fracture%cell_s(2, i) - fracture%cell_s(1, i)
-               distance(i) = norm2(fracture_cell_centre(fracture, i) - [well%x, well%y])
-            end do
-            ! Between two cells rounding errors of the mesh would select one of them.
-            if (well%at_point) share(:, w) = merge(1.0_rk, 0.0_rk, distance &
-                                                   <= minval(distance)*(1.0_rk + same_value))
-            share(:, w) = share(:, w)/sum(share(:, w))
-         end associate
+         share(:, w) = merge(fracture%cell_s(2, :) - fracture%cell_s(1, :), 0.0_rk, &
+                             fracture%cell_fracture == wells(w)%fracture)
+         share(:, w) = share(:, w)/sum(share(:, w))
       end do
    end subroutine share_wells
 
-   !> Assign wells at an intersection of fractures to the joint itself, and to no cell.
-   pure subroutine feed_joints(wells, fracture, joints, share, joint_share)
+   !> Shares of the wells at points of fractures in cells and joints, and the ways to these. A tip
+   !! that grows in the next cell has no steady flow before it.
+   pure subroutine place_wells(wells, fracture, joints, roughness, share, joint_share, path)
       type(injection_t), intent(in) :: wells(:)
       type(fracture_mesh_t), intent(in) :: fracture
       type(joints_t), intent(in) :: joints
+      real(rk), intent(in) :: roughness(:)  !< (fracture cells) above 0 where they have grown [m]
       real(rk), intent(inout) :: share(:, :)  !< (fracture cells, wells) [-]
       real(rk), allocatable, intent(out) :: joint_share(:, :)  !< (joints, wells) [-]
-      real(rk) :: distance, near
-      integer(ik) :: b, w
+      !> (fracture cells, wells) pressure at the well above that in its cells, over the loss of its
+      !! flow in half of each of them [-]
+      real(rk), allocatable, intent(out) :: path(:, :)
+      real(rk) :: offset, t
+      integer(ik) :: cell, end, joint, next, w
 
-      allocate (joint_share(joints%n, size(wells)), source=0.0_rk)
+      allocate (joint_share(joints%n, size(wells)), path(fracture%n_cells, size(wells)), &
+                source=0.0_rk)
       do w = 1, size(wells, kind=ik)
          if (.not. wells(w)%at_point .or. wells(w)%fracture == 0) cycle
-         do b = 1, joints%branch_count()
-            associate (cell => joints%cell(b), joint => joints%joint(b))
-               if (joints%is_outlet(joint)) cycle
-               if (fracture%cell_fracture(cell) /= wells(w)%fracture) cycle
-               distance = norm2(fracture%point_xy(:, joints%point(joint)) &
-                                - [wells(w)%x, wells(w)%y])
-               near = same_place*(fracture%cell_s(2, cell) - fracture%cell_s(1, cell))
-               if (distance > near) cycle
-               share(:, w) = 0.0_rk
-               joint_share(:, w) = 0.0_rk
-               joint_share(joint, w) = 1.0_rk
-            end associate
-         end do
+         call find_cell(wells(w), fracture, cell, offset)
+         share(:, w) = 0.0_rk
+         share(cell, w) = 1.0_rk
+         end = merge(1_ik, 2_ik, offset < 0.0_rk)
+         offset = abs(offset)
+         if (offset < same_value) cycle
+         joint = 0
+         if (joints%n > 0) joint = findloc(joints%point, fracture%cell_points(end, cell), dim=1, &
+                                           kind=ik)
+         if (joint > 0) then
+            if (joints%is_outlet(joint)) cycle
+            if (offset > 1.0_rk - same_value) offset = 1.0_rk
+            share(cell, w) = 1.0_rk - offset
+            joint_share(joint, w) = offset
+            path(cell, w) = offset*(1.0_rk - offset)
+            cycle
+         end if
+         path(cell, w) = offset
+         next = cell_next(fracture, cell, end)
+         if (next == 0) cycle
+         if (roughness(next) > 0.0_rk .and. cell_next(fracture, next, end) == 0) cycle
+         associate (s => fracture%cell_s)
+            t = offset*(s(2, cell) - s(1, cell))/(s(2, cell) - s(1, cell) + s(2, next) - s(1, next))
+         end associate
+         if (abs(t - 0.5_rk) < same_value) t = 0.5_rk
+         share([cell, next], w) = [1.0_rk - t, t]
+         path([cell, next], w) = t*(1.0_rk - t)
       end do
-   end subroutine feed_joints
+   end subroutine place_wells
 
-   !> Whether each well lies between two cells.
-   pure function between_cells(wells, share) result(between)
-      type(injection_t), intent(in) :: wells(:)
-      real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
-      logical :: between(size(wells))
+   !> The cell of a well at a point, and its distance from the middle over half the length, negative
+   !! towards the start.
+   pure subroutine find_cell(well, fracture, cell, offset)
+      type(injection_t), intent(in) :: well
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(out) :: cell
+      real(rk), intent(out) :: offset  !< [-]
+      real(rk) :: distance(fracture%n_cells)
+      integer(ik) :: i
 
-      between = wells%at_point .and. count(share > 0.0_rk, dim=1) == 2
-   end function between_cells
+      distance = huge(1.0_rk)
+      associate (point => [well%x, well%y], xy => fracture%point_xy, ends => fracture%cell_points)
+         do i = 1, fracture%n_cells
+            if (fracture%cell_fracture(i) /= well%fracture) cycle
+            distance(i) = point_distance(point, xy(:, ends(:, i)))
+         end do
+         cell = minloc(distance, dim=1, kind=ik)
+         offset = 2.0_rk*nearest_share(point, xy(:, ends(:, cell))) - 1.0_rk
+      end associate
+   end subroutine find_cell
+
+   !> The cell behind an end of a cell of the same fracture; 0: none.
+   pure integer(ik) function cell_next(fracture, cell, end) result(next)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: cell
+      integer(ik), intent(in) :: end  !< 1: its start, 2: its end
+
+      next = cell + 2*end - 3
+      if (next < 1 .or. next > fracture%n_cells) then
+         next = 0
+      else if (fracture%cell_points(3 - end, next) /= fracture%cell_points(end, cell)) then
+         next = 0
+      end if
+   end function cell_next
 
    !> Shares on a new mesh: the wells supply the same cells as before. Where these have been
-   !! divided, each part gets its share, or for a well at a point the part that contains the point
-   !! gets the whole.
-   pure function transfer_shares(wells, fracture_before, fracture, before) result(after)
-      type(injection_t), intent(in) :: wells(:)
+   !! divided, each part gets its share.
+   pure function transfer_shares(fracture_before, fracture, before) result(after)
       type(fracture_mesh_t), intent(in) :: fracture_before, fracture
       real(rk), intent(in) :: before(:, :)  !< (old fracture cells, wells) [-]
       real(rk) :: after(fracture%n_cells, size(before, 2))
-      real(rk) :: distance(fracture%n_cells)
       type(overlaps_t) :: overlaps
-      integer(ik) :: i, k, w
+      integer(ik) :: i, k
 
       overlaps = fracture_overlaps(fracture_before, fracture)
       after = 0.0_rk
@@ -134,19 +172,6 @@ contains
                              *overlaps%length(k)/(s(2) - s(1))
             end associate
          end do
-      end do
-      do w = 1, size(wells, kind=ik)
-         if (.not. wells(w)%at_point .or. count(after(:, w) > 0.0_rk) < 2) cycle
-         do i = 1, fracture%n_cells
-            distance(i) = huge(1.0_rk)
-            if (.not. after(i, w) > 0.0_rk) cycle
-            associate (xy => fracture%point_xy(:, fracture%cell_points(:, i)), &
-                       s => fracture%cell_s(:, i), place => [wells(w)%x, wells(w)%y])
-               distance(i) = norm2(nearest_place(place, xy) - place)/(s(2) - s(1))
-            end associate
-         end do
-         after(:, w) = merge(1.0_rk, 0.0_rk, distance <= minval(distance) + same_place)
-         after(:, w) = after(:, w)/sum(after(:, w))
       end do
    end function transfer_shares
 
@@ -165,12 +190,12 @@ contains
    end function rate
 
    !> Data of the wells whose rate depends on pressures.
-   pure subroutine control_wells(given, share, joint_share, wells)
+   pure subroutine control_wells(given, share, joint_share, path, wells)
       type(injection_t), intent(in) :: given(:)
       real(rk), intent(in) :: share(:, :)  !< (fracture cells, entries) [-]
       real(rk), intent(in) :: joint_share(:, :)  !< (joints, entries) [-]
+      real(rk), intent(in) :: path(:, :)  !< (fracture cells, entries) [-]
       type(wells_t), intent(out) :: wells
-      logical :: between(size(share, 2))
       integer(ik), allocatable :: at(:), number(:)
       integer(ik) :: w
 
@@ -180,18 +205,17 @@ contains
       wells%n = count(given%is_controlled() .and. given%fracture > 0)
       wells%n_all = size(number, kind=ik)
       if (wells%n_all == 0) return
-      between = between_cells(entries_of(given), share)
       at = [(findloc(wells_of_entries(given), number(w), dim=1, kind=ik), w=1, wells%n)]
       call add_entries(given, number(:wells%n), wells, at)
       wells%number = number
       wells%share = share(:, at)
       wells%joint_share = joint_share(:, at)
-      wells%is_between = between(at)
+      wells%path = path(:, at)
       do w = 1, merge(wells%n, 0_ik, wells%n_entries > 0)
          if (wells%first_entry(w) == w) cycle
          wells%share(:, w) = 0.0_rk
          wells%joint_share(:, w) = 0.0_rk
-         wells%is_between(w) = .false.
+         wells%path(:, w) = 0.0_rk
       end do
       wells%storage = given(number)%storage
       wells%friction = given(number)%friction
@@ -254,22 +278,5 @@ contains
          end associate
       end do
    end subroutine ask_wells
-
-   !> Mean pressure of the cells and joints that wells supply; 0 without any [Pa].
-   pure real(rk) function mean_pressure(share, pressure, joint_share, joint_pressure) result(mean)
-      real(rk), intent(in) :: share(:, :)  !< (fracture cells, wells) [-]
-      real(rk), intent(in) :: pressure(:)  !< (fracture cells) [Pa]
-      real(rk), intent(in) :: joint_share(:, :)  !< (joints, wells) [-]
-      real(rk), intent(in) :: joint_pressure(:)  !< (joints) [Pa]
-      logical :: is_well(size(pressure)), is_fed(size(joint_pressure))
-
-      is_well = sum(share, dim=2) > 0.0_rk
-      is_fed = sum(joint_share, dim=2) > 0.0_rk
-      mean = 0.0_rk
-      if (any(is_well) .or. any(is_fed)) then
-         mean = (sum(pressure, mask=is_well) + sum(joint_pressure, mask=is_fed)) &
-                /(count(is_well) + count(is_fed))
-      end if
-   end function mean_pressure
 
 end module twolevel_wells

@@ -50,9 +50,8 @@ def main() -> None:
         print("linear", [p + REFERENCE for p in places])
         print("      ", [float(f"{VISCOSITY * (1 + EXPONENT * p):.13g}") for p in places])
     k = COMPRESSIBILITY - EXPONENT
-    for size in (0.1, 0.05, 0.02):
-        flow = math.expm1(k * (SIDE - REFERENCE)) / k / (1 - size / 2)
-        print("flow at a given pressure", size, flow * APERTURE**3 / (12 * VISCOSITY))
+    flow = math.expm1(k * (SIDE - REFERENCE)) / k
+    print("flow at a given pressure", flow * APERTURE**3 / (12 * VISCOSITY))
 
 
 if __name__ == "__main__":

@@ -166,6 +166,43 @@ def injected(draw: Draw) -> Scene:
     return scene
 
 
+def placed(draw: Draw) -> Scene:
+    """Two or three wells at places of one fracture or of two that cross; cells coarse to fine."""
+    length = draw.among(1.0, 10.0, 50.0)
+    scene, (_, least) = base(draw, length)
+    lines = []
+    for angle in (draw.between(0.1, 1.4), draw.between(1.7, 3.0)):
+        end = 0.5 * length * np.round([math.cos(angle), math.sin(angle)], 3)
+        lines.append([-end, end])
+    lines = lines[: draw.among(1, 1, 2)]
+    add_fractures(draw, scene, [np.array(line) for line in lines], "slide")
+    aperture = draw.decades(2e-5, 5e-4)
+    for fracture in scene["fracture"]:
+        fracture["aperture"] = aperture
+    fluid(draw, scene, least, draw.decades(1e-20, 1e-16))
+    end = draw.decades(100.0, 1e5)
+    start = scene["initial"]["pressure"]
+    drop = draw.decades(1e4, 2e6)
+    rate = drop * aperture**3 / (12.0 * scene["fluid"]["viscosity"] * length)
+    scene["injection"] = []
+    for i in range(draw.among(2, 2, 3)):
+        f = draw.among(*range(len(lines)))
+        share = draw.between(0.02, 0.98)
+        x, y = (float(f"{v:.6g}") for v in (1.0 - share) * lines[f][0] + share * lines[f][1])
+        well = {"fracture": f"f{f + 1}", "x": x, "y": y}
+        if i == 1 and draw.among(True, False):
+            well["pressure"] = start
+        else:
+            well["rate"] = float(f"{rate * (1.0, -1.0, draw.between(-0.5, 0.5))[i]:.3g}")
+        scene["injection"].append(well)
+    scene["time"] = {"end": end, "tolerance": 0.01}
+    scene["growth"] = {"intensities": True}
+    cells(draw, scene, length)
+    size = length / draw.among(2, 3, 5, 10, 10, 20)
+    scene["coarse"]["size_fracture"] = size
+    return scene
+
+
 def fluid(draw: Draw, scene: Scene, least: float, permeability: float) -> None:
     """Fluid in fractures and rock."""
     porosity = draw.between(0.01, 0.1)
@@ -208,4 +245,4 @@ def growing(draw: Draw) -> Scene:
     return scene
 
 
-FAMILIES = {"body": body, "injected": injected, "growing": growing}
+FAMILIES = {"body": body, "injected": injected, "placed": placed, "growing": growing}

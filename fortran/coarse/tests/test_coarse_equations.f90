@@ -117,8 +117,11 @@ contains
          wells%share(1:2, 10) = 0.5_rk
          wells%share(3:4, 4) = 0.5_rk
          wells%share(5, 5) = 1.0_rk
-         wells%is_between = [.false., .false., .false., .true., .false., .true., .false., &
-                             .false., .false., .true.]
+         allocate (wells%path(n, n_wells + 5), source=0.0_rk)
+         wells%path([2, 3], 6) = 0.25_rk
+         wells%path(4, 8) = 0.7_rk
+         wells%path([1, 2], 10) = 0.25_rk
+         wells%path([3, 4], 4) = 0.25_rk
          wells%control = [control_rate, control_pressure, control_limited, control_limited, &
                           control_shut]
          wells%rate = 1.0e-6_rk*[1.0_rk, 0.0_rk, 2.0_rk, -1.0_rk, 0.0_rk]

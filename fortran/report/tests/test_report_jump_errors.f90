@@ -11,6 +11,7 @@ program test_report_jump_errors
    call test_crack()
    call test_zone()
    call test_kink()
+   call test_crossing()
    call test_unevenness()
    call checks%finish()
 
@@ -82,6 +83,28 @@ contains
                               1.0e-12_rk, "joint")
       end associate
    end subroutine test_kink
+
+   !> A cell of another fracture ends in the middle at a right angle: like a kink where it moves.
+   subroutine test_crossing()
+      type(fracture_mesh_t) :: mesh
+      type(jump_errors_t) :: errors
+
+      mesh = straight(10_ik)
+      mesh%n_cells = 11
+      mesh%n_points = 12
+      mesh%cell_fracture = [mesh%cell_fracture, 2_ik]
+      mesh%cell_points = reshape([mesh%cell_points, 6_ik, 12_ik], [2, 11])
+      mesh%cell_s = reshape([mesh%cell_s, 0.0_rk, 1.0_rk], [2, 11])
+      mesh%point_xy = reshape([mesh%point_xy, 5.0_rk, 1.0_rk], [2, 12])
+      mesh%point_kind = [mesh%point_kind, point_tip]
+      mesh%point_kind(6) = point_joint_t
+      errors = relative_jump_errors(mesh, spread(.true., 1, 11), finite_volumes)
+      call checks%is_close(errors%share(3), 0.005_rk + 0.2_rk/5.0_rk &
+                           + (0.075_rk + 0.03_rk)/2.5_rk, 1.0e-12_rk, "crossing")
+      call checks%is_close(errors%kink(5), 0.0_rk, 0.0_rk, "no kink")
+      errors = relative_jump_errors(mesh, [spread(.true., 1, 10), .false.], finite_volumes)
+      call checks%is_close(errors%share(3), 0.005_rk + 0.075_rk/2.5_rk, 1.0e-12_rk, "at rest")
+   end subroutine test_crossing
 
    !> A linear profile has differences at its ends only.
    subroutine test_unevenness()
