@@ -10,8 +10,8 @@
 !!   B q = H p - given scalars on the boundary.
 !!
 !! Next to a face with a layer (coarse_layers) the scalar at the outer end of the layer takes the
-!! place of that at the face, and the resistance of the layer is taken out of B. The scalar of a cell
-!! may be that of another point than its centre.
+!! place of that at the face, and the resistance of the layer is taken out of B. The scalar of a
+!! cell may be that of another point than its centre.
 module coarse_diffusion
    use base_kinds, only: ik, rk
    use coarse_elimination, only: fix_unknown, local_system_t, new_local_system, response_t

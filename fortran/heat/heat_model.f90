@@ -39,9 +39,9 @@ module heat_model
    !! flows through faces.
    integer(ik), parameter :: finer = 2
 
-   !> A layer that is alone in its cell is nearly as thick as the distance of the centre from the face, and
-   !! what it leaves of the cell has its temperature a little behind the centre. Fronts that pass
-   !! from layers to cells are best with these two (test_heat_steps).
+   !> A layer that is alone in its cell is nearly as thick as the distance of the centre from the
+   !! face, and what it leaves of the cell has its temperature a little behind the centre. Fronts
+   !! that pass from layers to cells are best with these two (test_heat_steps).
    real(rk), parameter :: thickest = 0.98_rk, inwards = 0.176_rk  ! over that distance [-]
 
    type :: heat_model_t
@@ -380,7 +380,8 @@ contains
 
       k = 1
       if (present(which)) k = which
-      associate (c => self%mesh%face_cells(k, f), ends => self%mesh%xy(:, self%mesh%face_nodes(:, f)))
+      associate (c => self%mesh%face_cells(k, f), &
+                 ends => self%mesh%xy(:, self%mesh%face_nodes(:, f)))
          conductance = self%rock%mobility_at(c)*face_length(self%mesh, f) &
                        /(abs(dot_product(self%place(:, c) - ends(:, 1), &
                                          outward_normal(self%mesh, f))) - from)

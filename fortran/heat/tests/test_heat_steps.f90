@@ -141,7 +141,8 @@ contains
       type(heat_model_t) :: heat
       type(heat_state_t) :: now
       type(error_t), allocatable :: error
-      real(rk), parameter :: conductivity = 2.6_rk*(0.1_rk/8.0_rk)**2, cold = 50.0_rk, tolerance = 0.01_rk
+      real(rk), parameter :: conductivity = 2.6_rk*(0.1_rk/8.0_rk)**2, cold = 50.0_rk
+      real(rk), parameter :: tolerance = 0.01_rk
       real(rk), parameter :: times(8) = [minute, 3600.0_rk, 1.0e6_rk, 3.0e6_rk, 1.0e7_rk, &
                                          years, 2.0_rk*years, 10.0_rk*years]
       real(rk), allocatable :: error_at(:)
