@@ -223,9 +223,9 @@ contains
          if (self%stepper%is_slow(left)) then
             call raise_error(error, "", "no progress in time: "// &
                              brief_text(self%stepper%slow_time, 4)//" s in 500 steps, "// &
-                             brief_text(left, 4)//" s to go: flow or contact changes in shorter "// &
-                             "times, as where fractures open and close in turn; use a smaller "// &
-                             "rate, or a larger tolerance of &time")
+                             brief_text(left, 4)//" s to go: flow or contact changes within "// &
+                             "shorter times, as where fractures open and close in turn; use a "// &
+                             "smaller rate, or a larger tolerance of &time")
             return
          end if
          self%step%dt = self%stepper%step_to(left)
