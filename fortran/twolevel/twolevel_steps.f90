@@ -221,7 +221,7 @@ contains
       end if
       associate (left => next_switch(self%scene, self%now%coarse%time) - self%now%coarse%time)
          if (self%stepper%is_slow(left)) then
-            call raise_error(error, "", "no progress in time: "// &
+            call raise_error(error, "", "hardly any progress: "// &
                              brief_text(self%stepper%slow_time, 4)//" s in 500 steps, "// &
                              brief_text(left, 4)//" s to go: flow or contact changes within "// &
                              "shorter times, as where fractures open and close in turn; use a "// &
