@@ -169,7 +169,9 @@ contains
             self%place(:, c) = cell_centre(mesh, c)
             self%of_scalar(at_component(c, 3_ik)) = c
          end do
-         do i = 1, size(layers%cells, kind=ik)
+         n = 0
+         if (layers%n > 0) n = size(layers%cells, kind=ik)
+         do i = 1, n
             if (layers%of_cell%length(i) > 1) cycle
             associate (at => self%place(:, layers%cells(i)), &
                        face => mesh%face_nodes(:, mesh%layer_face(layers%of_cell%at(i, 1_ik))))
