@@ -48,6 +48,13 @@ DIMENSIONS: dict[str, tuple[float, float, float]] = {
     "Pa s2/m4": (-4.0, 1.0, 2.0),
     "m2/Pa": (2.0, -1.0, 0.0),
     "kg/m3": (-2.0, 1.0, 2.0),
+    "K": (0.0, 0.0, 0.0),
+    "1/K": (0.0, 0.0, 0.0),
+    "K/m": (-1.0, 0.0, 0.0),
+    "J/m3/K": (0.0, 1.0, 0.0),
+    "W/m/K": (2.0, 1.0, -1.0),
+    "W/m": (2.0, 1.0, -1.0),
+    "W/m2": (1.0, 1.0, -1.0),
 }
 
 # Defaults with a dimension, in groups that a scene with a fluid need not have.

@@ -88,6 +88,25 @@ def test_growth_in_other_units(tmp_path: Path, given: Path, units: Units) -> Non
             assert {column: error for column, error in apart.items() if not error <= most} == {}
 
 
+def test_growth_by_cold_water_in_other_units(tmp_path: Path) -> None:
+    """With heat, too, no length is absolute."""
+    text = SCENE
+    for old, new in (
+        ("1.5e6", "1.5e7, heat_capacity = 2.2e6, heat_conductivity = 2.6, heat_expansion = 2.4e-5"),
+        ("viscosity = 3.0e-4", "viscosity = 3.0e-4, heat_capacity = 4.2e6"),
+        ("rate = 1.0e-5 /", "rate = 1.0e-5, temperature = 350.0 /\n&heat temperature = 400.0 /"),
+        ("stop_gain = 0.3", "stop_gain = 0.005"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    units = Units(length=4.0**5)
+    one = run(tmp_path, in_units(text, Units()), "one")
+    other = run(tmp_path, in_units(text, units), "other")
+    for name in ("history.csv", "tips.csv"):
+        found = differences(table(one / name), table(other / name, units), ROUNDING)
+        assert {column: error for column, error in found.items() if not error <= 1.0e-7} == {}
+
+
 @pytest.mark.parametrize("scene", ["crossing", "l_panel"])
 def test_shipped_scenes_in_other_units(tmp_path: Path, scene: str) -> None:
     """A network with flow, slip and joints, and a body without a fluid: no length is absolute."""

@@ -6,7 +6,10 @@
 !!   H_1 T_1 - H_0 T_0 + dt sum (a T_1 - b T_1') = 0
 !! over the links of heat_links, with the multi-point fluxes of conduction. The unknown is the
 !! change of T in the half, and its right-hand side contains differences of temperatures only:
-!! what does not change is exact. The limited temperatures at the ends of fracture cells are
+!! what does not change is exact. Where the flows of a step take more fluid out of a fracture cell
+!! than it has (the roughness of new cells is compressed but stores none), the rock beside it
+!! supplies what is missing, and cells what is missing in a joint: H is never negative, and no heat
+!! is lost. The limited temperatures at the ends of fracture cells are
 !! iterated on the right-hand side. The matrix M is an M-matrix, which keeps temperatures between
 !! those before and outside, as far as the multi-point fluxes are (no obtuse or cut cells).
 !!
@@ -61,6 +64,7 @@ contains
 
       allocate (produced(2, size(state%well_temperature)), source=0.0_rk)
       call widen_range(heat, state)
+      call supply_missing(heat, dt, state%capacity)
       left = dt
       shortest = tiny_step*dt
       do while (left > 0.0_rk)
@@ -91,6 +95,62 @@ contains
       end do
       call set_well_temperatures(heat, produced, state)
    end subroutine advance_heat
+
+   !> Let the rock beside fracture cells, and cells at joints, supply the fluid that flows out of
+   !! them in a step beyond what they have.
+   pure subroutine supply_missing(heat, dt, capacity)
+      class(heat_model_t), intent(inout) :: heat
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: capacity(:)  !< (unknowns) before the step [J/(m K)]
+      real(rk) :: missing(heat%n)  ! [W/(m K)]
+      integer(ik) :: c, f, k, l, side
+
+      missing = -capacity/dt - gains(heat)
+      do k = 1, size(heat%links, kind=ik)
+         associate (link => heat%links(k), joint => heat%links(k)%ends(2))
+            if (joint < heat%first_joint) cycle
+            if (.not. missing(joint) > 0.0_rk) cycle
+            link%flow = link%flow + missing(joint)
+            missing(link%ends(1)) = missing(link%ends(1)) + missing(joint)
+            missing(joint) = 0.0_rk
+         end associate
+      end do
+      do c = heat%first_cell, heat%first_joint - 1
+         if (.not. missing(c) > 0.0_rk) cycle
+         do side = 1, 2
+            f = heat%mesh%fracture%cell_faces(side, c - heat%first_cell + 1)
+            heat%links(f)%flow = heat%links(f)%flow + 0.5_rk*missing(c)
+            if (heat%layers%n == 0) cycle
+            l = heat%mesh%face_layer(f)
+            if (l == 0) cycle
+            ! The links of a layer are numbered as its nodes.
+            do k = heat%first_node(l), heat%last_node(l)
+               associate (link => heat%links(heat%mesh%n_faces - heat%mesh%n_cells + k))
+                  link%flow = link%flow + 0.5_rk*missing(c)
+               end associate
+            end do
+         end do
+      end do
+   end subroutine supply_missing
+
+   !> Gain of capacity by the flows [W/(m K)].
+   pure function gains(heat) result(gain)
+      class(heat_model_t), intent(in) :: heat
+      real(rk) :: gain(heat%n)
+      integer(ik) :: k
+
+      gain = 0.0_rk
+      do k = 1, size(heat%links, kind=ik)
+         associate (link => heat%links(k))
+            if (link%ends(1) > 0) gain(link%ends) = gain(link%ends) + link%flow*[-1.0_rk, 1.0_rk]
+         end associate
+      end do
+      do k = 1, size(heat%externals, kind=ik)
+         associate (external => heat%externals(k), i => heat%externals(k)%unknown)
+            gain(i) = gain(i) + external%flow
+         end associate
+      end do
+   end function gains
 
    !> Solve for the temperatures after each half of a substep, and for what those after it are too
    !! large.
@@ -210,7 +270,7 @@ contains
       col = [(i, i=1, heat%n), heat%col, (max(heat%links(k)%ends([1, 2, 2, 1]), 1_ik), &
                                           k=1, size(heat%links, kind=ik))]
       allocate (values(size(row)), source=0.0_rk)
-      gain = 0.0_rk
+      gain = half(2)%dt*gains(heat)
       associate (dt => half(2)%dt, links => values(heat%n + size(heat%row) + 1:))
          values(heat%n + 1:heat%n + size(heat%row)) = -dt*heat%conduction
          do k = 1, size(heat%links, kind=ik)
@@ -218,18 +278,16 @@ contains
                if (link%ends(1) == 0) cycle
                ab = dt*coefficients(link%conductance, link%flow, link%conducts)
                links(4*k - 3:4*k) = [ab(1), -ab(2), ab(2), -ab(1)]
-               gain(link%ends) = gain(link%ends) + dt*link%flow*[-1.0_rk, 1.0_rk]
             end associate
          end do
          do k = 1, size(heat%externals, kind=ik)
             associate (external => heat%externals(k), i => heat%externals(k)%unknown)
                ab = dt*coefficients(external%conductance, external%flow, .true.)
                values(i) = values(i) + ab(2)
-               gain(i) = gain(i) + dt*external%flow
             end associate
          end do
       end associate
-      ! Flows of another step, as for a step to come, may take out more fluid than there is.
+      ! Negative by rounding, or in a cell of rock.
       half(1)%capacity = max(capacity + gain, 0.0_rk)
       half(2)%capacity = max(half(1)%capacity + gain, 0.0_rk)
       values(:heat%n) = values(:heat%n) + half(2)%capacity

@@ -29,7 +29,6 @@ module heat_transfer
    end type piece_t
 
    integer, parameter :: rise = 1, rate = 2  !< of what is transferred
-   real(rk), parameter :: tiny_joint = 1.0e-12_rk  !< fluid of one between new cells [m2]
 
 contains
 
@@ -328,7 +327,8 @@ contains
                    new%links%ends(2) == joint)
       associate (total => sum(capacity(cells)))
          after(:, joint) = sum(after(:, cells), dim=2)/size(cells)
-         capacity(joint) = new%fluid_capacity*tiny_joint
+         ! Between new cells, which have no fluid yet.
+         capacity(joint) = nothing**2*maxval(capacity(new%first_cell:new%first_joint - 1))
          if (.not. total > 0.0_rk) return
          after(:, joint) = matmul(after(:, cells), capacity(cells))/total
          capacity(joint) = nothing*total

@@ -121,6 +121,8 @@ contains
       call archive%item("arrival_cuts", stepper%arrival_cuts)
       call archive%item("at_switches", stepper%at_switches)
       call archive%item("without_headway", stepper%without_headway)
+      call archive%item("slow_steps", stepper%slow_steps)
+      call archive%item("slow_time", stepper%slow_time)
       call archive%item("was_cut", stepper%was_cut)
       call archive%item("is_short", stepper%is_short)
       call archive%list("pressure", stepper%pressure)

@@ -96,6 +96,10 @@ module twolevel_stepping
    !! times the shortest step.
    integer, parameter :: most_in_vain = 300
    real(rk), parameter :: headway = 100.0_rk
+   !> It also ends if so many steps without growth take no more than this share of the time to the
+   !! next switch, as where fractures open and close in turn [-].
+   integer, parameter :: many_steps = 500
+   real(rk), parameter :: little = 0.005_rk
 
    !> Control of the step length.
    type :: stepper_t
@@ -122,6 +126,8 @@ module twolevel_stepping
       !> time error of the present step before its last cut for this error [-]
       real(rk) :: error_before = huge(1.0_rk)
       integer :: without_headway = 0  !< number of such steps since the last longer one
+      integer :: slow_steps = 0  !< steps without growth, up to many_steps, and
+      real(rk) :: slow_time = 0.0_rk  !< the time that they took [s]
       logical :: was_cut = .false.  !< the present step has been cut
       logical :: is_short = .false.  !< after growth, until the pressure at the new tips has settled
       !> pressure of the new cells after the last short step [Pa]
@@ -134,6 +140,7 @@ module twolevel_stepping
       procedure :: cut
       procedure :: step_done
       procedure :: is_stuck
+      procedure :: is_slow
       procedure :: settle
       procedure :: network_grew
    end type stepper_t
@@ -308,6 +315,12 @@ contains
          self%without_headway = self%without_headway + 1
       end if
       self%was_cut = .false.
+      if (self%slow_steps == many_steps .or. trial%advance > 0.0_rk) then
+         self%slow_steps = 0
+         self%slow_time = 0.0_rk
+      end if
+      self%slow_steps = self%slow_steps + 1
+      self%slow_time = self%slow_time + dt
    end subroutine step_done
 
    !> Limit the next step where a step in which tips advanced too far has been cut to this one: to
@@ -360,6 +373,15 @@ contains
 
       is_stuck = self%without_headway >= most_in_vain
    end function is_stuck
+
+   !> Whether steps with the error chosen hardly bring the run forward.
+   pure logical function is_slow(self, left)
+      class(stepper_t), intent(in) :: self
+      real(rk), intent(in) :: left  !< time to the next switch [s]
+
+      is_slow = self%tolerance > 0.0_rk .and. self%slow_steps == many_steps .and. &
+                self%slow_time < little*left
+   end function is_slow
 
    !> Power of two by which the next step should be longer than a step with this result.
    pure integer function powers(self, trial)

@@ -84,17 +84,17 @@ contains
    subroutine find_step(self, trial, wanted, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(trial_t), intent(out) :: trial  !< of the step
-      real(rk), intent(out) :: wanted  !< length of the step before it was cut [s]
+      real(rk), intent(out) :: wanted  !< length of the step before it was cut or shortened [s]
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       logical :: is_unstable
 
+      wanted = self%stepper%next
       self%step%is_after_switch = self%step%ends_at_switch
       is_unstable = .false.
       if (self%tape%follows) call replay_step(self, trial, timers, error)
       if (allocated(error)) return
-      wanted = self%step%dt
-      if (.not. self%tape%follows) call search_step(self, trial, wanted, is_unstable, timers, error)
+      if (.not. self%tape%follows) call search_step(self, trial, is_unstable, timers, error)
       if (allocated(error)) return
       is_unstable = is_unstable .or. trial%jumps
       call self%tape%keep("is_unstable", is_unstable)
@@ -108,26 +108,31 @@ contains
    !! find no equilibrium in a step that is short compared with the time since the wells were
    !! switched, or in the shortest step, whose time error is not checked: then the step consists of
    !! this growth alone, until its arrest.
-   subroutine search_step(self, trial, wanted, is_unstable, timers, error)
+   subroutine search_step(self, trial, is_unstable, timers, error)
       class(two_levels_t), intent(inout) :: self
       type(trial_t), intent(out) :: trial  !< of the step
-      real(rk), intent(out) :: wanted  !< length of the step before it was cut [s]
       logical, intent(out) :: is_unstable
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
       logical :: is_last, is_too_short, may_jump
 
-      wanted = 0.0_rk
       is_unstable = .false.
       if (self%stepper%is_stuck()) then
          call raise_error(error, "", "no progress in time: hundreds of steps were cut to about "// &
                           brief_text(self%step%dt, 4)//" s, the last because "//self%step%why_cut)
          return
       end if
-      associate (time => self%now%coarse%time)
-         self%step%dt = self%stepper%step_to(next_switch(self%scene, time) - time)
+      associate (left => next_switch(self%scene, self%now%coarse%time) - self%now%coarse%time)
+         if (self%stepper%is_slow(left)) then
+            call raise_error(error, "", "hardly any progress: "// &
+                             brief_text(self%stepper%slow_time, 4)//" s in 500 steps, "// &
+                             brief_text(left, 4)//" s to go: flow or contact changes within "// &
+                             "shorter times, as where fractures open and close in turn; use a "// &
+                             "smaller rate, or a larger tolerance of &time")
+            return
+         end if
+         self%step%dt = self%stepper%step_to(left)
       end associate
-      wanted = self%step%dt
       is_too_short = .false.
       is_last = .false.
       may_jump = self%stepper%expects_jump() .and. &
@@ -269,7 +274,7 @@ contains
    subroutine accept_step(self, trial, wanted)
       class(two_levels_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
-      real(rk), intent(in) :: wanted  !< length of the step before it was cut [s]
+      real(rk), intent(in) :: wanted  !< length of the step before it was cut or shortened [s]
 
       call note_wells(self, self%step%dt, self%step%ends_at_switch)
 self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene, self%before%time) &
@@ -291,6 +296,9 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
          self%stepper%next = wanted
       end if
       if (self%step%ends_at_switch) call shorten_for_wells(self)
+      ! A step that the end has shortened does not shorten those of a run that goes on.
+      if (.not. self%now%coarse%time < self%scene%time%end) self%stepper%next = &
+         max(self%stepper%next, wanted)
       call self%now%trend%accept(self%before, self%now%coarse, self%step%dt)
       ! The rates of a step in which cracks have joined do not apply to the next step.
       if (trial%has_joined) call self%follow_trend(at_rest=.false.)

@@ -418,6 +418,14 @@ contains
       call checks%is_true(stepper%is_stuck(), "no headway")
       call stepper%step_done(trial, 1.0_rk)
       call checks%is_true(.not. stepper%is_stuck(), "a longer step is headway")
+      call stepper%begin(chosen)
+      do k = 1, 500
+         call checks%is_true(.not. stepper%is_slow(1.0e6_rk), "not slow yet")
+         call stepper%step_done(trial_t(converged=.true.), 1.0_rk)
+      end do
+      call checks%is_true(stepper%is_slow(1.0e6_rk) .and. .not. stepper%is_slow(5.0e4_rk), "slow")
+      call stepper%step_done(trial_t(converged=.true., advance=0.5_rk), 1.0_rk)
+      call checks%is_true(.not. stepper%is_slow(1.0e6_rk), "growth is headway")
       dt = 1.0e-3_rk*stepper%shortest
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_close(dt, 1.0e-3_rk*stepper%shortest, 0.0_rk, "what is left to a switch stays")
