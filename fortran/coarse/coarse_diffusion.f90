@@ -10,8 +10,7 @@
 !!   B q = H p - given scalars on the boundary.
 !!
 !! Next to a face with a layer (coarse_layers) the scalar at the outer end of the layer takes the
-!! place of that at the face, and the resistance of the layer is taken out of B. The scalar of a
-!! cell may be that of another point than its centre.
+!! place of that at the face, and the resistance of the layer is taken out of B.
 module coarse_diffusion
    use base_kinds, only: ik, rk
    use coarse_elimination, only: fix_unknown, local_system_t, new_local_system, response_t
@@ -28,7 +27,7 @@ contains
 
    !> The equations of the fluxes of one region.
    pure subroutine set_flux_equations(mesh, resistivity, is_given, given, regions, region, local, &
-                                      relief, shift)
+                                      relief)
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)
@@ -39,14 +38,12 @@ contains
       type(local_system_t), intent(inout) :: local
       !> (layers) resistance of the layers at each end of their faces [Pa s]
       real(rk), intent(in), optional :: relief(:)
-      !> (2, cells) from the centre of a cell to the point of its scalar [m]
-      real(rk), intent(in), optional :: shift(:, :)
       integer(ik) :: m, n
 
       m = regions%scalar_count(region)
       n = regions%flow_faces%length(region)
       call new_local_system(n, m, local)
-      call add_corners(mesh, resistivity, regions, region, local, shift)
+      call add_corners(mesh, resistivity, regions, region, local)
       call add_fracture_faces(mesh, regions, region, local)
       if (present(relief)) call add_layers(mesh, regions, region, relief, local)
       local%equations(n + 1:n + m, :n) = local%coupling(:m, :n)
@@ -54,13 +51,12 @@ contains
    end subroutine set_flux_equations
 
    !> Contributions of the corners of cells around the vertex.
-   pure subroutine add_corners(mesh, resistivity, regions, region, local, shift)
+   pure subroutine add_corners(mesh, resistivity, regions, region, local)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
-      real(rk), intent(in), optional :: shift(:, :)  !< (2, cells) [m]
       integer(ik) :: at(2), c, cell, faces(2), i, j, k, kind
       real(rk) :: sign_out(2), length(2), lever(2, 2), area, of_cell(2, 2), w
 
@@ -82,15 +78,6 @@ contains
                                                             matmul(of_cell, lever(:, j)))
             end do
             local%coupling(c, at(j)) = 0.5_rk*sign_out(j)*length(j)
-         end do
-         if (.not. present(shift)) cycle
-         do i = 1, 2
-            do j = 1, 2
-               local%equations(at(j), at(i)) = local%equations(at(j), at(i)) &
-                                               - local%coupling(c, at(i))*sign_out(j) &
-                                               *dot_product(shift(:, cell), &
-                                                            matmul(of_cell, lever(:, j)))
-            end do
          end do
       end do
    end subroutine add_corners

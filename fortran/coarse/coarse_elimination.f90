@@ -37,7 +37,7 @@ module coarse_elimination
 
    !> What a vertex adds to the global system.
    type :: share_t
-      real(rk), allocatable :: matrix(:, :)  !< (m, m) of unknowns in balances; symmetric as M is
+      real(rk), allocatable :: matrix(:, :)  !< (m, m) symmetric
       real(rk), allocatable :: known(:)  !< (m) right-hand side, from boundary data
    end type share_t
 

@@ -17,8 +17,8 @@ module coarse_layer_places
 
    public :: add_tip_flow, cell_ahead, place_layers, tip_conductance
 
-   !> A layer is at most this part of the distance of the centre of the cell from the face, unless
-   !! another one is asked for, and those of m faces at most the other part over m [-].
+   !> A layer is at most this part of the distance of the centre of the cell from the face, and
+   !! those of m faces at most the other part over m [-].
    real(rk), parameter :: thickest = 0.75_rk, all_together = 1.35_rk
    !> Thickness of the first volume over sqrt(c dt) of the first step [-].
    real(rk), parameter :: first_volume = 0.5_rk
@@ -31,14 +31,13 @@ module coarse_layer_places
 contains
 
    !> Choose the faces that get layers, number the layers in the mesh, and set up their chains.
-   subroutine place_layers(mesh, rock, sides, first_step, layers, times_finer, at_most)
+   subroutine place_layers(mesh, rock, sides, first_step, layers, times_finer)
       type(mesh_t), intent(inout) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       real(rk), intent(in) :: first_step  !< [s]
       type(layers_t), intent(out) :: layers
       integer(ik), intent(in), optional :: times_finer  !< of coarse_chain
-      real(rk), intent(in), optional :: at_most  !< instead of `thickest` [-]
       logical :: is_layered(3)
       integer(ik) :: c, f, k, l
       integer(ik), allocatable :: cell(:), face_of_cell(:)
@@ -70,7 +69,7 @@ contains
       end do
       layers%cell = cell
       layers%face_of_cell = face_of_cell
-      call set_up(mesh, rock, first_step, layers, times_finer, at_most)
+      call set_up(mesh, rock, first_step, layers, times_finer)
    end subroutine place_layers
 
    !> K/mu across a face [m2/(Pa s)].
@@ -108,19 +107,16 @@ contains
    end function uniaxial_storage
 
    !> The chains, their places among the unknowns, and the cells they lie in.
-   subroutine set_up(mesh, rock, first_step, layers, times_finer, at_most)
+   subroutine set_up(mesh, rock, first_step, layers, times_finer)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       real(rk), intent(in) :: first_step  !< [s]
       type(layers_t), intent(inout) :: layers
       integer(ik), intent(in), optional :: times_finer
-      real(rk), intent(in), optional :: at_most  !< [-]
-      real(rk) :: mobility, part, storage, thickness
+      real(rk) :: mobility, storage, thickness
       integer(ik) :: f, k, l, n
       integer(ik), allocatable :: place(:)
 
-      part = thickest
-      if (present(at_most)) part = at_most
       n = layers%n
       allocate (layers%chain(n), layers%fracture_cell(n), layers%side(n), layers%at(3, n))
       allocate (layers%between(n), layers%relief(n), layers%given(n), source=0.0_rk)
@@ -155,7 +151,7 @@ contains
             end if
             mobility = mobility_across(mesh, rock, c, f)
             storage = layers%storage(place(l))
-            thickness = min(part, all_together/layers%of_cell%length(place(l))) &
+            thickness = min(thickest, all_together/layers%of_cell%length(place(l))) &
                         *2.0_rk/3.0_rk*layers%volume(place(l))/length
             layers%chain(l) = new_chain(thickness, &
                                         first_volume*sqrt(mobility/storage*first_step), length, &

@@ -39,11 +39,6 @@ module heat_model
    !! flows through faces.
    integer(ik), parameter :: finer = 2
 
-   !> A layer that is alone in its cell is nearly as thick as the distance of the centre from the
-   !! face, and what it leaves of the cell has its temperature a little behind the centre. Fronts
-   !! that pass from layers to cells are best with these two (test_heat_steps).
-   real(rk), parameter :: thickest = 0.98_rk, inwards = 0.176_rk  ! over that distance [-]
-
    type :: heat_model_t
       integer(ik) :: n = 0  !< unknowns
       type(mesh_t) :: mesh  !< with the layers of heat
@@ -97,8 +92,7 @@ contains
       self%sides%pressure_given = self%sides%temperature_given
       self%sides%temperature = self%sides%temperature - self%heat%temperature
       self%rock = thermal_rock(scene, mesh)
-      call place_layers(self%mesh, self%rock, self%sides, first, self%layers, finer, &
-                        thickest)
+      call place_layers(self%mesh, self%rock, self%sides, first, self%layers, finer)
       do l = 1, self%layers%n
          if (self%layers%fracture_cell(l) > 0) cycle
          ! In the rise above the initial temperatures (heat_field)
@@ -169,15 +163,6 @@ contains
             self%place(:, c) = cell_centre(mesh, c)
             self%of_scalar(at_component(c, 3_ik)) = c
          end do
-         n = 0
-         if (layers%n > 0) n = size(layers%cells, kind=ik)
-         do i = 1, n
-            if (layers%of_cell%length(i) > 1) cycle
-            associate (at => self%place(:, layers%cells(i)), &
-                       face => mesh%face_nodes(:, mesh%layer_face(layers%of_cell%at(i, 1_ik))))
-               at = at + inwards*(at - 0.5_rk*sum(mesh%xy(:, face), dim=2))
-            end associate
-         end do
          do l = 1, layers%n
             associate (chain => layers%chain(l), at => at_component(layer_block(mesh, l), 1_ik))
                f = mesh%layer_face(l)
@@ -217,7 +202,6 @@ contains
       integer(ik), allocatable :: around(:)
       logical :: is_given(size(self%sides))
       real(rk) :: given(size(self%sides))  ! [K] or [W/m2]
-      real(rk) :: shift(2, self%mesh%n_cells)  ! [m]
       integer(ik) :: a, b, info, m, n, r
 
       is_given = self%sides%temperature_given
@@ -225,13 +209,10 @@ contains
       n = sum([(self%regions%scalar_count(r)**2, r=1, self%regions%n_regions)])
       allocate (self%row(n), self%col(n), self%conduction(n))
       allocate (self%known(self%n), source=0.0_rk)
-      do n = 1, self%mesh%n_cells
-         shift(:, n) = self%place(:, n) - cell_centre(self%mesh, n)
-      end do
       n = 0
       do r = 1, self%regions%n_regions
          call set_flux_equations(self%mesh, self%rock%resistivity, is_given, given, self%regions, &
-                                 r, local, self%layers%relief, shift)
+                                 r, local, self%layers%relief)
          call eliminate(local, self%regions%flux(r), share, info)
          if (info /= 0) then
             call raise_error(error, "heat_model", "the cells around a vertex are degenerate")
@@ -245,8 +226,8 @@ contains
             do a = 1, m
                if (around(a) == 0) cycle
                n = n + 1
-               self%row(n) = around(b)
-               self%col(n) = around(a)
+               self%row(n) = around(a)
+               self%col(n) = around(b)
                self%conduction(n) = share%matrix(a, b)
             end do
          end do
@@ -319,7 +300,7 @@ contains
             do i = 1, chain%n - 1
                self%links(k + i) = link_t([first + i, first + i - 1], chain%conductance(i))
             end do
-            ! Between the last node and the place of the cell.
+            ! Between the last node and the centre of the cell.
             self%links(k + chain%n) = &
                link_t([self%layers%cell(l), first + chain%n - 1], &
                       across(self, self%mesh%layer_face(l), chain%place(chain%n)), .false.)
@@ -372,7 +353,7 @@ contains
       end associate
    end function face_link
 
-   !> Conductance between a distance from a face and the place of one of its cells [W/(m K)].
+   !> Conductance between a distance from a face and the centre of one of its cells [W/(m K)].
    pure real(rk) function across(self, f, from, which) result(conductance)
       class(heat_model_t), intent(in) :: self
       integer(ik), intent(in) :: f
@@ -382,11 +363,9 @@ contains
 
       k = 1
       if (present(which)) k = which
-      associate (c => self%mesh%face_cells(k, f), &
-                 ends => self%mesh%xy(:, self%mesh%face_nodes(:, f)))
-         conductance = self%rock%mobility_at(c)*face_length(self%mesh, f) &
-                       /(abs(dot_product(self%place(:, c) - ends(:, 1), &
-                                         outward_normal(self%mesh, f))) - from)
+      associate (c => self%mesh%face_cells(k, f), length => face_length(self%mesh, f))
+         conductance = self%rock%mobility_at(c)*length &
+                       /(2.0_rk/3.0_rk*cell_area(self%mesh, c)/length - from)
       end associate
    end function across
 
