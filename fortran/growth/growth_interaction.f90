@@ -194,9 +194,9 @@ contains
    end function matrix_for
 
    !> Groups of equal tips in an accepted state, numbered from 1. Tips of one group advance equally,
-   !! by equal shares of their segments: their increments are equal, and so were the lengths of their
-   !! fractures before they grew. In a network tips of unlike fractures are equal by chance, and so
-   !! are many tips far below their toughness, as those without load: these are alone.
+   !! by equal shares of their segments: their increments are equal, and so were the lengths of
+   !! their fractures before they grew. In a network tips of unlike fractures are equal by chance,
+   !! and so are many tips far below their toughness, as those without load: these are alone.
    subroutine find_groups(self, tip, interaction, kind)
       class(tip_groups_t), intent(inout) :: self
       type(group_tip_t), intent(in) :: tip(:)

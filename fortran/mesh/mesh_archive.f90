@@ -187,7 +187,8 @@ contains
       type(fracture_mesh_t), intent(in) :: f
       real(rk), parameter :: rounding = 1.0e-9_rk
 
-      is_complete = allocated(f%cell_fracture) .and. allocated(f%cell_points) .and. &
+      is_complete = all([f%n_cells, f%n_points, f%n_tips] >= 0) .and. &
+                    allocated(f%cell_fracture) .and. allocated(f%cell_points) .and. &
                     allocated(f%cell_faces) .and. allocated(f%cell_s) .and. &
                     allocated(f%point_xy) .and. allocated(f%point_kind) .and. &
                     allocated(f%tip_point) .and. allocated(f%tip_node) .and. &

@@ -42,6 +42,8 @@ contains
          if (n >= 0_lk) allocate (self%patch(n))
       end if
       if (n > 0_lk) call archive%plain("patch", c_loc(self%patch), n*storage_size(self%patch)/8_lk)
+      call archive%agree("news", [allocated(self%news), allocated(self%live), &
+                                  allocated(self%patch)])
       call visit_shear(archive, self%last)
    end subroutine visit
 

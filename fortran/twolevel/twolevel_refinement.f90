@@ -33,8 +33,8 @@ module twolevel_refinement
    implicit none(type, external)
    private
 
-   public :: again_max, find_refinements, growth_error, growth_error_t, is_uncertain, note_uncertain_tips
-   public :: keep_refinements, refine_windows
+   public :: again_max, find_refinements, growth_error, growth_error_t, is_uncertain
+   public :: keep_refinements, note_uncertain_tips, refine_windows
 
    !> Times that a step is tried again with refined windows. What remains is refined after the step.
    integer, parameter :: again_max = 1

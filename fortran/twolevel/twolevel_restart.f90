@@ -153,6 +153,7 @@ contains
          call archive%item("first_step", model%first_step)
          call visit_cells(archive, "cells", model%cells)
          call archive%list("share", problem%share, "fcells, entries ?")
+        if (archive%is_loading .and. .not. allocated(problem%share)) call archive%set_fault("share")
          if (allocated(archive%fault)) return
          if (archive%is_loading) then
             call model%set_mesh(problem%mesh, self%scene, timers, error)

@@ -1,5 +1,6 @@
-!> What ends the tries of a step, and what goes on at the ends of path segments (model.md section 5):
-!! tips join their targets, stop at their gain, or begin new segments, unless the step goes too far.
+!> What ends the tries of a step, and what goes on at the ends of path segments (model.md section
+!! 5): tips join their targets, stop at their gain, or begin new segments, unless the step goes too
+!! far.
 module twolevel_search
    use base_errors, only: error_t
    use base_kinds, only: ik, rk

@@ -70,7 +70,9 @@ contains
          call archive%list("has_focus", made%has_focus, "tips")
          call archive%list("changes", made%changes, "changes ?")
          call archive%set_extent("changes", -1_ik)
-         if (archive%is_loading .and. allocated(made%changes)) then
+         if (archive%is_loading .and. .not. allocated(made%changes)) then
+            if (self%mesh%n_cells > 0) call archive%set_fault("changes")
+         else if (archive%is_loading) then
             if (all(size(made%changes) /= [0_ik, self%mesh%n_cells])) then
                call archive%set_fault("changes")
             end if
