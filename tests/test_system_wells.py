@@ -399,7 +399,7 @@ def test_pressures_that_differ_in_one_cell(tmp_path: Path) -> None:
     [
         ((-0.32, 0.0), (0.23, 0.0), 0.55),  # cells of 0.1
         ((-0.5, 0.0), (0.5, 0.0), 1.0),  # at both tips
-        ((-0.03, 0.0), (0.0, 0.02), 0.05),  # in two fractures, beside their crossing
+        ((-0.03, 0.0), (0.0, 0.02), 0.05),  # in two fractures, next to their crossing
         ((0.0, 0.0), (0.0, 0.31), 0.31),  # from the crossing
     ],
 )

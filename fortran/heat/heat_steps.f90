@@ -7,7 +7,7 @@
 !! over the links of heat_links, with the multi-point fluxes of conduction. The unknown is the
 !! change of T in the half, and its right-hand side contains differences of temperatures only:
 !! what does not change is exact. Where the flows of a step take more fluid out of a fracture cell
-!! than it has (the roughness of new cells is compressed but stores none), the rock beside it
+!! than it has (the roughness of new cells is compressed but stores none), the rock next to it
 !! supplies what is missing, and cells what is missing in a joint: H is never negative, and no heat
 !! is lost. The limited temperatures at the ends of fracture cells are
 !! iterated on the right-hand side. The matrix M is an M-matrix, which keeps temperatures between
@@ -96,7 +96,7 @@ contains
       call set_well_temperatures(heat, produced, state)
    end subroutine advance_heat
 
-   !> Let the rock beside fracture cells, and cells at joints, supply the fluid that flows out of
+   !> Let the rock next to fracture cells, and cells at joints, supply the fluid that flows out of
    !! them in a step beyond what they have.
    pure subroutine supply_missing(heat, dt, capacity)
       class(heat_model_t), intent(inout) :: heat

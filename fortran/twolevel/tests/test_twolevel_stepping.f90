@@ -254,7 +254,7 @@ contains
       call stepper%step_done(trial, dt)
       dt = 64.0_rk
       call stepper%cut(trial, dt, is_too_short)
-      call checks%is_true(.not. is_too_short, "each step by itself")
+      call checks%is_true(.not. is_too_short, "each step alone")
       trial%time_error = 0.014_rk
       call stepper%cut(trial, dt, is_too_short)
       call checks%is_true(.not. is_too_short, "as the root of time: not at once")

@@ -50,7 +50,7 @@ program test_twolevel_wells
    joints%is_outlet = [.false.]
    call place(0.0_rk)
    call check(1_ik, [0.0_rk, 0.0_rk, 0.0_rk], [0.0_rk, 0.0_rk, 0.0_rk], "at a joint")
-   call check(4_ik, [0.4_rk, 0.0_rk, 0.0_rk], [0.24_rk, 0.0_rk, 0.0_rk], "beside a joint")
+   call check(4_ik, [0.4_rk, 0.0_rk, 0.0_rk], [0.24_rk, 0.0_rk, 0.0_rk], "next to a joint")
    call checks%is_close(maxval(abs(joint_share(1, :) - [1.0_rk, 0.0_rk, 0.0_rk, 0.6_rk, &
                                                         0.0_rk])), 0.0_rk, 1.0e-15_rk, "joint")
    call share_wells(wells, fracture, share)
