@@ -217,8 +217,7 @@ contains
       do i = 1, size(self%tip, kind=ik)
          if (.not. advance(i) > 0.0_rk .or. self%tip(i)%arrested) cycle
          associate (tip => self%tip(i))
-            call tip%predict(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, advance(i), &
-                             kink)
+            call tip%predict_path(advance(i), kink)
             to = new_tip(tip%xy, tip%direction, kink, advance(i))
             if (self%rules%heads) then
                call stop_half_way(self, i, (tip%xy), advance(i), to)
@@ -260,6 +259,7 @@ contains
                any_turned = .true.
                cycle
             end if
+            if (.not. tip%certain_share() > 0.0_rk) cycle
             call tip%correct(tip%drive%angle, -tip%intensity%k2, has_turned)
             if (.not. has_turned) cycle
             to = tip%xy

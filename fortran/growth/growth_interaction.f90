@@ -62,7 +62,8 @@ module growth_interaction
    !> Difference of lengths of fractures within which they are equal [-].
    real(rk), parameter :: same_length = 1.0e-4_rk
 
-   !> Difference of K_eq/K_IC within which tips are equal: the error of the intensities [-].
+   !> Difference of K_eq within which tips are equal, over the larger of K_eq and K_IC: the error of
+   !! the intensities [-].
    real(rk), parameter :: same_drive = 0.01_rk
 
    !> Lack of toughness, error included, beyond which tips are alone [-].
@@ -212,11 +213,11 @@ contains
       do j = 1, size(tip, kind=ik)
          do i = 1, size(tip, kind=ik)
             apart = abs(tip(i)%drive - tip(j)%drive)
-            least = same_drive
+            least = same_drive*larger(tip(i)%drive, tip(j)%drive)
             if (stay_together(self, i, j, tip(i)%gain, interaction, &
                               min(tip(i)%increment, tip(j)%increment))) then
                apart = abs(self%usual(i) - self%usual(j))
-               least = same_mean
+               least = same_mean*larger(self%usual(i), self%usual(j))
             end if
             alike(i, j) = apart <= max(least, hypot(tip(i)%off, tip(j)%off)) .and. &
                           may_be_equal(tip(i), tip(j)) .and. .not. any(self%is_alone([i, j]))
@@ -279,10 +280,19 @@ contains
       real(rk), intent(in) :: off(:)  !< estimated error of the excess [-]
 
       associate (both => hypot(off(i), off(j)))
-         differ_by_chance = abs(drive(i) - drive(j)) <= max(by_chance, both) .and. &
-                            abs(self%usual(i) - self%usual(j)) <= max(same_mean, both)
+         differ_by_chance = abs(drive(i) - drive(j)) &
+                            <= max(by_chance*larger(drive(i), drive(j)), both) .and. &
+                            abs(self%usual(i) - self%usual(j)) &
+                            <= max(same_mean*larger(self%usual(i), self%usual(j)), both)
       end associate
    end function differ_by_chance
+
+   !> The larger of two K_eq and of K_IC, over the scale of the excess [-].
+   elemental real(rk) function larger(one, other)
+      real(rk), intent(in) :: one, other  !< excesses over the toughness [-]
+
+      larger = 1.0_rk + max(0.0_rk, one, other)
+   end function larger
 
    !> Update the mean excess after an accepted step.
    subroutine accept(self, drive, advance, increment)

@@ -85,6 +85,8 @@ module growth_tip
       procedure :: scale_of
       procedure :: excess
       procedure :: relative_error
+      procedure :: certain_share
+      procedure :: predict_path
       procedure :: has_state
       procedure :: is_loaded
       procedure :: shut
@@ -157,6 +159,33 @@ contains
       relative_error = max(self%intensity%k1_error, self%intensity%k2_error) &
                        /(self%scale_of(toughness)*self%drive%resistance)
    end function relative_error
+
+   !> Weight of the direction that K_I and K_II give: 1 where they are known to half of their
+   !! values, 0 where they do not exceed their errors, and the path goes straight ahead [-].
+   elemental real(rk) function certain_share(self)
+      class(tip_t), intent(in) :: self
+      real(rk) :: known
+
+      associate (k => self%intensity)
+         known = hypot(k%k1, k%k2)
+         certain_share = 0.0_rk
+         if (.not. known > 0.0_rk) return
+         certain_share = max(0.0_rk, min(1.0_rk, 2.0_rk - 2.0_rk*hypot(k%k1_error, k%k2_error) &
+                                         /known))
+      end associate
+   end function certain_share
+
+   !> Predict the kink of the next increment from the present intensities.
+   pure subroutine predict_path(self, advance, kink)
+      class(tip_t), intent(inout) :: self
+      real(rk), intent(in) :: advance  !< length of the increment [m]
+      real(rk), intent(out) :: kink  !< anticlockwise [rad]
+
+      associate (share => self%certain_share())
+         call self%predict(share*self%drive%angle, -share*self%intensity%k2, &
+                           self%drive%intensity, advance, kink)
+      end associate
+   end subroutine predict_path
 
    !> Whether the tip has stopped before a target in the last increment.
    elemental logical function has_just_stopped(self)

@@ -105,7 +105,7 @@ contains
       real(rk) :: kink
 
       ahead = tip
-      call ahead%predict(tip%drive%angle, -tip%intensity%k2, tip%drive%intensity, increment, kink)
+      call ahead%predict_path(increment, kink)
       direction = turned(tip%direction, kink)
    end function way_ahead
 

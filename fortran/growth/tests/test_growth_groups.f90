@@ -25,11 +25,13 @@ contains
 
    !> Stopped tips are equal if their difference is within their errors.
    subroutine test_before_growth()
-      call checks%is_true(are_one(0.99_rk, 0.995_rk, 0.0_rk), "half a per cent")
-      call checks%is_true(.not. are_one(0.99_rk, 0.96_rk, 0.0_rk), "three per cent")
-      call checks%is_true(are_one(0.99_rk, 0.96_rk, 0.025_rk), "three, known to two and a half")
-      call checks%is_true(.not. are_one(0.99_rk, 0.99_rk, 0.0_rk, gain=[0.0_rk, increment]), &
+      call checks%is_true(are_one(-0.01_rk, -0.005_rk, 0.0_rk), "half a per cent")
+      call checks%is_true(.not. are_one(-0.01_rk, -0.04_rk, 0.0_rk), "three per cent")
+      call checks%is_true(are_one(-0.01_rk, -0.04_rk, 0.025_rk), "three, known to two and a half")
+      call checks%is_true(.not. are_one(-0.01_rk, -0.01_rk, 0.0_rk, gain=[0.0_rk, increment]), &
                           "not equally far")
+      call checks%is_true(are_one(124.0_rk, 123.7_rk, 0.0_rk), "a quarter per cent of a large K_eq")
+      call checks%is_true(.not. are_one(124.0_rk, 121.0_rk, 0.0_rk), "two and a half of it")
    end subroutine test_before_growth
 
    !> In a group, errors of the meshes reduce K_eq of one and the other tip alternately by six per
@@ -42,18 +44,18 @@ contains
       integer :: i
 
       call interaction%begin(2)
-      drive = 1.0_rk
+      drive = 0.0_rk
       gain = 0.0_rk
       do i = 1, 100
          call groups%find_groups(tips_with(drive, gain), interaction, kind)
          call checks%is_true(kind(1) == kind(2), "by chance")
-         drive = [1.0_rk, 0.94_rk]
+         drive = [0.0_rk, -0.06_rk]
          if (mod(i, 2) == 0) drive = drive([2, 1])
          call groups%accept(drive, spread(0.4_rk*increment, 1, 2), spread(increment, 1, 2))
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-      call groups%accept([1.0_rk, 0.7_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+      call groups%accept([0.0_rk, -0.3_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
       call groups%find_groups(tips_with(drive, gain), interaction, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
@@ -94,11 +96,11 @@ contains
       real(rk) :: same(3)
 
       call interaction%begin(3)
-      same = 1.0_rk
+      same = 0.0_rk
       call groups%find_groups(tips_with(same), interaction, kind)
       call checks%is_true(all(kind == 1), "all alike")
       call groups%remove_tip(2_ik)
-      call groups%accept(same, 0.0_rk*same, spread(increment, 1, size(same)))
+      call groups%accept(same, same, spread(increment, 1, size(same)))
       call groups%find_groups(tips_with(same), interaction, kind)
       call checks%is_true(all(kind == [1, 2, 1]), "all but one")
    end subroutine test_parting
@@ -130,7 +132,7 @@ contains
       real(rk) :: same(4)
 
       call interaction%begin(4)
-      same = 1.0_rk
+      same = 0.0_rk
       tip = tips_with(same)
       tip%increment = increment*[1.0_rk, 2.0_rk, 1.0_rk, 1.01_rk]
       call groups%find_groups(tip, interaction, kind)
@@ -166,6 +168,9 @@ contains
                           "smaller than that of the other one")
       call checks%is_true(groups%differ_by_chance(1_ik, 2_ik, [0.0_rk, 0.0_rk], 4.0_rk*small), &
                           "within the errors")
+      groups%usual = [3.4_rk, 3.36_rk]
+      call checks%is_true(groups%differ_by_chance(1_ik, 2_ik, [0.0_rk, 0.0_rk], small), &
+                          "after large ones that differed by one per cent")
    end subroutine test_separated
 
    !> Tips of equal fractures that have grown equally.
@@ -184,7 +189,7 @@ contains
 
    !> Whether two tips that have not grown yet, or have grown by `gain`, are one group.
    logical function are_one(one, other, off, gain)
-      real(rk), intent(in) :: one, other, off  !< [-]
+      real(rk), intent(in) :: one, other, off  !< excesses and their error [-]
       real(rk), intent(in), optional :: gain(2)  !< [m]
       type(tip_groups_t) :: groups
       type(interaction_t) :: interaction
@@ -218,12 +223,12 @@ contains
          call interaction%store_column(2_ik, 1.0_rk, [0.0_rk, 0.0_rk], [-lead, 0.0_rk], &
                                        [.true., .true.], segment)
       end if
-      drive = 1.0_rk
+      drive = 0.0_rk
       gain = 0.0_rk
       do steps = 0, 100
          call groups%find_groups(tips_with(drive, gain), interaction, kind)
          if (kind(1) /= kind(2)) return
-         drive = [1.0_rk, 1.0_rk - lack]
+         drive = [0.0_rk, -lack]
          call groups%accept(drive, [moved, moved], spread(increment, 1, 2))
          gain = gain + moved
       end do

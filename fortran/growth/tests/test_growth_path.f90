@@ -18,6 +18,7 @@ program test_growth_path
    call finds_direction(-40.0_rk, "saturated")
    call foresees()
    call test_excess()
+   call test_noise()
    call checks%finish()
 
 contains
@@ -38,6 +39,30 @@ contains
       call checks%is_close(tip%excess(0.0_rk), 5.5_rk, 1.0e-12_rk, "no toughness")
       call checks%is_close(tip%relative_error(0.0_rk), 0.05_rk, 1.0e-12_rk, "its error")
    end subroutine test_excess
+
+   !> A path goes straight ahead where K_I and K_II do not exceed their errors, and as they foretell
+   !! where the errors are no more than half of them.
+   subroutine test_noise()
+      type(tip_t) :: tip
+      real(rk) :: kink(3)
+      integer :: k
+
+      tip%has_wing = .true.
+      tip%intensity%k1 = 6.0e5_rk
+      tip%intensity%k2 = -8.0e5_rk
+      tip%drive%angle = 0.9_rk
+      tip%drive%intensity = 1.2e6_rk
+      do k = 1, 3
+         tip%intensity%k1_error = 5.0e5_rk*k
+         call tip%predict_path(0.1_rk, kink(k))
+      end do
+      call checks%is_close(kink(1), 0.45_rk, 1.0e-6_rk, "half of the criterion's angle")
+      call checks%is_close(kink(2), 0.0_rk, 1.0e-15_rk, "as large as its error")
+      call checks%is_close(kink(3), 0.0_rk, 1.0e-15_rk, "smaller than its error")
+      tip%intensity%k1_error = 7.5e5_rk
+      call tip%predict_path(0.1_rk, kink(1))
+      call checks%is_close(kink(1), 0.225_rk, 1.0e-6_rk, "in between")
+   end subroutine test_noise
 
    !> A tip that has grown before and advances by 0.1 m, first by a prescribed kink.
    subroutine start(path, kink, has_wing)
