@@ -23,7 +23,7 @@
 !! If the iteration still cycles, its steps are shortened. Where states change the residuals keep
 !! their magnitudes (open to closed both are min(-f_n, c ([u]_n - g)), up to the sign), so their
 !! norm is a continuous function, and a step is halved until it falls; at last from the initial
-!! guess.
+!! guess, in large systems first.
 module contact_newton
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
@@ -236,14 +236,26 @@ contains
       real(rk), intent(inout) :: x(:)  !< [Pa]
       type(iteration_settings_t), intent(in) :: settings
       type(iteration_report_t), intent(inout) :: report
-      real(rk) :: start(size(x))
+      ! Points above which shortened steps cost less than another initial guess by pivoting.
+      integer, parameter :: large = 200
+      real(rk), dimension(size(x)) :: last, start
+      logical :: is_large
 
       start = x
       call iterate_from(system, x, settings, report)
       if (report%outcome /= outcome_stuck .and. report%outcome /= outcome_singular) return
       if (.not. settings%perseveres) return
+      is_large = size(system%state) > large .and. report%outcome == outcome_stuck
+      if (is_large) then
+         last = x
+         x = start
+         call iterate_damped(system, x, settings, report)
+         if (report%outcome == outcome_converged) return
+         x = last
+         report%outcome = outcome_stuck
+      end if
       call persevere(system, x, settings, report)
-      if (report%outcome /= outcome_stuck .or. report%was_restarted) return
+      if (report%outcome /= outcome_stuck .or. report%was_restarted .or. is_large) return
       x = start
       call iterate_damped(system, x, settings, report)
    end subroutine iterate_held

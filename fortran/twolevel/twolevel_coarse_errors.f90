@@ -56,7 +56,8 @@ module twolevel_coarse_errors
    implicit none(type, external)
    private
 
-   public :: drained_excess, estimate_coarse_errors, layer_at_tip, layer_t, thin_layer_errors
+   public :: drained_excess, estimate_coarse_errors, keep_body, layer_at_tip, layer_t
+   public :: thin_layer_errors
 
    !> Data of the layer at the end of a fracture.
    type :: layer_t
@@ -270,11 +271,14 @@ contains
       type(tip_t), intent(in) :: tip
       type(window_tip_t), intent(in) :: seen  !< the tip in its window
       real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      real(rk), parameter :: far = 0.5_rk
+      real(rk), parameter :: far = 0.5_rk, small = 0.1_rk
       real(rk) :: lack  ! of toughness, error included [-]
 
       lack = -tip%excess(toughness) - tip%relative_error(toughness)
-      change = merge(1.0_rk, max(like_before, lack), lack >= far)*norm2(seen%compared)
+      change = max(like_before, min(lack, 1.0_rk))*norm2(seen%compared)
+      if (lack < far) return
+      change = norm2(seen%compared)
+      if (change > 0.0_rk) change = max(change, small*toughness*tip%drive%resistance)
    end function admissible_change
 
    !> Errors of a tip from its K in the whole body.
@@ -293,6 +297,23 @@ contains
       tip%of_elements = max(maxval(of_body), maxval(of_window))
       tip%uncertain = tip%uncertain + max(0.0_rk, of_body - of_window)
    end subroutine compare_tip
+
+   !> Compare a tip with its K in the body as it was found by the last comparison: its window is
+   !! another one in the same state. Without a comparison that applies there will be a new one.
+   pure subroutine keep_body(before, reference, tip)
+      type(window_tip_t), intent(in) :: before  !< the tip in its window before
+      type(window_tip_t), intent(in) :: reference  !< the tip in the body as one window
+      type(window_tip_t), intent(inout) :: tip
+      type(window_tip_t) :: body
+
+      associate (found => [before%found%k1, before%found%k2])
+         if (.not. norm2(found - before%compared) <= like_before*norm2(before%compared)) return
+         body%found = reference%found
+         body%found%k1 = found(1) + before%lacking(1)
+         body%found%k2 = found(2) + before%lacking(2)
+      end associate
+      call compare_tip(body, 0.0_rk, tip)
+   end subroutine keep_body
 
    !> Errors of a tip from the last comparison with the whole body, larger where its intensities
    !! have risen since; the mesh is another one, with other errors.

@@ -166,6 +166,7 @@ contains
       !! edge alone, and a window that differs from the body by the edge alone would not show the
       !! other part.
       real(rk), parameter :: far_off = 25.0_rk
+      integer, parameter :: few = 8  ! tips
       type(window_tip_t) :: seen
       logical :: can_be_finer, can_be_larger, is_finer
 
@@ -205,6 +206,8 @@ contains
                 uncertainty(self%tip(tip), self%rules%toughness) < far_off) then
                kind = improve_by_body
                what = "the body as its window"
+               ! In a network it costs as much as the windows of all tips.
+               if (count(self%tip%is_loaded()) > few) deallocate (what)
             else if (exceed_body(self, tip)) then
                deallocate (what)
             end if

@@ -56,6 +56,8 @@ module twolevel_stepping
       integer(ik) :: tip = 0
       integer :: kind = improve_elements
       real(rk) :: error = 0.0_rk  !< error of K_I and K_II before [Pa m^1/2]
+   contains
+      procedure :: changes_body
    end type refinement_t
 
    !> Result of a tried step.
@@ -146,6 +148,13 @@ module twolevel_stepping
    end type stepper_t
 
 contains
+
+   !> Whether K in the body as one window is not that of before, or may be more accurate.
+   pure logical function changes_body(self)
+      class(refinement_t), intent(in) :: self
+
+      changes_body = self%kind == improve_elements .or. self%kind == improve_by_body
+   end function changes_body
 
    !> First step with a tolerance [s].
    pure real(rk) function first_step(time)

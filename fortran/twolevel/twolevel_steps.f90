@@ -9,13 +9,14 @@ submodule(twolevel_state) twolevel_steps
    use coarse_state, only: go_back
    use report_rows, only: event_step_cut, event_unstable
    use report_limits, only: limit_time_error
-   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_coarse_errors, only: estimate_coarse_errors, keep_body
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
    use twolevel_heat, only: settle_heat, settlings_max
    use twolevel_refinement, only: again_max, find_refinements, keep_refinements, refine_windows
    use twolevel_well_limits, only: note_wells, share_before_switch
    use twolevel_schedule, only: last_switch, next_switch
+   use twolevel_window_tip, only: window_tip_t
    use twolevel_window_total, only: limit_windows
    implicit none(type, external)
 
@@ -201,6 +202,8 @@ contains
       type(refinement_t), allocatable, intent(inout) :: refinements(:)
       type(timers_t), intent(inout) :: timers
       type(error_t), allocatable, intent(out) :: error
+      type(window_tip_t) :: before(size(self%tip))
+      integer :: k
 
       call self%tape%rewind()
       call keep_refinements(self%tape, refinements)
@@ -212,10 +215,18 @@ contains
          end if
       end associate
       call self%put_back()
+      before = self%now%windows%tip
       call refine_windows(self, refinements)
       if (allocated(self%now%coarse%tractions)) then
          call self%evaluate(timers, error)
-         if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+         if (allocated(error)) return
+         do k = 1, merge(size(refinements), 0, self%has_reference())
+            associate (i => refinements(k)%tip, now => self%now)
+               if (refinements(k)%changes_body() .or. .not. self%tip(i)%is_loaded()) cycle
+               call keep_body(before(i), now%reference%tip(i), now%windows%tip(i))
+            end associate
+         end do
+         call estimate_coarse_errors(self, timers, error)
          if (allocated(error)) return
       end if
       call self%remember()
