@@ -141,7 +141,7 @@ contains
       scale_of = max(toughness, self%least_scale/self%drive%resistance)
    end function scale_of
 
-   !> K_eq minus K_IC, over the scale [-].
+   !> K_eq minus K_IC, over the scale; where it is positive, the part that is certain [-].
    elemental real(rk) function excess(self, toughness)
       class(tip_t), intent(in) :: self
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
@@ -149,6 +149,7 @@ contains
       associate (scale => self%scale_of(toughness))
          excess = self%drive%intensity/scale - toughness/scale
       end associate
+      if (excess > 0.0_rk) excess = excess*self%certain_share()
    end function excess
 
    !> Estimated error of K_eq, over the scale [-].
@@ -160,14 +161,15 @@ contains
                        /(self%scale_of(toughness)*self%drive%resistance)
    end function relative_error
 
-   !> Weight of the direction that K_I and K_II give: 1 where they are known to half of their
-   !! values, 0 where they do not exceed their errors, and the path goes straight ahead [-].
+   !> Weight of what K_I and K_II demand: 1 where they are known to half of their values; 0 where
+   !! they do not exceed their errors, as at closed wings of rock that is hardly tough: such a tip
+   !! stays, and its path goes straight ahead [-].
    elemental real(rk) function certain_share(self)
       class(tip_t), intent(in) :: self
       real(rk) :: known
 
       associate (k => self%intensity)
-         known = hypot(k%k1, k%k2)
+         known = max(hypot(k%k1, k%k2), self%drive%intensity*self%drive%resistance)
          certain_share = 0.0_rk
          if (.not. known > 0.0_rk) return
          certain_share = max(0.0_rk, min(1.0_rk, 2.0_rk - 2.0_rk*hypot(k%k1_error, k%k2_error) &

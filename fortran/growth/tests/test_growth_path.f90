@@ -38,6 +38,11 @@ contains
       call checks%is_close(tip%excess(1.0e5_rk), 5.0_rk, 1.0e-12_rk, "above the toughness")
       call checks%is_close(tip%excess(0.0_rk), 5.5_rk, 1.0e-12_rk, "no toughness")
       call checks%is_close(tip%relative_error(0.0_rk), 0.05_rk, 1.0e-12_rk, "its error")
+      tip%intensity%k2_error = 1.65e6_rk
+      call checks%is_close(tip%excess(0.0_rk), 2.75_rk, 1.0e-12_rk, "half of it is certain")
+      tip%intensity%k2_error = 2.2e6_rk
+      call checks%is_close(tip%excess(0.0_rk), 0.0_rk, 1.0e-12_rk, "nothing is certain")
+      call checks%is_close(tip%excess(2.0e6_rk), -0.45_rk, 1.0e-12_rk, "below the toughness")
    end subroutine test_excess
 
    !> A path goes straight ahead where K_I and K_II do not exceed their errors, and as they foretell
@@ -51,7 +56,7 @@ contains
       tip%intensity%k1 = 6.0e5_rk
       tip%intensity%k2 = -8.0e5_rk
       tip%drive%angle = 0.9_rk
-      tip%drive%intensity = 1.2e6_rk
+      tip%drive%intensity = 1.0e6_rk
       do k = 1, 3
          tip%intensity%k1_error = 5.0e5_rk*k
          call tip%predict_path(0.1_rk, kink(k))
