@@ -30,6 +30,7 @@ module algebra_links
       procedure :: link_pair
       procedure :: kept_unknowns
       procedure :: kept_equations
+      procedure :: that_count
       procedure :: take_residual
       procedure :: reduce
       procedure :: complete
@@ -117,6 +118,18 @@ contains
       numbers = pack([(i, i=1, size(self%is_used, kind=ik))],.not. self%is_used)
    end function kept_equations
 
+   !> Unknowns whose derivatives count: all but those that are linked to nothing and do not change.
+   pure function that_count(self) result(counts)
+      class(links_t), intent(in) :: self
+      logical :: counts(size(self%is_linked))
+      integer(ik) :: k
+
+      counts = .true.
+      do k = 1, self%n
+         counts(self%unknown(k)) = self%first(k + 1) > self%first(k) .or. abs(self%rest(k)) > 0.0_rk
+      end do
+   end function that_count
+
    !> Set the constant parts of the links from the residuals of their equations.
    pure subroutine take_residual(self, residual)
       class(links_t), intent(inout) :: self
@@ -132,19 +145,19 @@ contains
       end do
    end subroutine take_residual
 
-   !> Eliminate the linked unknowns from an equation.
-   pure subroutine reduce(self, row, residual)
+   !> Eliminate the linked unknowns from equations.
+   pure subroutine reduce(self, rows, residual)
       class(links_t), intent(in) :: self
-      real(rk), intent(inout) :: row(:)  !< derivatives by all unknowns [-]
-      real(rk), intent(inout) :: residual  !< [Pa]
+      real(rk), intent(inout) :: rows(:, :)  !< (equations, unknowns) derivatives [-]
+      real(rk), intent(inout) :: residual(:)  !< (equations) [Pa]
       integer(ik) :: j, k
 
       do k = 1, self%n
-         associate (own => row(self%unknown(k)))
-            if (.not. abs(own) > 0.0_rk) cycle
+         associate (own => rows(:, self%unknown(k)))
+            if (.not. any(abs(own) > 0.0_rk)) cycle
             residual = residual + own*self%rest(k)
             do j = self%first(k), self%first(k + 1) - 1
-               row(self%partner(j)) = row(self%partner(j)) + own*self%share(j)
+               rows(:, self%partner(j)) = rows(:, self%partner(j)) + own*self%share(j)
             end do
          end associate
       end do

@@ -92,7 +92,8 @@ contains
       logical, intent(in) :: with_condition
       type(reduced_t), intent(out) :: reduced
       type(step_quality_t), intent(out) :: quality
-      real(rk) :: row(slopes%n)
+      integer(ik), parameter :: block = 64  ! equations reduced together
+      logical :: counts(slopes%n)
       integer(ik) :: k, n
 
       associate (links => reduced%links)
@@ -101,17 +102,32 @@ contains
          reduced%equations = links%kept_equations()
          reduced%unknowns = links%kept_unknowns()
          n = size(reduced%unknowns, kind=ik)
-         allocate (reduced%factors(n, n), reduced%rest(n), reduced%scale(n), reduced%pivots(n))
-         do k = 1, n
-            call fill_row(stiffness, slopes, reduced%equations(k), row)
-            reduced%rest(k) = residual(reduced%equations(k))
-            call links%reduce(row, reduced%rest(k))
-            reduced%factors(:, k) = row(reduced%unknowns)
+         allocate (reduced%factors(n, n), reduced%scale(n), reduced%pivots(n))
+         reduced%rest = residual(reduced%equations)
+         counts = links%that_count()
+         !$omp parallel do schedule(dynamic, 1)
+         do k = 1, n, block
+            call reduce_block(stiffness, slopes, counts, k, min(n, k + block - 1), reduced)
          end do
+         !$omp end parallel do
       end associate
       call factorize_full(reduced%factors, with_condition, reduced%scale, reduced%pivots, quality, &
                           kinds%is_flow(reduced%unknowns))
    end subroutine reduce
+
+   !> Eliminate the links from some of the remaining equations.
+   pure subroutine reduce_block(stiffness, slopes, counts, first, last, reduced)
+      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(slopes_t), intent(in) :: slopes
+      logical, intent(in) :: counts(:)  !< (n) unknowns that are left, or have a value, or partners
+      integer(ik), intent(in) :: first, last
+      type(reduced_t), intent(inout) :: reduced
+      real(rk) :: rows(last - first + 1, slopes%n)
+
+      call fill_rows(stiffness, slopes, reduced%equations(first:last), counts, rows)
+      call reduced%links%reduce(rows, reduced%rest(first:last))
+      reduced%factors(:, first:last) = transpose(rows(:, reduced%unknowns))
+   end subroutine reduce_block
 
    !> The step from the remaining equations and the links.
    subroutine solve_reduced(reduced, step)
@@ -289,39 +305,53 @@ contains
       end do
    end subroutine find_by_jump
 
-   !> All derivatives of an equation.
-   pure subroutine fill_row(stiffness, slopes, row, derivatives)
+   !> All derivatives of equations by the unknowns that count; 0 by the others.
+   pure subroutine fill_rows(stiffness, slopes, equations, counts, rows)
       real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
       type(slopes_t), intent(in) :: slopes
-      integer(ik), intent(in) :: row
-      real(rk), intent(out) :: derivatives(:)  !< [-]
-      integer(ik) :: k, m
+      integer(ik), intent(in) :: equations(:)
+      logical, intent(in) :: counts(:)  !< (n)
+      real(rk), intent(out) :: rows(:, :)  !< (equations, n) [-]
+      integer(ik) :: force(size(equations), size(slopes%force, 1)), k, m, q
+      real(rk) :: weight(size(equations), size(slopes%force, 1))
 
-      derivatives = 0.0_rk
-      do m = 1, size(slopes%force, 1)
-         if (slopes%force(m, row) == 0 .or. .not. abs(slopes%weight(m, row)) > 0.0_rk) cycle
-         derivatives(slopes%x_of_q) = derivatives(slopes%x_of_q) + slopes%weight(m, row) &
-                                      *slopes%q_per_x*stiffness(:, slopes%force(m, row))
-      end do
-      do k = slopes%first(row), slopes%first(row + 1) - 1
-         associate (entry => derivatives(slopes%col(slopes%local(k))))
-            entry = entry + slopes%value(slopes%local(k))
+      rows = 0.0_rk
+      force = transpose(slopes%force(:, equations))
+      weight = transpose(slopes%weight(:, equations))
+      where (force == 0)
+         force = 1  ! whatever it is
+         weight = 0.0_rk
+      end where
+      do q = 1, size(slopes%x_of_q, kind=ik)
+         associate (column => rows(:, slopes%x_of_q(q)), factor => slopes%q_per_x(q))
+            if (.not. counts(slopes%x_of_q(q))) cycle
+            do m = 1, size(force, 2)
+               do k = 1, size(force, 1)
+                  column(k) = column(k) + weight(k, m)*factor*stiffness(force(k, m), q)
+               end do
+            end do
          end associate
       end do
-   end subroutine fill_row
+      do k = 1, size(equations, kind=ik)
+         do m = slopes%first(equations(k)), slopes%first(equations(k) + 1) - 1
+            associate (entry => rows(k, slopes%col(slopes%local(m))))
+               entry = entry + slopes%value(slopes%local(m))
+            end associate
+         end do
+      end do
+   end subroutine fill_rows
 
    !> All derivatives as a full matrix.
    pure subroutine full_slopes(stiffness, slopes, jacobian)
       real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
       type(slopes_t), intent(inout) :: slopes  !< numbered by row afterwards
       real(rk), allocatable, intent(out) :: jacobian(:, :)  !< (n, n) an equation per column [-]
-      integer(ik) :: row
+      integer(ik) :: i
 
       call slopes%by_row()
       allocate (jacobian(slopes%n, slopes%n))
-      do row = 1, slopes%n
-         call fill_row(stiffness, slopes, row, jacobian(:, row))
-      end do
+      call fill_rows(stiffness, slopes, [(i, i=1, slopes%n)], spread(.true., 1, slopes%n), jacobian)
+      jacobian = transpose(jacobian)
    end subroutine full_slopes
 
 end module coarse_full_step

@@ -87,8 +87,9 @@ contains
       type(links_t) :: links
       integer(ik), allocatable :: kept(:)
       real(rk), allocatable :: factor(:), matrix(:, :), rest(:), solution(:)
-      real(rk) :: slope(2*self%n)
-      integer(ik) :: i, k
+      integer(ik), parameter :: block = 64  ! equations reduced together
+      real(rk) :: slopes(block, 2*self%n)
+      integer(ik) :: i, k, m
       logical :: is_solved
 
       links = new_links(2*self%n)
@@ -98,14 +99,16 @@ contains
       end do
       call links%take_residual(self%residual)
       kept = links%kept_unknowns()
-      allocate (matrix(size(kept), size(kept)))
-      allocate (rest(size(kept)), factor(size(kept)), solution(size(kept)))
-      do k = 1, size(kept, kind=ik)
-         call fill_row(self, kept(k), slope)
-         rest(k) = self%residual(kept(k))
-         call links%reduce(slope, rest(k))
-         matrix(:, k) = slope(kept)
-         factor(k) = factor_of(self, kept(k))
+      allocate (matrix(size(kept), size(kept)), solution(size(kept)))
+      rest = self%residual(kept)
+      factor = [(factor_of(self, kept(k)), k=1, size(kept))]
+      do k = 1, size(kept, kind=ik), block
+         m = min(block, size(kept, kind=ik) - k + 1)
+         do i = 1, m
+            call fill_row(self, kept(k + i - 1), slopes(i, :))
+         end do
+         call links%reduce(slopes(:m, :), rest(k:k + m - 1))
+         matrix(:, k:k + m - 1) = transpose(slopes(:m, kept))
       end do
       do i = 1, links%first(links%n + 1) - 1  ! another unknown moves with it: not symmetric
          if (abs(links%share(i)) > 0.0_rk) where (kept == links%partner(i)) factor = 0.0_rk

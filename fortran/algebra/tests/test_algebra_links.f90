@@ -19,9 +19,8 @@ contains
       integer(ik), parameter :: none(0) = [integer(ik) ::]
       real(rk), parameter :: nothing(0) = [real(rk) ::]
       type(links_t) :: links
-      real(rk) :: a(5, 5), residual(5), row(5), rest(2), left(2, 2), step(5), det
+      real(rk) :: a(5, 5), residual(5), rows(2, 5), rest(2), left(2, 2), step(5), det
       integer(ik), allocatable :: equations(:), unknowns(:)
-      integer :: k
 
       ! Equations by columns. 3 and 4 hold nothing but the fourth unknown and, the third, the fifth.
       a(:, 1) = [4.0_rk, -2.0_rk, 1.0_rk, 0.0_rk, 0.0_rk]
@@ -39,12 +38,10 @@ contains
       call checks%is_true(size(equations) == 2 .and. all(equations == [2, 5]), "equations left")
       call checks%is_true(size(unknowns) == 2 .and. all(unknowns == [3, 5]), "unknowns left")
       call links%take_residual(residual)
-      do k = 1, 2
-         row = a(:, equations(k))
-         rest(k) = residual(equations(k))
-         call links%reduce(row, rest(k))
-         left(:, k) = row(unknowns)
-      end do
+      rows = transpose(a(:, equations))
+      rest = residual(equations)
+      call links%reduce(rows, rest)
+      left = transpose(rows(:, unknowns))
       det = left(1, 1)*left(2, 2) - left(1, 2)*left(2, 1)
       step(3) = (-rest(1)*left(2, 2) + rest(2)*left(2, 1))/det
       step(5) = (-rest(2)*left(1, 1) + rest(1)*left(1, 2))/det

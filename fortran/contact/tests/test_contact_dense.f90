@@ -131,7 +131,7 @@ contains
       real(rk), parameter :: residual(6) = [1.0_rk, -2.0_rk, 3.0_rk, 4.0_rk, -5.0_rk, 6.0_rk]
       type(step_quality_t) :: quality
       type(links_t) :: links
-      real(rk) :: matrix(6, 6), own(2, 2), rest(6), row(6), solution(3), step(6), whole(6)
+      real(rk) :: matrix(6, 6), own(2, 2), rest(6), rows(3, 6), solution(3), step(6), whole(6)
       real(rk), allocatable :: small(:, :), left(:)
       integer(ik), allocatable :: kept(:)
       integer(ik) :: i, k, m
@@ -151,13 +151,10 @@ contains
       call links%take_residual(residual)
       kept = links%kept_unknowns()
       call checks%is_true(all(kept == [4, 5, 6]), "slip of one point and jumps of another are left")
-      allocate (small(3, 3), left(3))
-      do k = 1, 3
-         row = matrix(:, kept(k))
-         left(k) = residual(kept(k))
-         call links%reduce(row, left(k))
-         small(:, k) = row(kept)
-      end do
+      rows = transpose(matrix(:, kept))
+      left = residual(kept)
+      call links%reduce(rows, left)
+      small = transpose(rows(:, kept))
       call solve_full(small, left, .false., solution, quality)
       step(kept) = solution
       call links%complete(step)
