@@ -55,7 +55,8 @@ contains
          gain = gain + 0.4_rk*increment
       end do
       ! The very first moment of a piece says little.
-      call groups%accept([0.0_rk, -0.3_rk], spread(0.05_rk*increment, 1, 2), spread(increment, 1, 2))
+      call groups%accept([0.0_rk, -0.3_rk], spread(0.05_rk*increment, 1, 2), &
+                         spread(increment, 1, 2))
       call groups%find_groups(tips_with(drive, gain), interaction, kind)
       call checks%is_true(kind(1) == kind(2), "a moment")
    end subroutine test_chance
