@@ -51,14 +51,29 @@ contains
       real(rk), parameter :: by_far = 2.0_rk*excess_max
       logical :: far(size(self%tip))
 
-      far = self%tip%is_loaded() .and. self%tip%path_target == target_none .and. &
-            .not. (self%now%segment%is_open .or. self%now%segment%stays() .or. &
-                   self%tip%arrested .or. self%has_gained() .or. is_viscous(self%tip)) .and. &
-            search%unmoved > by_far .and. &
-            overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
+      far = self%tip%is_loaded() .and. .not. (self%now%segment%is_open .or. self%tip%arrested) .and. &
+            search%unmoved > by_far .and. is_on_way(self) .and. are_beyond(self)
       search%is_over = any(far)
       if (search%is_over) call reject_overshoot(self, search, far, trial)
    end subroutine see_overshoot
+
+   !> Whether each tip goes on where its segment ends: not to a target, not at its gain, and its
+   !! excess says how far.
+   pure function is_on_way(self)
+      class(two_levels_t), intent(in) :: self
+      logical :: is_on_way(size(self%tip))
+
+      is_on_way = self%tip%path_target == target_none .and. &
+                  .not. (self%now%segment%stays() .or. self%has_gained() .or. is_viscous(self%tip))
+   end function is_on_way
+
+   !> Whether each tip exceeds its toughness by so much that the step goes too far.
+   pure function are_beyond(self)
+      class(two_levels_t), intent(in) :: self
+      logical :: are_beyond(size(self%tip))
+
+      are_beyond = overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
+   end function are_beyond
 
    !> Reject a step in which tips go too far, with the share of it in which they would not.
    pure subroutine reject_overshoot(self, search, far, trial)
@@ -99,10 +114,8 @@ contains
       integer(ik) :: i
 
       associate (excess => self%tip%excess(self%rules%toughness))
-         begins = wants .and. excess > by_much .and. self%tip%path_target == target_none .and. &
-                  .not. (self%now%segment%stays() .or. self%has_gained() .or. is_viscous(self%tip))
-         far = begins .and. &
-               overshoots(self%tip, self%now%segment, self%rules%toughness, self%strides())
+         begins = wants .and. excess > by_much .and. is_on_way(self)
+         far = begins .and. are_beyond(self)
          begins = begins .and. search%begun < segments_max .and. (excess > by_far .or. .not. far)
          if (.not. (search%may_jump .or. self%stepper%has_sudden_onset)) then
             trial%onset = onset(self%last%front%tip%excess(self%rules%toughness), excess, &
@@ -185,9 +198,7 @@ contains
       integer(ik) :: i
 
       beyond = self%now%segment%beyond_end(search%dt)
-      associate (toughness => self%rules%toughness, &
-                 far => overshoots(self%tip, self%now%segment, self%rules%toughness, &
-                                   self%strides()))
+      associate (toughness => self%rules%toughness, far => are_beyond(self))
          if (self%step%refined < again_max .and. &
              any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
                                            toughness, self%load_pressure), i=1, size(wants))])) then
