@@ -128,13 +128,14 @@ MADE_AGAIN = {
     },
     "front_t": {"rules": _RULE},
     "coarse_problem_t": _each("joint_share path rock_cell entries well_of heat heat_field", _RULE)
+    | _each("ahead asked steady", _RULE)
     | dict.fromkeys(["heat_after", "heat_span", "heat_flows"], "of the tries of a step"),
     "coarse_model_t": _each("rock sides in_situ regions matrix layers drained may_hold", _RULE)
     | {"rock_resistance": _RULE, "weight": _RULE},
     "condensed_t": _each("is_full stiffness coupling body normal length n", _RULE)
     | {"layout": _RULE, "analysed": _RULE},
     "rock_wells_t": _each("n cell rings ring_number ring_of", _RULE),
-    "wells_t": _each("n n_all number share joint_share path storage", _RULE)
+    "wells_t": _each("entry n n_all number share joint_share path storage", _RULE)
     | _each("friction turbulence pressure_in_situ n_entries of_entry entry_loss", _RULE),
     "joints_t": _each("n point is_outlet pressure_in_situ branches cell joint", _RULE)
     | {"end": _RULE, "beyond": _RULE},

@@ -149,7 +149,7 @@ contains
       type(state_t), intent(in) :: before, after
       real(rk), intent(out) :: compressed  !< fluid that pressure has added [m2]
       real(rk), intent(inout) :: balance  !< [m2]
-      real(rk) :: filled(size(length)), into_joints(paths%joints%n)
+      real(rk) :: filled(size(length))
 
       filled = after%aperture - after%void
       compressed = sum(length*filled*paths%settings%compressibility &
@@ -161,12 +161,9 @@ contains
       filled = filled - (before%aperture - before%void)
       balance = balance + sum(length*filled) + compressed - dt*sum(after%injection)
       if (paths%joints%n == 0) return
-      into_joints = paths%joints%injection
-      if (paths%wells%n > 0) then
-         into_joints = into_joints + matmul(paths%wells%joint_share, &
-                                            paths%wells%at_places(after%well_flow))
-      end if
-      balance = balance - dt*sum(into_joints) + dt*paths%joints%outflow(after%branch_flow)
+      associate (supplied => paths%into_joints(after))
+         balance = balance - dt*sum(supplied) + dt*paths%joints%outflow(after%branch_flow, supplied)
+      end associate
    end subroutine add_fracture_balance
 
    !> What density has added to the fluid of the fractures, at that of the reference pressure [m2].

@@ -43,6 +43,8 @@ module coarse_fractures
       integer(ik), allocatable :: connections(:, :)  !< (2, m) neighbouring cells of one fracture
       type(joints_t) :: joints  !< intersections and outlets of fractures
       type(wells_t) :: wells  !< wells whose rate depends on pressures; set by the caller
+   contains
+      procedure :: into_joints
    end type flow_paths_t
 
    !> Equations of one step in scaled unknowns. Their data are referenced, not copied, and must
@@ -307,6 +309,18 @@ contains
 
       at_point = self%layout%at_jump((point + 1)/2, 2 - mod(point, 2_ik))
    end function at_point
+
+   !> What wells supply to the joints in the step to a state [m2/s].
+   pure function into_joints(self, state) result(flow)
+      class(flow_paths_t), intent(in) :: self
+      type(state_t), intent(in) :: state
+      real(rk) :: flow(self%joints%n)
+
+      flow = self%joints%injection
+      if (self%wells%n > 0 .and. self%joints%n > 0) then
+         flow = flow + matmul(self%wells%joint_share, self%wells%at_places(state%well_flow))
+      end if
+   end function into_joints
 
    !> Opening of a cell, the mean of its ends' [u]_n.
    pure function opening(self, x, cell) result(mean)

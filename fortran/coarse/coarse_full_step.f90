@@ -327,7 +327,7 @@ contains
             if (.not. counts(slopes%x_of_q(q))) cycle
             do m = 1, size(force, 2)
                do k = 1, size(force, 1)
-                  column(k) = column(k) + weight(k, m)*factor*stiffness(force(k, m), q)
+                  column(k) = column(k) + weight(k, m)*factor*stiffness(q, force(k, m))
                end do
             end do
          end associate

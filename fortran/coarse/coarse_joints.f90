@@ -238,12 +238,14 @@ contains
    end function mean_pressure
 
    !> Outflow of the body through the ends of fractures [m2/s].
-   pure real(rk) function outflow(self, flow)
+   pure real(rk) function outflow(self, flow, supplied)
       class(joints_t), intent(in) :: self
       real(rk), intent(in) :: flow(:)  !< (branches) into the joints [m2/s]
+      real(rk), intent(in) :: supplied(:)  !< (joints) by wells [m2/s]
 
       outflow = 0.0_rk
-      if (self%n > 0) outflow = sum(flow, mask=self%is_outlet(self%joint))
+      if (self%n > 0) outflow = sum(flow, mask=self%is_outlet(self%joint)) &
+                                + sum(supplied, mask=self%is_outlet)
    end function outflow
 
    !> Whether flows belong to a network with a loop: those between pairs of cells, then those of the

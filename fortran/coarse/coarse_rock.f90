@@ -50,6 +50,7 @@ module coarse_rock
       integer(ik) :: most_layered_cell = 0
    contains
       procedure :: mobility_at
+      procedure :: diffusivity_at
       procedure :: solid_at
       procedure :: heat_pressure
       procedure :: with_heat
@@ -123,6 +124,16 @@ contains
          mobility_at = 1.0_rk/sqrt(r(1, 1)*r(2, 2) - r(1, 2)*r(2, 1))
       end associate
    end function mobility_at
+
+   !> c at uniaxial strain [m2/s].
+   pure real(rk) function diffusivity_at(self, cell)
+      class(rock_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+      type(solid_t) :: solid
+
+      solid = self%solid_at(cell)
+      diffusivity_at = self%mobility_at(cell)/solid%uniaxial_storage()
+   end function diffusivity_at
 
    !> The inverse of K/mu.
    pure function resistivity_of(permeability, viscosity) result(resistivity)

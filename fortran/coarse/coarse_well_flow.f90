@@ -121,7 +121,8 @@ contains
          if (.not. eq%paths%wells%joint_share(j, place) > 0.0_rk) cycle
          associate (share => eq%paths%wells%joint_share(j, place))
             at = eq%layout%at_joint(j)
-            if (is_supplied) then
+            ! An outlet has the pressure of its side.
+            if (is_supplied .and. .not. eq%paths%joints%is_outlet(j)) then
                eq%residual(at) = eq%residual(at) - share*x(flow)
                call eq%slopes%add(at, flow, -share)
             end if

@@ -44,6 +44,7 @@ module coarse_wells
       !> (fracture cells, places) pressure of the place above that of its cells, over the loss of
       !! its flow in half of each of them [-]
       real(rk), allocatable :: path(:, :)
+      integer(ik), allocatable :: entry(:)  !< (places) among all entries; 0: those of its entries
       real(rk), allocatable :: storage(:)  !< (n_all) [m2/Pa]
       real(rk), allocatable :: friction(:)  !< (n_all) pressure lost per flow [Pa s/m2]
       real(rk), allocatable :: turbulence(:)  !< (n_all) and per its square [Pa s2/m4]

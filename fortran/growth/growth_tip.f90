@@ -141,15 +141,16 @@ contains
       scale_of = max(toughness, self%least_scale/self%drive%resistance)
    end function scale_of
 
-   !> K_eq minus K_IC, over the scale; where it is positive, the part that is certain [-].
+   !> K_eq minus K_IC, over the scale; in rock that is hardly tough only what is certain [-].
    elemental real(rk) function excess(self, toughness)
       class(tip_t), intent(in) :: self
       real(rk), intent(in) :: toughness  !< K_IC [Pa m^1/2]
+      real(rk), parameter :: hardly = 0.1_rk  ! of the scale
 
       associate (scale => self%scale_of(toughness))
          excess = self%drive%intensity/scale - toughness/scale
+         if (excess > 0.0_rk .and. toughness < hardly*scale) excess = excess*self%certain_share()
       end associate
-      if (excess > 0.0_rk) excess = excess*self%certain_share()
    end function excess
 
    !> Estimated error of K_eq, over the scale [-].
@@ -162,8 +163,8 @@ contains
    end function relative_error
 
    !> Weight of what K_I and K_II demand: 1 where they are known to half of their values; 0 where
-   !! they do not exceed their errors, as at closed wings of rock that is hardly tough: such a tip
-   !! stays, and its path goes straight ahead [-].
+   !! they do not exceed their errors, as at closed wings: the path goes straight ahead, and in rock
+   !! that is hardly tough the tip stays [-].
    elemental real(rk) function certain_share(self)
       class(tip_t), intent(in) :: self
       real(rk) :: known

@@ -157,7 +157,7 @@ contains
       type(external_t), allocatable :: externals(:)
       integer(ik) :: j, n
 
-      associate (joints => model%joints)
+      associate (joints => model%joints, supplied => model%into_joints(state))
          allocate (externals(count(joints%is_outlet)))
          n = 0
          do j = 1, joints%n
@@ -165,8 +165,8 @@ contains
             n = n + 1
             externals(n) = external_t(heat%first_joint - 1 + j, temperature= &
                                       outside(heat, heat%place(:, heat%first_joint - 1 + j)), &
-                                      flow=-heat%fluid_capacity*sum(state%branch_flow( &
-                                                                    joints%branches%of(j))))
+                                      flow=-heat%fluid_capacity*(supplied(j) &
+                                                   + sum(state%branch_flow(joints%branches%of(j)))))
          end do
       end associate
    end function outlets

@@ -17,8 +17,8 @@ module report_jump_errors
    implicit none(type, external)
    private
 
-   public :: closure_error, error_of_largest, finite_elements, finite_volumes, jump_errors_t, &
-             jump_law_t, relative_jump_errors, unevenness
+   public :: by_crossings, closure_error, error_of_largest, finite_elements, finite_volumes, &
+             jump_errors_t, jump_law_t, relative_jump_errors, unevenness
 
    !> Shares of a discretization, each times a cell's length over a distance [-].
    type :: jump_law_t
@@ -176,24 +176,58 @@ contains
       logical, intent(in) :: moves(:)  !< (cells)
       integer(ik), intent(in) :: first  !< cell of the zone
       real(rk), intent(inout) :: part(first:)  !< (cells of the zone) [m]
-      real(rk) :: along(2, 2)
-      integer(ik) :: cells(2), i, k, points(2, 2)
+      integer(ik) :: i, k
 
       do i = first, ubound(part, 1, kind=ik) - 1
          associate (kind => fracture%point_kind(fracture%cell_points(2, i)))
             if (kind /= point_joint_t .and. kind /= point_joint_x) cycle
          end associate
          do k = 1, fracture%n_cells
-            cells = [i, k]
-            points = fracture%cell_points(:, cells)
             if (fracture%cell_fracture(k) == fracture%cell_fracture(i) .or. .not. moves(k)) cycle
-            if (all(points(:, 2) /= points(2, 1))) cycle
-            along = fracture%point_xy(:, points(2, :)) - fracture%point_xy(:, points(1, :))
-            part(i) = max(part(i), abs(along(1, 1)*along(2, 2) - along(2, 1)*along(1, 2)) &
-                          /max(norm2(along(:, 1)), norm2(along(:, 2))))
+            if (all(fracture%cell_points(:, k) /= fracture%cell_points(2, i))) cycle
+            part(i) = max(part(i), part_of_crossing(fracture, i, k))
          end do
       end do
    end subroutine add_crossings
+
+   !> The shorter of two cells, times the sine between them [m].
+   pure real(rk) function part_of_crossing(fracture, i, k) result(part)
+      type(fracture_mesh_t), intent(in) :: fracture
+      integer(ik), intent(in) :: i, k  !< cells
+      real(rk) :: along(2, 2)
+
+      associate (points => fracture%cell_points(:, [i, k]))
+         along = fracture%point_xy(:, points(2, :)) - fracture%point_xy(:, points(1, :))
+      end associate
+      part = abs(along(1, 1)*along(2, 2) - along(2, 1)*along(1, 2)) &
+             /max(norm2(along(:, 1)), norm2(along(:, 2)))
+   end function part_of_crossing
+
+   !> Errors of the slip of cells that move by that of fractures that cross theirs, as by kinks [m].
+   pure function by_crossings(fracture, moves, slip, law) result(error)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: moves(:)  !< (cells)
+      real(rk), intent(in) :: slip(:)  !< (cells) magnitudes [m]
+      type(jump_law_t), intent(in) :: law
+      real(rk) :: error(size(slip))
+      real(rk) :: part(1)
+      integer(ik) :: i, k
+
+      error = 0.0_rk
+      do i = 1, fracture%n_cells - 1
+         if (fracture%cell_fracture(i + 1) /= fracture%cell_fracture(i)) cycle
+         associate (at => fracture%cell_points(2, i), here => fracture%cell_fracture(i))
+            if (fracture%point_kind(at) /= point_joint_x) cycle
+            do k = 1, fracture%n_cells
+               if (fracture%cell_fracture(k) == here .or. .not. moves(k)) cycle
+               if (all(fracture%cell_points(:, k) /= at)) cycle
+               part = part_of_crossing(fracture, i, k)*law%at_kink*slip(k)
+               where (fracture%cell_fracture == here .and. moves) error = max(error, &
+                  & part(1)/abs(fracture%cell_s(2, i) - 0.5_rk*sum(fracture%cell_s, dim=1)))
+            end do
+         end associate
+      end do
+   end function by_crossings
 
    !> Differences of the values of cells from the mean of their neighbours on the fracture.
    pure function unevenness(fracture, values) result(difference)

@@ -107,13 +107,9 @@ contains
    pure real(rk) function diffusivity_at(problem, fracture_cell) result(diffusivity)
       type(coarse_problem_t), intent(in) :: problem
       integer(ik), intent(in) :: fracture_cell
-      type(solid_t) :: solid
-      integer(ik) :: face
 
-      solid = solid_beside(problem, fracture_cell)
-      face = problem%mesh%fracture%cell_faces(1, fracture_cell)
-      diffusivity = problem%model%rock%mobility_at(problem%mesh%face_cells(1, face)) &
-                    /solid%uniaxial_storage()
+      diffusivity = problem%model%rock%diffusivity_at(problem%mesh%face_cells(1, &
+                                              & problem%mesh%fracture%cell_faces(1, fracture_cell)))
    end function diffusivity_at
 
    !> 2 eta/sqrt(2 pi) of the rock at a fracture cell, with the effect of the tip [-].

@@ -30,11 +30,12 @@ module twolevel_field_errors
                           matrix_fields_t
    use scene_types, only: scene_t
    use twolevel_jump_errors, only: jumps_in_space_t
-   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, least, round_tips, &
-                                       skempton, stress_means
+   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, largest_of, least, &
+                                       round_tips, skempton, stress_means
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
    use twolevel_value_errors, only: of_solution, value_errors_t
+   use twolevel_well_losses, only: entry_flows, unresolved_in_cells
    implicit none(type, external)
    private
 
@@ -42,26 +43,11 @@ module twolevel_field_errors
 
    !> errors of flows, over the difference from the neighbours and the largest one of a fracture [-]
    real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
-   !> error of pressures by that of the resistance to flow, over their range in a fracture [-]
-   real(rk), parameter :: of_drop = 0.06_rk
    !> error of the stress that acts on a fracture, over its change since the start [-]
    real(rk), parameter :: of_stress = 0.025_rk
    real(rk), parameter :: by_flow = 0.25_rk  !< the same, over the relative error of the flow [-]
 
 contains
-
-   !> Largest value on the fracture of each cell.
-   pure function largest_of(fracture, values) result(largest)
-      type(fracture_mesh_t), intent(in) :: fracture
-      real(rk), intent(in) :: values(:)
-      real(rk) :: largest(size(values))
-      integer(ik) :: f
-
-      do f = 1, maxval([0_ik, fracture%cell_fracture])
-         where (fracture%cell_fracture == f) largest = maxval(values, &
-                                                              mask=fracture%cell_fracture == f)
-      end do
-   end function largest_of
 
    !> Error of the stress on each closed fracture cell: a share of the mean change on its fracture
    !! [Pa].
@@ -113,8 +99,9 @@ contains
       type(value_errors_t), intent(in) :: errors
       type(fracture_fields_t), intent(inout) :: fields
       type(jumps_in_space_t) :: jumps
-      real(rk), dimension(problem%mesh%fracture%n_cells) :: around, length, tips
-      real(rk) :: drop(size(scene%fractures)), ends(2), leaks, whole
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: around, length, smooth, tips
+      real(rk), dimension(size(scene%fractures)) :: drop, largest, resistance
+      real(rk) :: ends(2), leaks, whole
       logical :: own(size(length))
       integer(ik) :: f
       integer :: inner(2)
@@ -125,18 +112,17 @@ contains
          e%jump_n = jumps%error_n + errors%of_opening*abs(fields%jump_n)
          e%jump_t = jumps%error_t + errors%of_slip*abs(fields%jump_t)
          e%pressure = cell_pressure_errors(scene, problem, state, errors, jumps) &
-                      + 0.5_rk*unevenness(fracture, fields%pressure) &
-                      + of_solution*abs(fields%pressure)
-         ! Beside a well at a point the flow changes within the cell.
-         e%flow = of_neighbours*unevenness(fracture, fields%flow) &
-                  + 0.5_rk*merge(abs(state%injection), 0.0_rk, &
-                                 any(problem%share > 0.0_rk .and. &
-                                     spread(problem%entries%at_point, 1, size(length)), dim=2))
+                      + unresolved_in_cells(problem, state) + of_solution*abs(fields%pressure) &
+                      + 0.5_rk*merge(0.0_rk, unevenness(fracture, fields%pressure), &
+                                     any(problem%path > 0.0_rk, dim=2))
+         ! Wells at points supply known flows.
+         smooth = fields%flow - matmul(max(0.0_rk, problem%ahead), entry_flows(problem, state))
+         e%flow = of_neighbours*unevenness(fracture, smooth)
          around = round_tips(problem, state%time - errors%start)
          do f = 1, maxval(fracture%cell_fracture)
             own = fracture%cell_fracture == f
             associate (first => findloc(own, .true., dim=1), s => fracture%cell_s, &
-                       last => findloc(own, .true., dim=1, back=.true.), q => fields%flow)
+                       last => findloc(own, .true., dim=1, back=.true.), q => smooth)
                if (first == 0) cycle
                inner = [min(first + 1, last), max(last - 1, first)]
                e%flow(first) = max(e%flow(first), abs(q(first)), &
@@ -149,16 +135,24 @@ contains
                where (own) e%flow = e%flow + leaks*(errors%of_flow*length + tips)
             end associate
          end do
-         e%flow = e%flow + (errors%of_flow + errors%time_share())*abs(fields%flow) &
-                  + of_largest*largest_of(fracture, abs(fields%flow))
+         largest = largest_of(scene, problem, abs(smooth))
+         e%flow = e%flow + (errors%of_flow + errors%time_share())*abs(smooth) &
+                  + of_largest*largest(fracture%cell_fracture)
+         if (allocated(errors%of_flows)) then
+            e%flow = e%flow + matmul(abs(problem%ahead), errors%of_flows(problem%well_of))
+            e%pressure = e%pressure + errors%of_given(fracture%cell_fracture)
+         end if
          ! Half of the fluid of the ends passes the others.
          drop = fracture_means(scene, problem, abs(fields%flow))
          drop = fracture_means(scene, problem, e%flow)/max(tiny(1.0_rk), drop)
-         e%pressure = e%pressure + max(of_drop, by_flow*min(1.0_rk, drop(fracture%cell_fracture))) &
-                      *(largest_of(fracture, fields%pressure) &
-                        + largest_of(fracture, -fields%pressure))
+         resistance = 3.0_rk*fracture_means(scene, problem, e%jump_n/fields%aperture)
+         drop = max(min(1.0_rk, resistance), by_flow*min(1.0_rk, drop)) &
+                *(largest_of(scene, problem, fields%pressure) &
+                  + largest_of(scene, problem, -fields%pressure))
+         e%pressure = e%pressure + errors%of_place(fracture%cell_fracture) &
+                      + drop(fracture%cell_fracture)
          drop = errors%fractures%changes()
-         e%flow = e%flow + abs(fields%flow)*min(1.0_rk, e%pressure/max(tiny(1.0_rk), &
+         e%flow = e%flow + abs(smooth)*min(1.0_rk, e%pressure/max(tiny(1.0_rk), &
                                                                 & drop(fracture%cell_fracture)))
       end associate
       call note_tractions(scene, problem, state, jumps%slip, &

@@ -10,7 +10,8 @@ module twolevel_jump_errors
    use coarse_state, only: state_t
    use contact_law, only: state_open, state_slip
    use mesh_types, only: fracture_mesh_t
-   use report_jump_errors, only: finite_volumes, jump_errors_t, relative_jump_errors, unevenness
+   use report_jump_errors, only: by_crossings, finite_volumes, jump_errors_t, &
+                                 relative_jump_errors, unevenness
    use scene_types, only: material_t
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
@@ -81,7 +82,8 @@ contains
          slid = compliance*self%slip%reach*facts%of_pressure*problem%model%cells%law%friction
          where (cell_states(state) /= state_slip) slid = 0.0_rk
          self%error_t = (self%slip%of_slip + facts%of_length)*merge(moved, self%t, is_open) + slid &
-                        + at_ends(fracture, moves(self%t), self%t)
+                        + at_ends(fracture, moves(self%t), self%t) &
+                        + by_crossings(fracture, moves(self%t), self%t, finite_volumes)
          self%error_n = (self%opening%share + facts%of_length - facts%less)*moved + opened &
                         + at_ends(fracture, moves(n), n) + past_kink*self%slip%kink*self%t
          opened = (self%opening%of_sum + facts%of_length)*n + opened &

@@ -11,6 +11,7 @@ module twolevel_problem
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_rock, only: solid_t
+   use coarse_well_ways, only: decay_rate, way_with_uptake
    use coarse_well_rings, only: new_well_rings, ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
@@ -22,7 +23,8 @@ module twolevel_problem
    use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
-   use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, rate, &
+   use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, &
+                             places_of_cells, rate, &
                              wells_of_entries
    implicit none(type, external)
    private
@@ -38,7 +40,12 @@ module twolevel_problem
       integer(ik), allocatable :: well_of(:)  !< (entries) number of the well
       real(rk), allocatable :: share(:, :)  !< (fracture cells, entries) of each entry's flow [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, entries) of each entry's flow [-]
-      real(rk), allocatable :: path(:, :)  !< (fracture cells, entries) of place_wells [-]
+      !> (fracture cells, entries) of place_wells, and with what is taken up on the way [-]
+      real(rk), allocatable :: steady(:, :), path(:, :)
+      !> (fracture cells, entries) 1: middle of the cell beyond a well at a point of its fracture,
+      !! -1: before it, 0: neither
+      real(rk), allocatable :: ahead(:, :)
+      real(rk), allocatable :: asked(:)  !< (entries) prescribed flows of the last step [m2/s]
       !> (wells) cells of the wells in the rock; 0: other wells
       integer(ik), allocatable :: rock_cell(:)
       type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
@@ -53,11 +60,11 @@ module twolevel_problem
       procedure :: feed_wells
       procedure :: rest_wells
       procedure :: ask
+      procedure :: find_ways
       procedure :: advance
       procedure :: find_values
       procedure :: well_pressure
       procedure :: entry_pressure
-      procedure :: unresolved_at
       procedure :: well_in_situ
       procedure :: entry_in_situ
       procedure :: rock_pressure
@@ -89,7 +96,10 @@ contains
          self%entries = entries_of(wells)
          self%well_of = wells_of_entries(wells)
          call place_wells(self%entries, self%mesh%fracture, self%model%joints, &
-                          self%model%cells%roughness, self%share, self%joint_share, self%path)
+                          self%model%cells%roughness, self%share, self%joint_share, self%steady)
+         self%path = self%steady
+         self%ahead = places_of_cells(self%entries, self%mesh%fracture)
+         if (.not. allocated(self%asked)) self%asked = spread(0.0_rk, 1, size(self%entries))
          call control_wells(wells, self%share, self%joint_share, self%path, self%model%wells)
          call part_twins(self, scene)
          if (allocated(self%model%in_situ)) then
@@ -125,7 +135,7 @@ contains
                  s => self%mesh%fracture%cell_s)
          is_twin = .false.
          do w = 1, wells%n
-            if (any(wells%path(:, w) > 0.0_rk)) cycle
+            if (any(wells%path(:, w) > same_value)) cycle
             if (wells%friction(w) + wells%turbulence(w) > 0.0_rk) cycle
             if (wells%first_entry(w) /= w) cycle
             do k = 1, wells%n
@@ -225,9 +235,10 @@ contains
       real(rk), intent(in) :: time, dt  !< [s]
 
       associate (rates => rate(scene%injections, time, dt))
-         self%model%cells%injection = matmul(self%share, rates(self%well_of))
+         self%asked = rates(self%well_of)
+         self%model%cells%injection = matmul(self%share, self%asked)
          if (self%model%joints%n > 0) then
-            self%model%joints%injection = matmul(self%joint_share, rates(self%well_of))
+            self%model%joints%injection = matmul(self%joint_share, self%asked)
          end if
          if (allocated(self%model%source)) call feed_rock(self, rates)
       end associate
@@ -252,11 +263,50 @@ contains
          if (allocated(error)) return
       end if
       call self%ask(scene, state%time, dt)
+      call self%find_ways(state, state%time + dt)
       if (present(control)) then
          where (control > 0) self%model%wells%control = control
       end if
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
+
+   !> Ways of the wells at points of fractures in the step that ends at a time (coarse_well_ways).
+   pure subroutine find_ways(self, state, time)
+      class(coarse_problem_t), intent(inout) :: self
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), allocatable :: resistance(:)
+      real(rk) :: theta
+      integer(ik) :: cell, e, i
+      logical :: at_tip
+
+      if (size(self%entries) == 0 .or. self%mesh%fracture%n_cells == 0) return
+      resistance = 12.0_rk*self%model%settings%viscosity*self%thickness(state)/state%aperture**3
+      do e = 1, size(self%entries, kind=ik)
+         cell = maxloc(self%share(:, e), dim=1, kind=ik)
+         associate (well => self%entries(e), share => self%share(:, e), rock => self%model%rock, &
+                    s => self%mesh%fracture%cell_s, &
+                    age => time - max(0.0_rk, self%entries(e)%stage_start(1_ik)))
+            if (well%fracture == 0 .or. .not. (well%at_point .and. age > 0.0_rk)) cycle
+            if (any(self%joint_share(:, e) > 0.0_rk)) cycle
+            i = self%mesh%face_cells(1, self%mesh%fracture%cell_faces(1, cell))
+            theta = sum(s(2, :) - s(1, :), mask=share > 0.0_rk)/count(share > 0.0_rk) &
+                    *decay_rate(sum(share)/sum(share*resistance), rock%mobility_at(i), &
+                                rock%diffusivity_at(i), age, well%has_given_flow())
+            at_tip = count(share > 0.0_rk) == 1 .and. self%steady(cell, e) > same_value
+            where (share > 0.0_rk) self%path(:, e) = way_with_uptake(self%steady(:, e), theta, &
+                                                                     at_tip)
+            ! In the middle of a cell the way is one in half of it.
+            if (.not. (at_tip .or. self%steady(cell, e) > same_value)) then
+               self%path(cell, e) = 2.0_rk*self%path(cell, e)
+            end if
+         end associate
+      end do
+      do i = 1, size(self%model%wells%entry, kind=ik)
+         e = self%model%wells%entry(i)
+         if (e > 0) self%model%wells%path(:, i) = self%path(:, e)
+      end do
+   end subroutine find_ways
 
    !> Compute the values that windows use, unless they are those of this state already.
    subroutine find_values(self, state, undrained)
@@ -347,47 +397,6 @@ contains
                     *sum(path*(s(2, :) - s(1, :))/state%aperture**3*self%thickness(state))
       end associate
    end function entry_pressure
-
-   !> What may be missing in the pressure of an entry at a point: twice the loss of the flows of
-   !! other wells on its way to the same cells, as the others lack that of its flow too; and what
-   !! leaks off or is stored on this way, u: 12 mu u l/(8 a^3) in a cell of length l [Pa].
-   pure real(rk) function unresolved_at(self, state, entry, flow) result(pressure)
-      class(coarse_problem_t), intent(in) :: self
-      type(state_t), intent(in) :: state
-      integer(ik), intent(in) :: entry  !< number among those of all wells
-      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
-      real(rk) :: half_cells(size(state%pressure)), uptake(size(state%pressure))
-      integer(ik) :: b, e, k
-
-      pressure = 0.0_rk
-      if (self%entries(entry)%fracture == 0 .or. .not. self%entries(entry)%at_point) return
-      associate (s => self%mesh%fracture%cell_s)
-         half_cells = 6.0_rk*self%model%settings%viscosity*(s(2, :) - s(1, :))/state%aperture**3 &
-                      *self%thickness(state)
-      end associate
-      uptake = state%injection
-      do k = 1, size(state%flow, kind=ik)
-         associate (cells => self%model%connections(:, k))
-            uptake(cells) = uptake(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
-         end associate
-      end do
-      do b = 1, self%model%joints%branch_count()
-         associate (cell => self%model%joints%cell(b))
-            uptake(cell) = uptake(cell) - state%branch_flow(b)
-         end associate
-      end do
-      pressure = 0.25_rk*sum(self%share(:, entry)*half_cells*abs(uptake))
-      if (.not. any(self%path(:, entry) > 0.0_rk)) return
-      do e = 1, size(self%entries, kind=ik)
-         if (e == entry) cycle
-         if (any((self%path(:, e) > 0.0_rk) .neqv. (self%path(:, entry) > 0.0_rk))) cycle
-         associate (own => self%joint_share(:, entry), other => self%joint_share(:, e))
-            if (any((own > 0.0_rk) .neqv. (other > 0.0_rk))) cycle
-         end associate
-         pressure = pressure + 2.0_rk*abs(flow(self%well_of(e))) &
-                    *sum(min(self%path(:, e), self%path(:, entry))*half_cells)
-      end do
-   end function unresolved_at
 
    !> Pressure in situ at a well, at its first entry [Pa].
    pure real(rk) function well_in_situ(self, well) result(pressure)

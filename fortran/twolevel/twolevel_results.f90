@@ -18,6 +18,7 @@ module twolevel_results
    use twolevel_levels_state, only: levels_state_t
    use twolevel_places, only: end_at_tips
    use twolevel_problem, only: cell_heights, coarse_problem_t
+   use twolevel_well_losses, only: entry_flows
    use twolevel_well_rows, only: well_flows, well_pressures
    implicit none(type, external)
    private
@@ -275,14 +276,15 @@ contains
       end associate
    end function rock_fields
 
-   !> Flow along each fracture cell in its direction, the mean of its two ends [m2/s].
+   !> Flow along each fracture cell in its direction, at its middle: the mean of its two ends, and
+   !! half of what wells supply between the middle and an end [m2/s].
    pure function fracture_flow(problem, state) result(flow)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       real(rk) :: flow(problem%mesh%fracture%n_cells)
       integer(ik) :: b, k
 
-      flow = 0.0_rk
+      flow = 0.5_rk*matmul(problem%share*problem%ahead, entry_flows(problem, state))
       associate (pairs => problem%model%connections, joints => problem%model%joints)
          do k = 1, size(pairs, 2, kind=ik)
             flow(pairs(:, k)) = flow(pairs(:, k)) + 0.5_rk*state%flow(k)

@@ -51,8 +51,9 @@ contains
       real(rk), parameter :: by_far = 2.0_rk*excess_max
       logical :: far(size(self%tip))
 
-      far = self%tip%is_loaded() .and. .not. (self%now%segment%is_open .or. self%tip%arrested) .and. &
-            search%unmoved > by_far .and. is_on_way(self) .and. are_beyond(self)
+      far = self%tip%is_loaded() .and. search%unmoved > by_far .and. &
+            .not. (self%now%segment%is_open .or. self%tip%arrested) .and. &
+            is_on_way(self) .and. are_beyond(self)
       search%is_over = any(far)
       if (search%is_over) call reject_overshoot(self, search, far, trial)
    end subroutine see_overshoot

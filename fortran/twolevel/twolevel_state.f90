@@ -407,7 +407,8 @@ contains
          if (self%problem%mesh%fracture%n_cells == 0) return
          fluid%leaked = fluid%leaked + dt*sum(state%leakoff*model%condensed%length)
          if (model%joints%n == 0) return
-         fluid%outflow = fluid%outflow + dt*model%joints%outflow(state%branch_flow)
+         fluid%outflow = fluid%outflow + dt*model%joints%outflow(state%branch_flow, &
+                                                                 model%into_joints(state))
       end associate
    end subroutine book_step
 

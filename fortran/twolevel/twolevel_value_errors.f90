@@ -14,6 +14,7 @@
 module twolevel_value_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
+   use contact_law, only: state_open
    use report_jump_errors, only: error_of_largest, finite_volumes
    use report_rows, only: entry_row_t, history_errors_t, history_row_t, probe_row_t, &
                           well_row_t
@@ -22,10 +23,13 @@ module twolevel_value_errors
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
    use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
-                                       leaking_share, least, least_first, mean_in_rock, &
+                                       largest_of, leaking_share, least, mean_in_rock, &
                                        mean_pressure, of_first_pressure, of_layers, of_steps, &
-                                       of_well_in_rock, stress_means, undrained_share
+                                       of_well_in_rock, share_round_tips, stress_means, &
+                                       undrained_share
    use twolevel_problem, only: coarse_problem_t
+   use twolevel_results, only: cell_states
+   use twolevel_well_losses, only: unresolved_at
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
@@ -66,14 +70,20 @@ module twolevel_value_errors
       real(rk) :: of_length = 0.0_rk  !< relative error of the length of growing fractures [-]
       real(rk) :: of_slip = 0.0_rk, of_opening = 0.0_rk  !< in time, relative to the largest [-]
       real(rk), allocatable :: of_wells(:)  !< of the wells' pressures [Pa]
+      real(rk), allocatable :: of_flows(:)  !< of their flows [m2/s]
       logical, allocatable :: flows(:)  !< (wells) the well has a flow
       real(rk), allocatable :: risen(:)  !< largest changes of the wells' pressures so far [Pa]
       real(rk) :: of_rock = 0.0_rk  !< relative error in space of wells in the rock [-]
       type(followed_step_t) :: step  !< last step
       real(rk) :: start = 0.0_rk  !< time of the first state [s]
-      real(rk), allocatable :: of_first(:)  !< of the fractures' first pressures [Pa]
+      real(rk), allocatable :: of_first(:, :)  !< (fractures, 2) of_first_pressure [Pa]
+      logical, allocatable :: opened(:)  !< (fractures) cells were open at the first pressure
       real(rk), allocatable :: first_stress(:, :)  !< (2, fractures) stress_means at the start [Pa]
       real(rk) :: held = 0.0_rk  !< fluid in fractures per change of pressure and length [m/Pa]
+      real(rk) :: gross = 0.0_rk  !< magnitudes of the leak-off of all cells so far [m2]
+      real(rk), allocatable :: of_given(:)  !< (fractures) missing at wells with a pressure [Pa]
+      !> (fractures) of the place where the pressure is that of the rock, by leak-off [Pa]
+      real(rk), allocatable :: of_place(:)
       real(rk) :: of_start = 0.0_rk  !< of the fractures' volume before the first step [m2]
       type(followed_t) :: quantities
       type(followed_t) :: fractures  !< mean pressure of each
@@ -104,6 +114,7 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
       real(rk) :: values(n_followed)
+      integer(ik) :: f
 
       values = 0.0_rk
       values(in_rock) = mean_in_rock(problem, state)
@@ -116,6 +127,8 @@ contains
       call self%quantities%begin(state%time, values)
       self%start = state%time
       self%of_first = of_first_pressure(scene, problem, state)
+      self%opened = [(any(problem%mesh%fracture%cell_fracture == f .and. &
+                          cell_states(state) == state_open), f=1, size(scene%fractures, kind=ik))]
       self%first_stress = stress_means(scene, problem, state)
       call self%fractures%begin(state%time, fracture_means(scene, problem, &
                                                            problem%fracture_pressure(state)))
@@ -145,6 +158,9 @@ contains
          values(pressure) = mean_pressure(problem, state)
          self%diffusing = abs(row%leakoff)/fluid
       end if
+      self%gross = self%gross + max(0.0_rk, row%time - self%quantities%time) &
+                   *sum((problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)) &
+                        *abs(state%leakoff))
       self%step = followed_step_t(row%time, facts%is_jump, facts%is_growing, facts%is_first, &
                                   self%diffusing)
       call self%quantities%follow(self%step, values)
@@ -183,6 +199,9 @@ contains
          if (self%quantities%n_steps == 0) self%of_start = jumps%volume
          call note_jumps(self, problem, jumps, row)
       end if
+      self%of_place = (layers + share_round_tips(problem, row%time - self%start)) &
+                      *(largest_of(scene, problem, state%pressure) &
+                        + largest_of(scene, problem, -state%pressure))
       call note_fluid(self, scene, problem, state, row, facts, layers)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
@@ -240,25 +259,32 @@ contains
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
       real(rk), parameter :: half = 0.5_rk  ! of the first pressure, where both begin, and of others
-      real(rk) :: first, held, leak
+      real(rk) :: drive, first, held, leak
 
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
-         first = held_at_first(scene, problem, state, self%of_first)
-         associate (share => maxval(self%of_first)/max(changes(pressure), tiny(1.0_rk)))
+         first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
+         associate (share => maxval(sum(self%of_first, dim=2))/max(changes(pressure), tiny(1.0_rk)))
             if (share < 1.0_rk) first = min(first, half*share*abs(row%fracture_fluid))
          end associate
-         leak = time(leakoff) + (layers + self%of_length + self%of_drive + half*self%of_pressure) &
-                *abs(row%leakoff) + first + lost
-         held = time(fracture_fluid) + max(self%of_held, self%of_start - self%of_held) &
+         ! What an open fracture holds at first leaks off until its faces touch.
+         drive = max(self%of_drive, maxval(min(1.0_rk, sum(self%of_first, dim=2) &
+                                               /max(self%fractures%changes(), tiny(1.0_rk))), &
+                                           mask=self%opened))
+         leak = time(leakoff) + (layers + self%of_length + drive + half*self%of_pressure) &
+                *max(self%gross, abs(row%leakoff)) + first + lost
+         held = held_at_first(scene, problem, state, self%of_place)
+         held = held + time(fracture_fluid) + max(self%of_held, self%of_start - self%of_held) &
                 + max(0.2_rk*least, self%of_pressure)*abs(row%fracture_fluid) + first + lost
          error%leakoff = leak
          error%fracture_fluid = held
          if (.not. all(scene%injections%has_given_flow())) then
             error%injected = time(injected) + lost + max(self%of_held, &
                                          & (self%of_flow + self%of_drive)*abs(row%injected))
+            ! The balance has the only flow that is not given.
+            if (has_one_free(scene)) error%injected = leak + held + error%outflow
             error%produced = time(produced) + (self%of_flow + self%of_drive)*abs(row%produced) &
                              + min(row%produced, error%injected) + lost
          else
@@ -276,6 +302,15 @@ contains
                             + merge(error%injected, 0.0_rk, any(scene%injections%fracture == 0))
       end associate
    end subroutine note_fluid
+
+   !> Whether all flows of wells are given but that of one in a fracture.
+   pure logical function has_one_free(scene)
+      type(scene_t), intent(in) :: scene
+
+      associate (wells => scene%injections)
+         has_one_free = count(.not. wells%has_given_flow()) == 1 .and. all(wells%fracture > 0)
+      end associate
+   end function has_one_free
 
    !> Errors of rates and lengths.
    subroutine note_rest(self, problem, row, stated, facts)
@@ -308,18 +343,15 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> What is left of the errors of the fractures' first pressures: sealed rock keeps them [Pa].
+   !> What is left of the errors of the fractures' first pressures [Pa].
    function undrained(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk) :: error(size(scene%fractures))
 
-      error = self%of_first*undrained_share(scene, problem, self%quantities%time - self%start, &
-                                            self%held)
-      if (any(scene%sides%pressure_given) .or. allocated(problem%model%in_situ)) return
-      error = max(error, least_first*abs(self%fractures%first &
-                                         - scene%initial%pressure))
+      error = sum(self%of_first*undrained_share(scene, problem, self%quantities%time &
+                                                - self%start, self%held), dim=2)
    end function undrained
 
    !> Remaining error of the first pressure in each fracture cell; none at a given pressure [Pa].
@@ -383,32 +415,53 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, missing
-      real(rk) :: share
+      real(rk) :: drop, share, taken(2)
       integer(ik) :: w
+      logical :: keeps(size(rows))
 
       if (size(rows) == 0) return
+      keeps = [(rows(w)%control == "pressure", w=1, size(rows, kind=ik))]
       call self%wells%follow(self%step, [rows%pressure, rows%flow, rows%injected])
       by_length = merge(abs(stated%slope)*max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       changes = self%wells%changes()
       first = self%undrained(scene, problem)
+      self%of_given = 0.0_rk*first
       do w = 1, size(rows, kind=ik)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
             share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
-            missing = problem%unresolved_at(state, findloc(problem%well_of, w, dim=1, kind=ik), &
-                                            rows%flow)
-            error%pressure = time(w) + share*changes(w) + by_length + missing &
-                             + of_solution*abs(row%pressure)
-            if (well%fracture > 0) error%pressure = error%pressure + first(well%fracture)
+            missing = unresolved_at(problem, state, findloc(problem%well_of, w, dim=1, kind=ik), &
+                                    rows%flow)
+            error%pressure = time(w) + share*changes(w)
+            if (well%fracture > 0) then
+               error%pressure = error%pressure + first(well%fracture)
+               ! Where another well keeps its pressure, errors are those of the difference.
+               drop = minval(abs(row%pressure - rows%pressure), &
+                             mask=keeps .and. scene%injections%fracture == well%fracture)
+               if (drop < changes(w)) error%pressure = error%pressure*drop/changes(w)
+               error%pressure = error%pressure + self%of_place(well%fracture)
+            end if
+            error%pressure = error%pressure + by_length + missing + of_solution*abs(row%pressure)
             if (.not. well%has_given_flow()) then
+               if (well%fracture > 0) self%of_given(well%fracture) = max(missing, &
+                                                                       self%of_given(well%fracture))
                flow = max(share, self%of_flow) + self%of_drive &
-                      + min(1.0_rk, missing/max(tiny(1.0_rk), changes(w)))
-               error%injected = time(2*n + w) + max(flow*abs(row%injected), self%of_held)
+                      + missing/max(tiny(1.0_rk), changes(w))
+               ! Errors are those of what the fractures and the rock take up.
+               taken = abs([row%flow, row%injected])
+               if (has_one_free(scene)) taken = abs([sum(rows%flow), sum(rows%injected)])
+               error%injected = time(2*n + w) + flow*taken(2)
+               if (has_one_free(scene)) then
+                  error%injected = self%row%injected + missing/max(tiny(1.0_rk), changes(w)) &
+                                   *taken(2)
+               else
+                  error%injected = max(error%injected, self%of_held)
+               end if
                ! A flow like 1/sqrt(t) has three times the relative error in time of its volume.
                error%flow = time(n + w)
-               if (abs(row%injected) > 0.0_rk) error%flow = &
-                  & max(error%flow, 3.0_rk*abs(row%flow)*time(2*n + w)/abs(row%injected))
-               error%flow = error%flow + flow*abs(row%flow)
+               if (taken(2) > 0.0_rk) error%flow = max(error%flow, &
+                  & 3.0_rk*taken(1)*time(2*n + w)/taken(2))
+               error%flow = error%flow + flow*taken(1)
                error%rate = error%flow
             end if
             error%head_pressure = error%pressure &
@@ -426,7 +479,19 @@ contains
             end associate
          end associate
       end do
+      where (scene%injections%fracture > 0 .and. rows%error%head_pressure > 0.0_rk)
+         rows%error%pressure = rows%error%pressure + self%of_given(max(1, &
+                                                                    & scene%injections%fracture))
+         rows%error%head_pressure = rows%error%head_pressure &
+                                    + self%of_given(max(1, scene%injections%fracture))
+      end where
       self%of_wells = rows%error%pressure
+      self%of_flows = rows%error%flow
+      if (.not. all(scene%injections%has_given_flow())) then
+         self%row%injected = sum(rows%error%injected) + abs(facts%mass_error)
+         self%row%produced = sum(rows%error%injected, mask=rows%injected < 0.0_rk) &
+                             + abs(facts%mass_error)
+      end if
       self%flows = abs(rows%flow) > 0.0_rk
       if (.not. allocated(self%risen)) self%risen = 0.0_rk*self%of_wells
       self%risen = max(self%risen, abs(rows%pressure - self%wells%first(:size(rows))))

@@ -6,7 +6,8 @@
 !! and l = d1 + d2,
 !!   q1 = q d2/l,   q2 = q d1/l,   p = p1 d2/l + p2 d1/l + R q d1 d2/l^2
 !! R being the resistance between the two, give the same flow and pressure as a well at its exact
-!! place. Behind the last middle before a tip nothing flows on: q1 = q, p = p1 + R q over d1.
+!! place. Behind the last middle before a tip nothing flows on: q1 = q, p = p1 + R q over d1. A side
+!! with a pressure is like a joint with this pressure: what is supplied to it leaves the body.
 module twolevel_wells
    use base_kinds, only: ik, rk
    use base_plane, only: nearest_share, point_distance
@@ -19,8 +20,8 @@ module twolevel_wells
    implicit none(type, external)
    private
 
-   public :: ask_wells, control_wells, entries_of, place_wells, rate, share_wells, transfer_shares
-   public :: wells_of_entries
+   public :: ask_wells, control_wells, entries_of, place_wells, places_of_cells, rate, share_wells
+   public :: transfer_shares, wells_of_entries
 
 contains
 
@@ -92,6 +93,7 @@ contains
          call find_cell(wells(w), fracture, cell, offset)
          share(:, w) = 0.0_rk
          share(cell, w) = 1.0_rk
+         path(cell, w) = tiny(1.0_rk)
          end = merge(1_ik, 2_ik, offset < 0.0_rk)
          offset = abs(offset)
          if (offset < same_value) cycle
@@ -99,8 +101,10 @@ contains
          if (joints%n > 0) joint = findloc(joints%point, fracture%cell_points(end, cell), dim=1, &
                                            kind=ik)
          if (joint > 0) then
-            if (joints%is_outlet(joint)) cycle
-            if (offset > 1.0_rk - same_value) offset = 1.0_rk
+            if (offset > 1.0_rk - same_value) then
+               offset = 1.0_rk
+               if (joints%is_outlet(joint)) cycle  ! all of it would leave at once
+            end if
             share(cell, w) = 1.0_rk - offset
             joint_share(joint, w) = offset
             path(cell, w) = offset*(1.0_rk - offset)
@@ -118,6 +122,26 @@ contains
          path([cell, next], w) = t*(1.0_rk - t)
       end do
    end subroutine place_wells
+
+   !> Whether the middle of each cell lies beyond each well at a point of its fracture, 1, or before
+   !! it, -1; 0: in it, on another fracture, or the well is not at a point.
+   pure function places_of_cells(wells, fracture) result(ahead)
+      type(injection_t), intent(in) :: wells(:)
+      type(fracture_mesh_t), intent(in) :: fracture
+      real(rk) :: ahead(fracture%n_cells, size(wells))
+      real(rk) :: offset
+      integer(ik) :: cell, w
+
+      ahead = 0.0_rk
+      do w = 1, size(wells, kind=ik)
+         if (.not. wells(w)%at_point .or. wells(w)%fracture == 0) cycle
+         call find_cell(wells(w), fracture, cell, offset)
+         where (fracture%cell_fracture == wells(w)%fracture) &
+            ahead(:, w) = sign(1.0_rk, fracture%cell_s(1, :) - fracture%cell_s(1, cell))
+         ahead(cell, w) = 0.0_rk
+         if (abs(offset) >= same_value) ahead(cell, w) = sign(1.0_rk, -offset)
+      end do
+   end function places_of_cells
 
    !> The cell of a well at a point, and its distance from the middle over half the length, negative
    !! towards the start.
@@ -204,6 +228,7 @@ contains
                 pack(number, given%is_controlled() .and. given%fracture == 0)]
       wells%n = count(given%is_controlled() .and. given%fracture > 0)
       wells%n_all = size(number, kind=ik)
+      wells%entry = [integer(ik) ::]
       if (wells%n_all == 0) return
       at = [(findloc(wells_of_entries(given), number(w), dim=1, kind=ik), w=1, wells%n)]
       call add_entries(given, number(:wells%n), wells, at)
@@ -211,11 +236,13 @@ contains
       wells%share = share(:, at)
       wells%joint_share = joint_share(:, at)
       wells%path = path(:, at)
+      wells%entry = at
       do w = 1, merge(wells%n, 0_ik, wells%n_entries > 0)
          if (wells%first_entry(w) == w) cycle
          wells%share(:, w) = 0.0_rk
          wells%joint_share(:, w) = 0.0_rk
          wells%path(:, w) = 0.0_rk
+         wells%entry(w) = 0
       end do
       wells%storage = given(number)%storage
       wells%friction = given(number)%friction

@@ -20,7 +20,7 @@ import statistics
 import subprocess
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +39,7 @@ STATES = 12  # of each family and seed
 FINER = 4.0
 ROUNDING = 1e-7  # of the largest value in a table
 LEAST = {"_m": 1e-12, "_pa": 1.0, "_sqrtm": 10.0, "_j_m2": 1e-4, "_m2": 1e-12}  # differences
+LEAST_BETWEEN = 2  # cells of the finer run between two wells
 Row = dict[str, str]
 Rows = list[Row]
 Reference = Callable[[str], float]
@@ -182,13 +183,23 @@ def of_row(row: Row) -> Reference:
     return lambda column: float(row[column])
 
 
-def at_place(rows: Rows, place: float) -> Reference:
-    """Values at a place of a fracture, between those of its cells."""
+def at_place(rows: Rows, place: float, wells: Sequence[float]) -> Reference:
+    """Values at a place of a fracture, between those of its cells, also of wells at its points."""
     s = np.array([float(row["s_m"]) for row in rows])
     length = s[-1] + s[0]
+    start = max([w for w in wells if w <= place], default=0.0)
+    end = min([w for w in wells if w > place], default=length)
+    near = (s >= start) & (s <= end)
 
     def value(column: str) -> float:
         values = np.array([float(row[column] or "nan") for row in rows])
+        if column in ("pressure_pa", "flow_m2_s") and len(wells) > 0:
+            if np.count_nonzero(near) < LEAST_BETWEEN:
+                return math.nan
+            first = np.clip(np.searchsorted(s[near], place) - 1, 0, np.count_nonzero(near) - 2)
+            a, b = s[near][first : first + 2]
+            u, v = values[near][first : first + 2]
+            return float(u + (v - u) * (place - a) / (b - a))
         if not column.startswith("jump"):
             return float(np.interp(place, s, values))
         # Jumps fall with the root of the distance from an end.
@@ -199,7 +210,21 @@ def at_place(rows: Rows, place: float) -> Reference:
     return value
 
 
-def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[Row, Reference]]:
+def well_places(scene: Scene | None, fracture: str) -> list[float]:
+    """Arc lengths of the wells at points of a fracture."""
+    places = []
+    for well in (scene or {}).get("injection", []):
+        line = (scene or {})["fracture"][int(fracture) - 1]
+        if well.get("fracture") != line["name"] or "x" not in well:
+            continue
+        first = np.array([line["x"][0], line["y"][0]])
+        places.append(float(np.linalg.norm(np.array([well["x"], well["y"]]) - first)))
+    return places
+
+
+def matched(
+    name: str, coarse: Rows, fine: Rows, scene: Scene | None = None
+) -> Iterator[tuple[Row, Reference]]:
     """Rows of the last state, and values of the finer run at the same places."""
     ours, theirs = last_time(coarse), last_time(fine)
     if name in MEANS and "time_s" in ours[0]:
@@ -213,7 +238,7 @@ def matched(name: str, coarse: Rows, fine: Rows) -> Iterator[tuple[Row, Referenc
         for f in sorted({row["fracture"] for row in ours}):
             own, other = ([row for row in rows if row["fracture"] == f] for rows in (ours, theirs))
             for row in own[:: max(1, len(own) // 6)]:
-                yield row, at_place(other, float(row["s_m"]))
+                yield row, at_place(other, float(row["s_m"]), well_places(scene, f))
 
 
 def _size(text: str) -> float:
@@ -224,7 +249,9 @@ def _size(text: str) -> float:
         return 0.0
 
 
-def compare(coarse: Path, fine: Path) -> Iterator[tuple[str, float, float, float]]:
+def compare(
+    coarse: Path, fine: Path, scene: Scene | None = None
+) -> Iterator[tuple[str, float, float, float]]:
     """Quantity, value, stated error and true error."""
     for name in ("history.csv", "tips.csv", "wells.csv", "probes.csv", "fractures.csv"):
         ours, theirs = rows_of(coarse, name), rows_of(fine, name)
@@ -235,7 +262,7 @@ def compare(coarse: Path, fine: Path) -> Iterator[tuple[str, float, float, float
             for column in [k for k in largest if c in k]:
                 pair = largest.get(column.replace(c, other), 0.0)
                 largest[column] = max(largest[column], pair)
-        for row, reference in matched(name, ours, theirs):
+        for row, reference in matched(name, ours, theirs, scene):
             for column in row:
                 error = error_name(column, row)
                 if error is None or "_error" in column or not row[column] or not row[error]:
@@ -274,7 +301,7 @@ def state(family: str, seed: str, i: int, solver: Path) -> list[tuple[str, float
     if coarse is None or fine is None:
         print(label, "not run", coarse, fine, flush=True)
         return []
-    values = list(compare(coarse, fine))
+    values = list(compare(coarse, fine, scene))
     missed = defaultdict(list)
     for what, value, stated, true in values:
         if true > stated:

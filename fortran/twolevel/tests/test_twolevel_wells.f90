@@ -53,6 +53,11 @@ program test_twolevel_wells
    call check(4_ik, [0.4_rk, 0.0_rk, 0.0_rk], [0.24_rk, 0.0_rk, 0.0_rk], "next to a joint")
    call checks%is_close(maxval(abs(joint_share(1, :) - [1.0_rk, 0.0_rk, 0.0_rk, 0.6_rk, &
                                                         0.0_rk])), 0.0_rk, 1.0e-15_rk, "joint")
+   joints%point = [1_ik]
+   joints%is_outlet = [.true.]
+   wells(4)%x = 0.2_rk
+   call place(0.0_rk)
+   call check(4_ik, [0.4_rk, 0.0_rk, 0.0_rk], [0.24_rk, 0.0_rk, 0.0_rk], "next to an outlet")
    call share_wells(wells, fracture, share)
    call test_transfer()
    call checks%finish()

@@ -1,0 +1,123 @@
+!> Flows of the entries of wells in fractures, and what the pressures of wells at points, and of the
+!! cells around them, may lack.
+module twolevel_well_losses
+   use base_kinds, only: ik, rk
+   use coarse_state, only: state_t
+   use twolevel_problem, only: coarse_problem_t
+   implicit none(type, external)
+   private
+
+   public :: entry_flows, unresolved_at, unresolved_in_cells
+
+contains
+
+   !> Flows of the entries of the wells in fractures, in the step to a state [m2/s].
+   pure function entry_flows(problem, state) result(flow)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: flow(size(problem%entries))
+      real(rk), allocatable :: at_places(:)
+      integer(ik) :: k
+
+      flow = problem%asked
+      associate (wells => problem%model%wells)
+         if (size(wells%entry) == 0) return
+         at_places = wells%at_places(state%well_flow)
+         do k = 1, size(wells%entry, kind=ik)
+            if (wells%entry(k) > 0) flow(wells%entry(k)) = at_places(k)
+         end do
+      end associate
+   end function entry_flows
+
+   !> Loss of a flow in half of each fracture cell [Pa s/m2].
+   pure function half_cells(problem, state) result(loss)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: loss(size(state%pressure))
+
+      associate (s => problem%mesh%fracture%cell_s)
+         loss = 6.0_rk*problem%model%settings%viscosity*(s(2, :) - s(1, :))/state%aperture**3 &
+                *problem%thickness(state)
+      end associate
+   end function half_cells
+
+   !> What leaks off or is stored in fracture cells, u, changes the pressure within each of them by
+   !! 12 mu u l/(8 a^3) at most, as wells with a steady flow would have it [Pa].
+   pure function by_uptake(problem, state) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: pressure(size(state%pressure))
+      integer(ik) :: b, k
+
+      pressure = state%injection
+      do k = 1, size(state%flow, kind=ik)
+         associate (cells => problem%model%connections(:, k))
+            pressure(cells) = pressure(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
+         end associate
+      end do
+      do b = 1, problem%model%joints%branch_count()
+         associate (cell => problem%model%joints%cell(b))
+            pressure(cell) = pressure(cell) - state%branch_flow(b)
+         end associate
+      end do
+      pressure = 0.25_rk*half_cells(problem, state)*abs(pressure)
+   end function by_uptake
+
+   !> The same in cells with wells at points, at most the difference between cell and well [Pa].
+   pure function unresolved_in_cells(problem, state) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), dimension(size(state%pressure)) :: most, pressure
+      real(rk) :: flow(size(problem%entries))
+      integer(ik) :: e
+
+      pressure = 0.0_rk
+      if (.not. any(problem%path > 0.0_rk)) return
+      most = by_uptake(problem, state)
+      flow = entry_flows(problem, state)
+      do e = 1, size(problem%entries, kind=ik)
+         where (problem%path(:, e) > 0.0_rk) pressure = max(pressure, min(most, &
+            & abs(problem%entry_pressure(state, e, flow(e)) - problem%fracture_pressure(state))))
+      end do
+   end function unresolved_in_cells
+
+   !> What may be missing in the pressure of an entry at a point: a tenth of what the leak-off of
+   !! its flow on the way changes, as coarse_well_ways has it; what other uptake changes, with
+   !! stages and at joints of all; and twice the loss of the flows of other wells on its way to the
+   !! same cells, as the others lack that of its flow too [Pa].
+   pure real(rk) function unresolved_at(problem, state, entry, flow) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer(ik), intent(in) :: entry  !< number among those of all wells
+      real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
+      real(rk), parameter :: of_ways = 0.1_rk  ! 1/lambda of different laws of uptake
+      real(rk), dimension(size(state%pressure)) :: loss, most
+      integer(ik) :: e
+
+      pressure = 0.0_rk
+      if (problem%entries(entry)%fracture == 0 .or. .not. problem%entries(entry)%at_point) return
+      loss = half_cells(problem, state)
+      most = by_uptake(problem, state)
+      pressure = sum(problem%share(:, entry)*most)
+      associate (own => abs(flow(problem%well_of(entry))), path => problem%path(:, entry), &
+                 s => problem%mesh%fracture%cell_s)
+         if (problem%entries(entry)%stage_count() == 1 &
+             .and. all(problem%joint_share(:, entry) <= 0.0_rk)) then
+            most = min(most, 0.25_rk*loss*abs(state%leakoff)*(s(2, :) - s(1, :)))
+            pressure = pressure - own/max(sum(abs(flow)), tiny(1.0_rk)) &
+                       *sum(problem%share(:, entry)*most) &
+                       + of_ways*own*sum(loss*min(path, abs(path - problem%steady(:, entry))))
+         end if
+      end associate
+      do e = 1, size(problem%entries, kind=ik)
+         if (e == entry) cycle
+         if (any((problem%path(:, e) > 0.0_rk) .neqv. (problem%path(:, entry) > 0.0_rk))) cycle
+         associate (own => problem%joint_share(:, entry), other => problem%joint_share(:, e))
+            if (any((own > 0.0_rk) .neqv. (other > 0.0_rk))) cycle
+         end associate
+         pressure = pressure + 2.0_rk*abs(flow(problem%well_of(e))) &
+                    *sum(min(problem%path(:, e), problem%path(:, entry))*loss)
+      end do
+   end function unresolved_at
+
+end module twolevel_well_losses
