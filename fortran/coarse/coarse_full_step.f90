@@ -319,7 +319,7 @@ contains
       force = transpose(slopes%force(:, equations))
       weight = transpose(slopes%weight(:, equations))
       where (force == 0)
-         force = 1  ! whatever it is
+         force = 1  ! any, without weight
          weight = 0.0_rk
       end where
       do q = 1, size(slopes%x_of_q, kind=ik)

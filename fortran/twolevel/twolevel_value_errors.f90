@@ -343,7 +343,7 @@ contains
                                                     *finite_volumes%rest
    end function given_volume
 
-   !> What is left of the errors of the fractures' first pressures [Pa].
+   !> Errors of the fractures' first pressures that remain [Pa].
    function undrained(self, scene, problem) result(error)
       class(value_errors_t), intent(in) :: self
       type(scene_t), intent(in) :: scene
