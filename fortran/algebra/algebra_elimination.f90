@@ -5,12 +5,12 @@
 !! children. Its pivots are eliminated, and its Schur complement is kept on a stack for its parent.
 module algebra_elimination
    use, intrinsic :: iso_fortran_env, only: int64
+   use algebra_blocks, only: is_in_team
    use algebra_front_kernels, only: add_matrix, add_triangle, clear, eliminate, eliminate_signed, &
                                     push
    use algebra_fronts, only: fronts_t, parts_t
    use base_kinds, only: ik, rk
    use base_lists, only: lists_t
-!$ use omp_lib, only: omp_get_num_threads
    implicit none(type, external)
    private
 
@@ -93,12 +93,9 @@ contains
       integer(ik), intent(out) :: wrong  !< place of a pivot of the wrong sign in its front; 0: none
       type(workspace_t), allocatable :: part(:)
       integer(ik), allocatable :: wrong_in(:)
-      logical :: inside  ! a team of threads: windows are evaluated side by side
 
       allocate (part(size(self%parts%first)), wrong_in(size(self%parts%first)))
-      inside = .false.
-!$    inside = omp_get_num_threads() > 1
-      if (inside) then  ! threads that have nothing else to do take their share
+      if (is_in_team()) then
          call eliminate_parts(self, matrices, part, wrong_in)
       else
          !$omp parallel if(size(part) > 1)

@@ -5,7 +5,8 @@
 !! or, with a sign for each pivot, quasi-definite (Vanderbei 1995): A = L S L^T, S the signs.
 module algebra_front_kernels
    use, intrinsic :: iso_fortran_env, only: int64
-   use algebra_lapack, only: dgemm, dpotrf, dsyrk, dtrsm
+   use algebra_blocks, only: is_in_team, subtract_square
+   use algebra_lapack, only: dgemm, dpotrf, dtrsm
    use base_kinds, only: ik, rk
    implicit none(type, external)
    private
@@ -16,6 +17,9 @@ module algebra_front_kernels
 
    !> With fewer pivots or rows than these the plain loops are faster than the calls.
    integer(ik), parameter :: pivots_for_blas = 16, rows_for_blas = 160
+
+   !> With fewer rows than these threads wait longer for each other than they save.
+   integer(ik), parameter :: rows_for_threads = 500
 
    !> Columns that are taken together where signs stand between two factors.
    integer(ik), parameter :: columns_together = 64
@@ -165,8 +169,7 @@ contains
       if (place /= 0 .or. rest == 0) return
       call dtrsm("R", "L", "T", "N", rest, n_pivots, 1.0_rk, matrix, n, &
                  matrix(n_pivots + 1, 1), n)
-      call dsyrk("L", "N", rest, n_pivots, -1.0_rk, matrix(n_pivots + 1, 1), n, 1.0_rk, &
-                 matrix(n_pivots + 1, n_pivots + 1), n)
+      call subtract_square(n, n_pivots, matrix)
    end subroutine eliminate
 
    !> The same for pivots of given signs. The diagonal of the factor is positive.
@@ -175,8 +178,7 @@ contains
       real(rk), intent(inout) :: matrix(n, n)
       real(rk), intent(in) :: signs(:)  !< (pivots) 1 or -1
       integer(ik), intent(out) :: place  !< of the first pivot that has not its sign; 0: none
-      real(rk) :: opposite(size(signs), columns_together)
-      integer(ik) :: at, first, k, m, n_pivots, n_together
+      integer(ik) :: first, k, m, n_pivots
 
       n_pivots = size(signs, kind=ik)
       if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
@@ -197,17 +199,40 @@ contains
             do k = 1, m
                if (own(k) < 0.0_rk) matrix(after:, first + k - 1) = -matrix(after:, first + k - 1)
             end do
-            do at = after, n, columns_together
-               n_together = min(columns_together, n - at + 1)
-               do k = 1, n_together
-                  opposite(:m, k) = own*matrix(at + k - 1, first:first + m - 1)
-               end do
-               call dgemm("N", "N", n - at + 1, n_together, m, -1.0_rk, matrix(at, first), n, &
-                          opposite, n_pivots, 1.0_rk, matrix(at, at), n)
-            end do
+            if (is_in_team()) then
+               call subtract_signed(matrix, n, own, first)
+            else
+               !$omp parallel if(n - after > rows_for_threads)
+               !$omp single
+               call subtract_signed(matrix, n, own, first)
+               !$omp end single
+               !$omp end parallel
+            end if
          end associate
       end do
    end subroutine eliminate_signed
+
+   !> Subtract from the lower triangle after some columns A their product A S A'.
+   subroutine subtract_signed(matrix, n, signs, first)
+      integer(ik), intent(in) :: n
+      real(rk), intent(inout) :: matrix(n, n)
+      real(rk), intent(in) :: signs(:)  !< S, of these columns
+      integer(ik), intent(in) :: first  !< of these columns
+      real(rk) :: opposite(size(signs), columns_together)
+      integer(ik) :: at, k, m, n_together
+
+      m = size(signs, kind=ik)
+      !$omp taskloop grainsize(1) default(shared) private(k, n_together, opposite)
+      do at = first + m, n, columns_together
+         n_together = min(columns_together, n - at + 1)
+         do k = 1, n_together
+            opposite(:, k) = signs*matrix(at + k - 1, first:first + m - 1)
+         end do
+         call dgemm("N", "N", n - at + 1, n_together, m, -1.0_rk, matrix(at, first), n, &
+                    opposite, m, 1.0_rk, matrix(at, at), n)
+      end do
+      !$omp end taskloop
+   end subroutine subtract_signed
 
    !> The same in plain loops, a few pivots at a time.
    pure subroutine eliminate_in_panels(matrix, n_stored, n, signs, place)

@@ -10,7 +10,7 @@ module algebra_lapack
    implicit none(type, external)
    private
 
-   public :: dgemm, dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, dsyev, dsyrk, dtrsm
+   public :: dgemm, dgesv, dgetrf, dgetrs, dlacn2, dlaswp, dpotrf, dpotrs, dsyev, dsyrk, dtrsm
    public :: estimate_norm, symmetric_product
 
    interface
@@ -72,6 +72,15 @@ module algebra_lapack
          real(rk), intent(inout) :: est
          integer(ik), intent(inout) :: kase, isave(3)
       end subroutine dlacn2
+
+      !> Interchange rows k1 to k2 of A with those that ipiv names, one after another.
+      subroutine dlaswp(n, a, lda, k1, k2, ipiv, incx)
+         import :: ik, rk
+         implicit none(type, external)
+         integer(ik), intent(in) :: n, lda, k1, k2, incx
+         real(rk), intent(inout) :: a(lda, n)
+         integer(ik), intent(in) :: ipiv(k2)
+      end subroutine dlaswp
 
       !> Replace a triangle of the symmetric positive definite A by its Cholesky factor.
       subroutine dpotrf(uplo, n, a, lda, info)

@@ -8,6 +8,7 @@
 !! rock conducts far less. It is omitted from the links, and the step is improved until it satisfies
 !! the complete equations.
 module coarse_full_step
+   use algebra_blocks, only: is_in_team
    use algebra_lapack, only: symmetric_product
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
@@ -92,9 +93,7 @@ contains
       logical, intent(in) :: with_condition
       type(reduced_t), intent(out) :: reduced
       type(step_quality_t), intent(out) :: quality
-      integer(ik), parameter :: block = 64  ! equations reduced together
-      logical :: counts(slopes%n)
-      integer(ik) :: k, n
+      integer(ik) :: n
 
       associate (links => reduced%links)
          call find_links(stiffness, slopes, kinds, with_faces, links, reduced%n_faces)
@@ -104,16 +103,37 @@ contains
          n = size(reduced%unknowns, kind=ik)
          allocate (reduced%factors(n, n), reduced%scale(n), reduced%pivots(n))
          reduced%rest = residual(reduced%equations)
-         counts = links%that_count()
-         !$omp parallel do schedule(dynamic, 1)
-         do k = 1, n, block
-            call reduce_block(stiffness, slopes, counts, k, min(n, k + block - 1), reduced)
-         end do
-         !$omp end parallel do
       end associate
+      if (is_in_team()) then
+         call reduce_blocks(stiffness, slopes, reduced)
+      else
+         !$omp parallel
+         !$omp single
+         call reduce_blocks(stiffness, slopes, reduced)
+         !$omp end single
+         !$omp end parallel
+      end if
       call factorize_full(reduced%factors, with_condition, reduced%scale, reduced%pivots, quality, &
                           kinds%is_flow(reduced%unknowns))
    end subroutine reduce
+
+   !> Eliminate the links from the remaining equations.
+   subroutine reduce_blocks(stiffness, slopes, reduced)
+      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(slopes_t), intent(in) :: slopes
+      type(reduced_t), intent(inout) :: reduced
+      integer(ik), parameter :: block = 64  ! equations reduced together
+      logical :: counts(slopes%n)
+      integer(ik) :: k, n
+
+      counts = reduced%links%that_count()
+      n = size(reduced%unknowns, kind=ik)
+      !$omp taskloop grainsize(1) default(shared)
+      do k = 1, n, block
+         call reduce_block(stiffness, slopes, counts, k, min(n, k + block - 1), reduced)
+      end do
+      !$omp end taskloop
+   end subroutine reduce_blocks
 
    !> Eliminate the links from some of the remaining equations.
    pure subroutine reduce_block(stiffness, slopes, counts, first, last, reduced)

@@ -2,7 +2,8 @@
 !! onto its fractures: by Gaussian elimination, or by Cholesky elimination if most equations are
 !! those of an elastic body, which takes half as long.
 module contact_dense
-   use algebra_lapack, only: dgetrf, dgetrs, dpotrf, dpotrs, estimate_norm
+   use algebra_blocks, only: factorize_lu
+   use algebra_lapack, only: dgetrs, dpotrf, dpotrs, estimate_norm
    use base_kinds, only: ik, rk
    use contact_newton, only: step_quality_t
    implicit none(type, external)
@@ -94,7 +95,7 @@ contains
          end if
          if (with_condition) norm = max(norm, sum(abs(jacobian(:, row))))
       end do
-      call dgetrf(n, n, jacobian, n, pivots, info)
+      call factorize_lu(n, jacobian, pivots, info)
       quality%is_singular = info /= 0
       if (quality%is_singular) return
       if (with_condition) quality%condition = norm*norm_of_inverse(jacobian, pivots, left_out)

@@ -1,5 +1,7 @@
-!> The declarations of LAPACK: systems whose solutions are whole numbers, and matrices it refuses.
+!> The declarations of LAPACK: systems whose solutions are whole numbers, and matrices it refuses;
+!! dense operations in blocks.
 program test_algebra_lapack
+   use algebra_blocks, only: factorize_lu, subtract_square
    use algebra_lapack, only: dgesv, dgetrf, dgetrs, dlacn2, dpotrf, dpotrs, symmetric_product
    use base_kinds, only: ik, rk
    use testing_checks, only: checks_t
@@ -13,6 +15,7 @@ program test_algebra_lapack
    call refused()
    call estimated_norm()
    call products()
+   call blocks()
    call checks%finish()
 
 contains
@@ -150,5 +153,41 @@ contains
 
       y = symmetric_product(matrix, x)
    end subroutine multiply
+
+   !> Matrices of several blocks: a system with a known solution, one that is singular, and the
+   !! square of the columns under the pivots.
+   subroutine blocks()
+      integer(ik), parameter :: n = 300, n_pivots = 40, lost = 200
+      real(rk) :: a(n, n), factors(n, n), x(n), b(n, 1)
+      integer(ik) :: exchanges(n), i, info, j
+
+      a = reshape([((modulo(real(i*i*j + 7*i + 3*j*j, rk), 101.0_rk) - 50.0_rk, i=1, n), &
+                    j=1, n)], [n, n])
+      x = [(real(modulo(i, 7_ik) - 3, rk), i=1, n)]
+      do i = 1, n  ! the largest terms above the diagonal ask for exchanges
+         a(modulo(i, n) + 1, i) = a(modulo(i, n) + 1, i) + 5.0e3_rk
+      end do
+      factors = a
+      call factorize_lu(n, factors, exchanges, info)
+      call checks%is_true(info == 0, "blocks are factorized")
+      b(:, 1) = matmul(a, x)
+      call dgetrs("N", n, 1_ik, factors, n, exchanges, b, n, info)
+      call checks%is_close(maxval(abs(b(:, 1) - x)), 0.0_rk, 1.0e-11_rk, "their solution")
+
+      factors = 0.0_rk
+      do i = 1, n
+         factors(i, i) = merge(0.0_rk, 2.0_rk, i == lost)
+      end do
+      call factorize_lu(n, factors, exchanges, info)
+      call checks%is_true(info == lost, "a pivot of zero in a later block")
+
+      factors = a
+      call subtract_square(n, n_pivots, factors)
+      do i = n_pivots + 1, n
+         b(i:, 1) = a(i:, i) - matmul(a(i:, :n_pivots), a(i, :n_pivots))
+         call checks%is_close(maxval(abs(b(i:, 1) - factors(i:, i))), 0.0_rk, 1.0e-9_rk, &
+                              "a square in blocks")
+      end do
+   end subroutine blocks
 
 end program test_algebra_lapack
