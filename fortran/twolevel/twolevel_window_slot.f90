@@ -3,6 +3,8 @@
 module twolevel_window_slot
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
+   use base_tolerances, only: same_place
    use growth_tip, only: tip_t
    use mesh_builder, only: mesher_t, transfer_mesher
    use mesh_types, only: network_t
@@ -13,7 +15,11 @@ module twolevel_window_slot
    implicit none(type, external)
    private
 
-   public :: renew, slot_t
+   public :: by_size, has_to_be_meshed, renew, slot_t
+
+   !> Displacement of a tip in the window of another tip, over the distance of the two tips, above
+   !! which this window is meshed again: intensities change by a small part of it [-].
+   real(rk), parameter :: noticeable = 1.0e-3_rk
 
    !> A window, and its copy.
    type :: slot_t
@@ -115,5 +121,66 @@ contains
          end if
       end associate
    end subroutine follow_tips
+
+   !> Whether a window is to be meshed: there is no mesh, or its rectangle contains the last segment
+   !! of a tip that has moved since, before or after the move.
+   pure logical function has_to_be_meshed(window, tips) result(has_to)
+      type(window_t), intent(in) :: window
+      type(tip_t), intent(in) :: tips(:)
+      integer(ik) :: i
+
+      has_to = .not. allocated(window%made)
+      do i = 1, size(tips, kind=ik)
+         if (.not. has_to) has_to = has_moved(window, tips, i)
+      end do
+   end function has_to_be_meshed
+
+   !> Whether a tip has moved noticeably in a window since its meshing.
+   pure logical function has_moved(window, tips, i)
+      type(window_t), intent(in) :: window
+      type(tip_t), intent(in) :: tips(:)
+      integer(ik), intent(in) :: i
+      real(rk) :: apart, moved
+      integer(ik) :: k
+
+      associate (tip => tips(i), before => window%made%place(:, i))
+         moved = norm2(tip%xy - before)
+         has_moved = moved > same_place*norm2(tip%xy - tip%origin)
+         if (has_moved) has_moved = overlaps(window, tip%origin, before) .or. &
+                                    overlaps(window, tip%origin, tip%xy)
+         if (.not. has_moved) return
+         apart = huge(1.0_rk)
+         do k = 1, size(window%serves, kind=ik)
+            apart = min(apart, norm2(tip%xy - tips(window%serves(k))%xy))
+         end do
+         ! The ligament before a joint is short but matters.
+         has_moved = any(window%serves == i) .or. moved > noticeable*apart .or. &
+                     (tip%is_free .neqv. window%made%is_free(i))
+      end associate
+   end function has_moved
+
+   !> Whether the bounding boxes of a segment and of a window overlap.
+   pure logical function overlaps(window, from, to)
+      type(window_t), intent(in) :: window
+      real(rk), intent(in) :: from(2), to(2)  !< [m]
+
+      overlaps = all(min(from, to) <= window%upper) .and. all(max(from, to) >= window%lower)
+   end function overlaps
+
+   !> Windows in the order of their mesh sizes, the largest first, so that threads end at about the
+   !! same time.
+   pure function by_size(slot) result(order)
+      type(slot_t), intent(in) :: slot(:)
+      integer(ik) :: order(size(slot))
+      integer(ik) :: i, k
+
+      do i = 1, size(slot, kind=ik)
+         do k = i, 2, -1
+            if (slot(order(k - 1))%window%mesh%n_cells >= slot(i)%window%mesh%n_cells) exit
+            order(k) = order(k - 1)
+         end do
+         order(k) = i
+      end do
+   end function by_size
 
 end module twolevel_window_slot
