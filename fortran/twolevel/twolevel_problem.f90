@@ -11,7 +11,7 @@ module twolevel_problem
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_rock, only: solid_t
-   use coarse_well_ways, only: decay_rate, way_with_uptake
+   use coarse_well_ways, only: effective_s, uptake_t
    use coarse_well_rings, only: new_well_rings, ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
@@ -40,7 +40,8 @@ module twolevel_problem
       integer(ik), allocatable :: well_of(:)  !< (entries) number of the well
       real(rk), allocatable :: share(:, :)  !< (fracture cells, entries) of each entry's flow [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, entries) of each entry's flow [-]
-      !> (fracture cells, entries) of place_wells, and with what is taken up on the way [-]
+      !> (fracture cells, entries) of place_wells, and with what is taken up on the way; next to a
+      !! joint the distance from the middle over that of the joint [-]
       real(rk), allocatable :: steady(:, :), path(:, :)
       !> (fracture cells, entries) 1: middle of the cell beyond a well at a point of its fracture,
       !! -1: before it, 0: neither
@@ -262,8 +263,8 @@ contains
          call self%model%change_sides(self%mesh, scene, timers, error)
          if (allocated(error)) return
       end if
-      call self%ask(scene, state%time, dt)
       call self%find_ways(state, state%time + dt)
+      call self%ask(scene, state%time, dt)
       if (present(control)) then
          where (control > 0) self%model%wells%control = control
       end if
@@ -275,38 +276,67 @@ contains
       class(coarse_problem_t), intent(inout) :: self
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: time  !< [s]
-      real(rk), allocatable :: resistance(:)
-      real(rk) :: theta
-      integer(ik) :: cell, e, i
-      logical :: at_tip
+      real(rk), allocatable :: conductance(:)
+      type(uptake_t) :: uptake
+      real(rk) :: age, unused
+      integer(ik) :: cell, e, i, joint
 
       if (size(self%entries) == 0 .or. self%mesh%fracture%n_cells == 0) return
-      resistance = 12.0_rk*self%model%settings%viscosity*self%thickness(state)/state%aperture**3
+      conductance = state%aperture**3/(12.0_rk*self%model%settings%viscosity*self%thickness(state))
       do e = 1, size(self%entries, kind=ik)
-         cell = maxloc(self%share(:, e), dim=1, kind=ik)
-         associate (well => self%entries(e), share => self%share(:, e), rock => self%model%rock, &
-                    s => self%mesh%fracture%cell_s, &
-                    age => time - max(0.0_rk, self%entries(e)%stage_start(1_ik)))
+         associate (well => self%entries(e), share => self%share(:, e), path => self%path(:, e), &
+                    steady => self%steady(:, e), rock => self%model%rock, &
+                    s => self%mesh%fracture%cell_s)
+            age = time - max(0.0_rk, well%stage_start(1_ik))
             if (well%fracture == 0 .or. .not. (well%at_point .and. age > 0.0_rk)) cycle
-            if (any(self%joint_share(:, e) > 0.0_rk)) cycle
-            i = self%mesh%face_cells(1, self%mesh%fracture%cell_faces(1, cell))
-            theta = sum(s(2, :) - s(1, :), mask=share > 0.0_rk)/count(share > 0.0_rk) &
-                    *decay_rate(sum(share)/sum(share*resistance), rock%mobility_at(i), &
-                                rock%diffusivity_at(i), age, well%has_given_flow())
-            at_tip = count(share > 0.0_rk) == 1 .and. self%steady(cell, e) > same_value
-            where (share > 0.0_rk) self%path(:, e) = way_with_uptake(self%steady(:, e), theta, &
-                                                                     at_tip)
-            ! In the middle of a cell the way is one in half of it.
-            if (.not. (at_tip .or. self%steady(cell, e) > same_value)) then
-               self%path(cell, e) = 2.0_rk*self%path(cell, e)
-            end if
+            cell = maxloc(merge(steady, 0.0_rk, share > 0.0_rk), dim=1, kind=ik)
+            associate (around => steady > 0.0_rk, &
+                       sides => self%mesh%face_cells(1, self%mesh%fracture%cell_faces(:, cell)))
+               uptake%conductance = count(around)/sum(1.0_rk/conductance, mask=around)
+               uptake%length = sum(s(2, :) - s(1, :), mask=around)/count(around)
+               uptake%mobility = [(rock%mobility_at(sides(i)), i=1, 2)]
+               uptake%diffusivity = [(rock%diffusivity_at(sides(i)), i=1, 2)]
+               if (allocated(self%model%cells%skin)) uptake%skin = self%model%cells%skin(cell)
+               call uptake%find(effective_s(age, well%has_given_flow()), 1.0_rk - steady(cell))
+               joint = findloc(self%joint_share(:, e) > 0.0_rk, .true., dim=1, kind=ik)
+               if (joint > 0) then
+                  call uptake%way_at_end(steady(cell), other_branches(self, joint, cell, &
+                                                                      conductance), .true., &
+                                         path(cell), self%joint_share(joint, e))
+                  share(cell) = 1.0_rk - self%joint_share(joint, e)
+               else if (count(around) == 1 .and. steady(cell) > same_value) then
+                  call uptake%way_at_end(steady(cell), 0.0_rk, .false., path(cell), unused)
+               else
+                  ! In the middle of a cell the way is one in half of it.
+                  where (around) path = merge(1.0_rk, 2.0_rk, count(around) > 1)*uptake%way(steady)
+               end if
+            end associate
          end associate
       end do
       do i = 1, size(self%model%wells%entry, kind=ik)
          e = self%model%wells%entry(i)
-         if (e > 0) self%model%wells%path(:, i) = self%path(:, e)
+         if (e == 0) cycle
+         self%model%wells%path(:, i) = self%path(:, e)
+         self%model%wells%share(:, i) = self%share(:, e)
+         self%model%wells%joint_share(:, i) = self%joint_share(:, e)
       end do
    end subroutine find_ways
+
+   !> What the branches of a joint take up by its pressure, over what that of one cell does: as the
+   !! roots of their conductances. The side of an outlet takes up all [-].
+   pure real(rk) function other_branches(self, joint, cell, conductance) result(others)
+      class(coarse_problem_t), intent(in) :: self
+      integer(ik), intent(in) :: joint, cell
+      real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
+
+      others = huge(1.0_rk)
+      associate (joints => self%model%joints)
+         if (joints%is_outlet(joint)) return
+         others = sum(sqrt(conductance(joints%cell)/conductance(cell)), &
+                      mask=joints%joint == joint .and. joints%cell /= cell &
+                      .and. .not. joints%is_shut)
+      end associate
+   end function other_branches
 
    !> Compute the values that windows use, unless they are those of this state already.
    subroutine find_values(self, state, undrained)

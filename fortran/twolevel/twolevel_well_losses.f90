@@ -83,7 +83,7 @@ contains
 
    !> What may be missing in the pressure of an entry at a point: a tenth of what the leak-off of
    !! its flow on the way changes, as coarse_well_ways has it; what other uptake changes, with
-   !! stages and at joints of all; and twice the loss of the flows of other wells on its way to the
+   !! stages of all; and twice the loss of the flows of other wells on its way to the
    !! same cells, as the others lack that of its flow too [Pa].
    pure real(rk) function unresolved_at(problem, state, entry, flow) result(pressure)
       type(coarse_problem_t), intent(in) :: problem
@@ -91,7 +91,7 @@ contains
       integer(ik), intent(in) :: entry  !< number among those of all wells
       real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
       real(rk), parameter :: of_ways = 0.1_rk  ! 1/lambda of different laws of uptake
-      real(rk), dimension(size(state%pressure)) :: loss, most
+      real(rk), dimension(size(state%pressure)) :: loss, most, steady
       integer(ik) :: e
 
       pressure = 0.0_rk
@@ -101,12 +101,13 @@ contains
       pressure = sum(problem%share(:, entry)*most)
       associate (own => abs(flow(problem%well_of(entry))), path => problem%path(:, entry), &
                  s => problem%mesh%fracture%cell_s)
-         if (problem%entries(entry)%stage_count() == 1 &
-             .and. all(problem%joint_share(:, entry) <= 0.0_rk)) then
+         steady = problem%steady(:, entry)
+         if (any(problem%joint_share(:, entry) > 0.0_rk)) steady = steady*(1.0_rk - steady)
+         if (problem%entries(entry)%stage_count() == 1) then
             most = min(most, 0.25_rk*loss*abs(state%leakoff)*(s(2, :) - s(1, :)))
             pressure = pressure - own/max(sum(abs(flow)), tiny(1.0_rk)) &
                        *sum(problem%share(:, entry)*most) &
-                       + of_ways*own*sum(loss*min(path, abs(path - problem%steady(:, entry))))
+                       + of_ways*own*sum(loss*min(path, abs(path - steady)))
          end if
       end associate
       do e = 1, size(problem%entries, kind=ik)
