@@ -4,8 +4,8 @@
 !! In a line of conductance T = a^3/(12 mu), wave number k, Laplace's variable s, rock on both sides
 !! takes up g = sum K/mu sqrt(k^2 + s/c), less with a skin. A flow q has the pressure
 !! q/pi int dk/(T k^2 + g) at its place. Cells of the length l have 4 sin^2(k l/2)/l^2 for k^2,
-!! up to k l = pi. With shares t and 1 - t in two cells, whose pressures the well has by the same shares,
-!! there lacks, with R = l/T, k in 1/l and g in T/l^2,
+!! up to k l = pi. With shares t and 1 - t in two cells, whose pressures the well has by the same
+!! shares, there lacks, with R = l/T, k in 1/l and g in T/l^2,
 !!   R q (f + t (1 - t) d),   d = 1/pi int_0^pi 4 sin^2(k/2)/(4 sin^2(k/2) + g)
 !!   f = 1/pi int_0^inf 1/(k^2 + g) - 1/pi int_0^pi 1/(4 sin^2(k/2) + g)
 !! which is t (1 - t) in short cells. Long ones stand for a well of the radius T/(2 K/mu) in the
