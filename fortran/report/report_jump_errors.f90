@@ -252,18 +252,33 @@ contains
       end do
    end function unevenness
 
-   !> Error of the largest value of the cells: that of its cell, and by how much the value may be
-   !! larger between the cells; jumps that are all negative end in 0 at a tip.
+   !> Error of the largest value of the cells: that of its cell, at least what that of another cell
+   !! may exceed it by; and by how much the parabola through the means of the cell and its neighbours
+   !! is larger between the cells, h (1/12 + (d/4 h)^2) for the height h over their mean and their
+   !! difference d. Jumps that are all negative end in 0 at a tip.
    pure real(rk) function error_of_largest(fracture, values, errors) result(error)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: values(:), errors(:)  !< (cells)
-      real(rk), parameter :: to_peak = 0.07_rk  ! of the height over the neighbours
-      real(rk) :: height(size(values))
-      integer(ik) :: at
+      real(rk) :: beside(2), height(size(values))
+      integer(ik) :: at, k, next
 
       at = maxloc(values, dim=1, kind=ik)
+      error = max(errors(at), maxval(values + errors) - values(at))
+      if (.not. values(at) > 0.0_rk) then
+         error = max(error, abs(values(at)))
+         return
+      end if
       height = unevenness(fracture, values)
-      error = merge(errors(at) + to_peak*height(at), abs(values(at)), values(at) > 0.0_rk)
+      if (.not. height(at) > 0.0_rk) return
+      beside = values(at)
+      do k = 1, 2
+         next = at + 2*k - 3
+         if (next < 1 .or. next > fracture%n_cells) cycle
+         if (fracture%cell_fracture(next) == fracture%cell_fracture(at)) beside(k) = values(next)
+      end do
+      associate (apart => min(0.5_rk, abs(beside(2) - beside(1))/(4.0_rk*height(at))))
+         error = error + height(at)*(1.0_rk/12.0_rk + apart**2)
+      end associate
    end function error_of_largest
 
    !> Error of the closure of a joint by that of the traction, which rises at least in proportion
