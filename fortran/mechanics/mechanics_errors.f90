@@ -18,6 +18,7 @@ module mechanics_errors
    public :: find_fracture_errors, find_point_errors, find_rock_errors, note_row
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
+   real(rk), parameter :: rounding = 1.0e-9_rk  !< of a jump, over the largest one [-]
    !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
    real(rk), parameter :: of_largest = 0.0002_rk, of_joints = 0.005_rk
    !> relative errors of displacement and stress at a point [-]
@@ -70,7 +71,6 @@ contains
    pure function moving(jump) result(moves)
       real(rk), intent(in) :: jump(:)  !< (fracture cells) [m]
       logical :: moves(size(jump))
-      real(rk), parameter :: rounding = 1.0e-9_rk
 
       moves = abs(jump) > rounding*maxval(abs(jump))
    end function moving
@@ -95,7 +95,8 @@ contains
          e%traction_n = 0.35_rk*by_jump*moved + unevenness(fracture, fields%traction_n)
          e%traction_t = 0.25_rk*by_jump*moved + unevenness(fracture, fields%traction_t)
          e%jump_t = slip%share*moved + of_largest*maxval(moved)
-         where (fields%jump_n < 0.0_rk) e%jump_t = e%jump_t + of_joints*maxval(moved)
+         where (fields%jump_n < -rounding*maxval(moved)) &
+            e%jump_t = e%jump_t + of_joints*maxval(moved)
          where (.not. moved > 0.0_rk) e%jump_t = 0.0_rk
          ! Faces that stick may slip if the errors of their tractions exceed what is left of friction.
          where (fields%state == state_stick) e%jump_t = max(e%jump_t, 2.0_rk/modulus_of(rock) &

@@ -92,7 +92,7 @@ contains
       integer(ik), intent(in) :: first, last  !< cells
       type(jump_law_t), intent(in) :: law
       type(jump_errors_t), intent(inout) :: errors
-      real(rk) :: ends(2), half, size_of(2)
+      real(rk) :: ends(2), half, of_end(2), size_of(2)
       real(rk) :: kink(first:last)  ! at the end of a cell: its length there by the sine [m]
       integer(ik) :: i
 
@@ -108,9 +108,12 @@ contains
          associate (middle => 0.5_rk*sum(fracture%cell_s(:, i)))
             if (.not. (middle > ends(1) .and. middle < ends(2))) cycle
             errors%reach(i) = sqrt((middle - ends(1))*(ends(2) - middle))
-            errors%share(i) = law%rest + law%of_kink*maxval(kink)/half &
-                              + max(share_at(first, 1)*size_of(1)/(middle - ends(1)), &
-                                    share_at(last, 2)*size_of(2)/(ends(2) - middle))
+            of_end = [share_at(first, 1)*size_of(1)/(middle - ends(1)), &
+                      share_at(last, 2)*size_of(2)/(ends(2) - middle)]
+            ! Where faces stick beyond, slip has the square of the length of the zone.
+            where ([share_at(first, 1), share_at(last, 2)] >= law%within) &
+               of_end = of_end*(1.0_rk + 0.25_rk*of_end)
+            errors%share(i) = law%rest + law%of_kink*maxval(kink)/half + maxval(of_end)
             if (any(kink > 0.0_rk)) errors%share(i) = errors%share(i) + law%at_kink &
                                         & *maxval(kink/abs(fracture%cell_s(2, first:last) - middle))
          end associate
@@ -253,9 +256,9 @@ contains
    end function unevenness
 
    !> Error of the largest value of the cells: that of its cell, at least what that of another cell
-   !! may exceed it by; and by how much the parabola through the means of the cell and its neighbours
-   !! is larger between the cells, h (1/12 + (d/4 h)^2) for the height h over their mean and their
-   !! difference d. Jumps that are all negative end in 0 at a tip.
+   !! may exceed it by; and by how much the parabola through its middle and those of its neighbours
+   !! is higher, d^2/(16 h) for the height h over their mean and their difference d. Jumps that are
+   !! all negative end in 0 at a tip.
    pure real(rk) function error_of_largest(fracture, values, errors) result(error)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: values(:), errors(:)  !< (cells)
@@ -277,7 +280,7 @@ contains
          if (fracture%cell_fracture(next) == fracture%cell_fracture(at)) beside(k) = values(next)
       end do
       associate (apart => min(0.5_rk, abs(beside(2) - beside(1))/(4.0_rk*height(at))))
-         error = error + height(at)*(1.0_rk/12.0_rk + apart**2)
+         error = error + height(at)*apart**2
       end associate
    end function error_of_largest
 
