@@ -161,7 +161,8 @@ contains
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
    !! traction that the error of the jump is equal to, and in contact that of the pressure. Faces
-   !! that slip have the friction of their normal traction.
+   !! that slip have the friction of their normal traction. Where contact ends is known to one cell:
+   !! open faces next to it may have half of its traction.
    subroutine note_tractions(scene, problem, state, jumps, of_stress, fields)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -184,8 +185,8 @@ contains
                         + friction*e%pressure
          where (fields%state == state_slip) e%traction_t = friction*e%traction_n
          where (fields%state == state_open)
-            e%traction_n = 0.0_rk
-            e%traction_t = 0.0_rk
+            e%traction_n = unevenness(fracture, fields%traction_n)
+            e%traction_t = unevenness(fracture, fields%traction_t)
          end where
       end associate
 
