@@ -11,7 +11,6 @@ module twolevel_problem
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_rock, only: solid_t
-   use coarse_well_ways, only: effective_s, uptake_t
    use coarse_well_rings, only: new_well_rings, ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
@@ -23,6 +22,7 @@ module twolevel_problem
    use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
+   use twolevel_well_ways, only: find_way
    use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, &
                              places_of_cells, rate, &
                              wells_of_entries
@@ -271,47 +271,19 @@ contains
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
 
-   !> Ways of the wells at points of fractures in the step that ends at a time (coarse_well_ways).
+   !> Ways of the wells at points of fractures in the step that ends at a time.
    pure subroutine find_ways(self, state, time)
       class(coarse_problem_t), intent(inout) :: self
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: time  !< [s]
       real(rk), allocatable :: conductance(:)
-      type(uptake_t) :: uptake
-      real(rk) :: age, unused
-      integer(ik) :: cell, e, i, joint
+      integer(ik) :: e, i
 
       if (size(self%entries) == 0 .or. self%mesh%fracture%n_cells == 0) return
       conductance = state%aperture**3/(12.0_rk*self%model%settings%viscosity*self%thickness(state))
       do e = 1, size(self%entries, kind=ik)
-         associate (well => self%entries(e), share => self%share(:, e), path => self%path(:, e), &
-                    steady => self%steady(:, e), rock => self%model%rock, &
-                    s => self%mesh%fracture%cell_s)
-            age = time - max(0.0_rk, well%stage_start(1_ik))
-            if (well%fracture == 0 .or. .not. (well%at_point .and. age > 0.0_rk)) cycle
-            cell = maxloc(merge(steady, 0.0_rk, share > 0.0_rk), dim=1, kind=ik)
-            associate (around => steady > 0.0_rk, &
-                       sides => self%mesh%face_cells(1, self%mesh%fracture%cell_faces(:, cell)))
-               uptake%conductance = count(around)/sum(1.0_rk/conductance, mask=around)
-               uptake%length = sum(s(2, :) - s(1, :), mask=around)/count(around)
-               uptake%mobility = [(rock%mobility_at(sides(i)), i=1, 2)]
-               uptake%diffusivity = [(rock%diffusivity_at(sides(i)), i=1, 2)]
-               if (allocated(self%model%cells%skin)) uptake%skin = self%model%cells%skin(cell)
-               call uptake%find(effective_s(age, well%has_given_flow()), 1.0_rk - steady(cell))
-               joint = findloc(self%joint_share(:, e) > 0.0_rk, .true., dim=1, kind=ik)
-               if (joint > 0) then
-                  call uptake%way_at_end(steady(cell), other_branches(self, joint, cell, &
-                                                                      conductance), .true., &
-                                         path(cell), self%joint_share(joint, e))
-                  share(cell) = 1.0_rk - self%joint_share(joint, e)
-               else if (count(around) == 1 .and. steady(cell) > same_value) then
-                  call uptake%way_at_end(steady(cell), 0.0_rk, .false., path(cell), unused)
-               else
-                  ! In the middle of a cell the way is one in half of it.
-                  where (around) path = merge(1.0_rk, 2.0_rk, count(around) > 1)*uptake%way(steady)
-               end if
-            end associate
-         end associate
+         call find_way(self%entries(e), self%steady(:, e), self%model, self%mesh, conductance, &
+                       time, self%share(:, e), self%joint_share(:, e), self%path(:, e))
       end do
       do i = 1, size(self%model%wells%entry, kind=ik)
          e = self%model%wells%entry(i)
@@ -321,22 +293,6 @@ contains
          self%model%wells%joint_share(:, i) = self%joint_share(:, e)
       end do
    end subroutine find_ways
-
-   !> What the branches of a joint take up by its pressure, over what that of one cell does: as the
-   !! roots of their conductances. The side of an outlet takes up all [-].
-   pure real(rk) function other_branches(self, joint, cell, conductance) result(others)
-      class(coarse_problem_t), intent(in) :: self
-      integer(ik), intent(in) :: joint, cell
-      real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
-
-      others = huge(1.0_rk)
-      associate (joints => self%model%joints)
-         if (joints%is_outlet(joint)) return
-         others = sum(sqrt(conductance(joints%cell)/conductance(cell)), &
-                      mask=joints%joint == joint .and. joints%cell /= cell &
-                      .and. .not. joints%is_shut)
-      end associate
-   end function other_branches
 
    !> Compute the values that windows use, unless they are those of this state already.
    subroutine find_values(self, state, undrained)
