@@ -7,7 +7,7 @@ module twolevel_well_losses
    implicit none(type, external)
    private
 
-   public :: entry_flows, unresolved_at, unresolved_in_cells
+   public :: entry_flows, unresolved_at, unresolved_in_cells, uptake
 
 contains
 
@@ -41,26 +41,34 @@ contains
       end associate
    end function half_cells
 
-   !> What leaks off or is stored in fracture cells, u, changes the pressure within each of them by
-   !! 12 mu u l/(8 a^3) at most, as wells with a steady flow would have it [Pa].
-   pure function by_uptake(problem, state) result(pressure)
+   !> What leaks off and is stored in each fracture cell [m2/s].
+   pure function uptake(problem, state) result(taken)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      real(rk) :: pressure(size(state%pressure))
+      real(rk) :: taken(size(state%pressure))
       integer(ik) :: b, k
 
-      pressure = state%injection
+      taken = state%injection
       do k = 1, size(state%flow, kind=ik)
          associate (cells => problem%model%connections(:, k))
-            pressure(cells) = pressure(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
+            taken(cells) = taken(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
          end associate
       end do
       do b = 1, problem%model%joints%branch_count()
          associate (cell => problem%model%joints%cell(b))
-            pressure(cell) = pressure(cell) - state%branch_flow(b)
+            taken(cell) = taken(cell) - state%branch_flow(b)
          end associate
       end do
-      pressure = 0.25_rk*half_cells(problem, state)*abs(pressure)
+   end function uptake
+
+   !> Uptake u changes the pressure within each fracture cell by 12 mu u l/(8 a^3) at most, as wells
+   !! with a steady flow would have it [Pa].
+   pure function by_uptake(problem, state) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: pressure(size(state%pressure))
+
+      pressure = 0.25_rk*half_cells(problem, state)*abs(uptake(problem, state))
    end function by_uptake
 
    !> The same in cells with wells at points, at most the difference between cell and well [Pa].
