@@ -98,7 +98,7 @@ contains
          where (fields%jump_n < -rounding*maxval(moved)) &
             e%jump_t = e%jump_t + of_joints*maxval(moved)
          where (.not. moved > 0.0_rk) e%jump_t = 0.0_rk
-         ! Faces that stick may slip if the errors of their tractions exceed what is left of friction.
+         ! Faces that stick may slip if the errors of their tractions exceed the rest of friction.
          where (fields%state == state_stick) e%jump_t = max(e%jump_t, 2.0_rk/modulus_of(rock) &
             & *(fracture%cell_s(2, :) - fracture%cell_s(1, :))*(abs(fields%traction_t) &
             & + e%traction_t + friction*(fields%traction_n + e%traction_n)))

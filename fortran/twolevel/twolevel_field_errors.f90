@@ -3,11 +3,12 @@
 !!
 !! The flow along a fracture is the sum of what is taken up beyond a cell: the relative error of
 !! leak-off acts on what leaks off in a cell; uptakes that scatter by s from cell to cell add up
-!! like a random walk between the ends, 2 s sqrt(n x (1 - x)) after the share x of n cells. In the last cell before an end the flow falls to zero
-!! within the cell, anywhere: it is nothing, or what the flows of the cells before it lead to. What
-!! flows round the tips comes from the whole fracture; cells do not resolve it where sqrt(c t) is
-!! less than their length. The stress on a fracture has an error in proportion to its change since
-!! the start, and in closed fractures so has the pressure.
+!! like a random walk between the ends, 2 s sqrt(n x (1 - x)) after the share x of n cells. In the
+!! last cell before an end the flow falls to zero within the cell, anywhere: it is nothing, or what
+!! the flows of the cells before it lead to. What flows round the tips comes from the whole
+!! fracture; cells do not resolve it where sqrt(c t) is less than their length. The stress on a
+!! fracture has an error in proportion to its change since the start, and in closed fractures so
+!! has the pressure.
 !!
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
 !! that slips is one of K_II of the friction times sqrt(pi L/2) times it, by the share of the cells
