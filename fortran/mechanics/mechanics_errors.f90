@@ -4,7 +4,7 @@
 !! that of the fractures, and with &adaptive by the estimate in the energy norm.
 module mechanics_errors
    use base_kinds, only: ik, pi, rk
-   use contact_law, only: state_open
+   use contact_law, only: state_open, state_stick
    use mechanics_body, only: body_t
    use mechanics_fields, only: point_state
    use mesh_geometry, only: cell_area
@@ -18,6 +18,7 @@ module mechanics_errors
    public :: find_fracture_errors, find_point_errors, find_rock_errors, note_row
 
    real(rk), parameter :: least = 1.0e-3_rk  !< relative error of fields in the rock [-]
+   real(rk), parameter :: rounding = 1.0e-9_rk  !< of a jump, over the largest one [-]
    !> errors of jumps over the largest one: of all, and of slip where a joint closes [-]
    real(rk), parameter :: of_largest = 0.0002_rk, of_joints = 0.005_rk
    !> relative errors of displacement and stress at a point [-]
@@ -70,14 +71,14 @@ contains
    pure function moving(jump) result(moves)
       real(rk), intent(in) :: jump(:)  !< (fracture cells) [m]
       logical :: moves(size(jump))
-      real(rk), parameter :: rounding = 1.0e-9_rk
 
       moves = abs(jump) > rounding*maxval(abs(jump))
    end function moving
 
    !> Errors of the fields of the fracture cells.
-   pure subroutine find_fracture_errors(rock, body, fields)
+   pure subroutine find_fracture_errors(rock, friction, body, fields)
       type(material_t), intent(in) :: rock
+      real(rk), intent(in) :: friction(:)  !< (fracture cells) [-]
       type(body_t), intent(in) :: body
       type(fracture_fields_t), intent(inout) :: fields
       type(jump_errors_t) :: slip, opening
@@ -94,8 +95,13 @@ contains
          e%traction_n = 0.35_rk*by_jump*moved + unevenness(fracture, fields%traction_n)
          e%traction_t = 0.25_rk*by_jump*moved + unevenness(fracture, fields%traction_t)
          e%jump_t = slip%share*moved + of_largest*maxval(moved)
-         where (fields%jump_n < 0.0_rk) e%jump_t = e%jump_t + of_joints*maxval(moved)
+         where (fields%jump_n < -rounding*maxval(moved)) &
+            e%jump_t = e%jump_t + of_joints*maxval(moved)
          where (.not. moved > 0.0_rk) e%jump_t = 0.0_rk
+         ! Faces that stick may slip if the errors of their tractions exceed the rest of friction.
+         where (fields%state == state_stick) e%jump_t = max(e%jump_t, 2.0_rk/modulus_of(rock) &
+            & *(fracture%cell_s(2, :) - fracture%cell_s(1, :))*(abs(fields%traction_t) &
+            & + e%traction_t + friction*(fields%traction_n + e%traction_n)))
          e%jump_n = opening%share*merge(moved, n, fields%state == state_open) &
                     + merge(of_largest*maxval(moved), 0.0_rk, n > 0.0_rk) &
                     + closure_error(fields%jump_n, fields%traction_n, e%traction_n)

@@ -102,7 +102,11 @@ contains
          fields%traction_t = pairs(2, :)
          fields%state = body%contact%state(3, :)
          if (size(fields%state) == 0) return
-         call find_fracture_errors(simulation%scene%material, body, fields)
+         associate (fractures => simulation%scene%fractures)
+            call find_fracture_errors(simulation%scene%material, &
+                                      fractures(body%mesh%fracture%cell_fracture)%friction, body, &
+                                      fields)
+         end associate
       end associate
    end function fracture_fields
 

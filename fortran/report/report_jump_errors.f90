@@ -92,7 +92,7 @@ contains
       integer(ik), intent(in) :: first, last  !< cells
       type(jump_law_t), intent(in) :: law
       type(jump_errors_t), intent(inout) :: errors
-      real(rk) :: ends(2), half, size_of(2)
+      real(rk) :: ends(2), half, of_end(2), size_of(2)
       real(rk) :: kink(first:last)  ! at the end of a cell: its length there by the sine [m]
       integer(ik) :: i
 
@@ -108,9 +108,12 @@ contains
          associate (middle => 0.5_rk*sum(fracture%cell_s(:, i)))
             if (.not. (middle > ends(1) .and. middle < ends(2))) cycle
             errors%reach(i) = sqrt((middle - ends(1))*(ends(2) - middle))
-            errors%share(i) = law%rest + law%of_kink*maxval(kink)/half &
-                              + max(share_at(first, 1)*size_of(1)/(middle - ends(1)), &
-                                    share_at(last, 2)*size_of(2)/(ends(2) - middle))
+            of_end = [share_at(first, 1)*size_of(1)/(middle - ends(1)), &
+                      share_at(last, 2)*size_of(2)/(ends(2) - middle)]
+            ! Where faces stick beyond, slip has the square of the length of the zone.
+            where ([share_at(first, 1), share_at(last, 2)] >= law%within) &
+               of_end = of_end*(1.0_rk + 0.25_rk*of_end)
+            errors%share(i) = law%rest + law%of_kink*maxval(kink)/half + maxval(of_end)
             if (any(kink > 0.0_rk)) errors%share(i) = errors%share(i) + law%at_kink &
                                         & *maxval(kink/abs(fracture%cell_s(2, first:last) - middle))
          end associate
@@ -252,18 +255,33 @@ contains
       end do
    end function unevenness
 
-   !> Error of the largest value of the cells: that of its cell, and by how much the value may be
-   !! larger between the cells; jumps that are all negative end in 0 at a tip.
+   !> Error of the largest value of the cells: that of its cell, at least what that of another cell
+   !! may exceed it by; and by how much the parabola through its middle and those of its neighbours
+   !! is higher, d^2/(16 h) for the height h over their mean and their difference d. Jumps that are
+   !! all negative end in 0 at a tip.
    pure real(rk) function error_of_largest(fracture, values, errors) result(error)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: values(:), errors(:)  !< (cells)
-      real(rk), parameter :: to_peak = 0.07_rk  ! of the height over the neighbours
-      real(rk) :: height(size(values))
-      integer(ik) :: at
+      real(rk) :: beside(2), height(size(values))
+      integer(ik) :: at, k, next
 
       at = maxloc(values, dim=1, kind=ik)
+      error = max(errors(at), maxval(values + errors) - values(at))
+      if (.not. values(at) > 0.0_rk) then
+         error = max(error, abs(values(at)))
+         return
+      end if
       height = unevenness(fracture, values)
-      error = merge(errors(at) + to_peak*height(at), abs(values(at)), values(at) > 0.0_rk)
+      if (.not. height(at) > 0.0_rk) return
+      beside = values(at)
+      do k = 1, 2
+         next = at + 2*k - 3
+         if (next < 1 .or. next > fracture%n_cells) cycle
+         if (fracture%cell_fracture(next) == fracture%cell_fracture(at)) beside(k) = values(next)
+      end do
+      associate (apart => min(0.5_rk, abs(beside(2) - beside(1))/(4.0_rk*height(at))))
+         error = error + height(at)*apart**2
+      end associate
    end function error_of_largest
 
    !> Error of the closure of a joint by that of the traction, which rises at least in proportion

@@ -12,6 +12,7 @@ use twolevel_field_errors, only: load_errors
 use twolevel_heat, only: add_well_temperatures, follow_heat, warn_of_heat
 use twolevel_limits, only: watch_levels
 use twolevel_notes, only: note_stated_errors, states_errors
+use twolevel_place_errors, only: note_entries
 use twolevel_places, only: end_at_tips
 use twolevel_pressure_errors, only: unresolved_depth
 use twolevel_results, only: cell_states, slip_potency
@@ -167,7 +168,7 @@ subroutine note_well_rows(self)
    self%chronicle%wells = [self%chronicle%wells, rows]
    if (.not. self%scene%has_entries()) return
    entries = entry_rows(self%problem, self%now%coarse)
-   call self%value_errors%note_entries(entries, self%now%stated_errors, facts_of(self))
+   call note_entries(self%value_errors, entries, self%now%stated_errors, facts_of(self))
    self%chronicle%entries = [self%chronicle%entries, entries]
 end subroutine note_well_rows
 

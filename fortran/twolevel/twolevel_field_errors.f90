@@ -1,12 +1,14 @@
 !> Estimated errors of the fields of a state with a fluid: those of its quantities
 !! (twolevel_value_errors), and in each cell the difference from what its neighbours give.
 !!
-!! The flow along a fracture is the sum of what leaks off beyond a cell: the relative error of
-!! leak-off acts on what leaks off in a cell. In the last cell before an end the flow falls to zero
-!! within the cell, anywhere: it is nothing, or what the flows of the cells before it lead to. What
-!! flows round the tips comes from the whole fracture; cells do not resolve it where sqrt(c t) is
-!! less than their length. The stress on a fracture has an error in proportion to its change since
-!! the start, and in closed fractures so has the pressure.
+!! The flow along a fracture is the sum of what is taken up beyond a cell: the relative error of
+!! leak-off acts on what leaks off in a cell; uptakes that scatter by s from cell to cell add up
+!! like a random walk between the ends, 2 s sqrt(n x (1 - x)) after the share x of n cells. In the
+!! last cell before an end the flow falls to zero within the cell, anywhere: it is nothing, or what
+!! the flows of the cells before it lead to. What flows round the tips comes from the whole
+!! fracture; cells do not resolve it where sqrt(c t) is less than their length. The stress on a
+!! fracture has an error in proportion to its change since the start, and in closed fractures so
+!! has the pressure.
 !!
 !! K follows the load of the faces. A uniform error of the fluid's pressure in a zone of length L
 !! that slips is one of K_II of the friction times sqrt(pi L/2) times it, by the share of the cells
@@ -35,7 +37,7 @@ module twolevel_field_errors
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
    use twolevel_value_errors, only: of_solution, value_errors_t
-   use twolevel_well_losses, only: entry_flows, unresolved_in_cells
+   use twolevel_well_losses, only: entry_flows, unresolved_in_cells, uptake
    implicit none(type, external)
    private
 
@@ -99,7 +101,7 @@ contains
       type(value_errors_t), intent(in) :: errors
       type(fracture_fields_t), intent(inout) :: fields
       type(jumps_in_space_t) :: jumps
-      real(rk), dimension(problem%mesh%fracture%n_cells) :: around, length, smooth, tips
+      real(rk), dimension(problem%mesh%fracture%n_cells) :: around, length, smooth, tips, uneven
       real(rk), dimension(size(scene%fractures)) :: drop, largest, resistance
       real(rk) :: ends(2), leaks, whole
       logical :: own(size(length))
@@ -119,6 +121,7 @@ contains
          smooth = fields%flow - matmul(max(0.0_rk, problem%ahead), entry_flows(problem, state))
          e%flow = of_neighbours*unevenness(fracture, smooth)
          around = round_tips(problem, state%time - errors%start)
+         uneven = length*unevenness(fracture, uptake(problem, state)/length)
          do f = 1, maxval(fracture%cell_fracture)
             own = fracture%cell_fracture == f
             associate (first => findloc(own, .true., dim=1), s => fracture%cell_s, &
@@ -133,6 +136,10 @@ contains
                ends = [s(1, first), s(2, last)]
                tips = min(around, 0.5_rk*whole)*abs(s(1, :) + s(2, :) - sum(ends))/whole
                where (own) e%flow = e%flow + leaks*(errors%of_flow*length + tips)
+               where (own) e%flow = e%flow + 2.0_rk*sum(uneven, mask=own) &
+                                    *sqrt(max(0.0_rk, (0.5_rk*(s(1, :) + s(2, :)) - ends(1)) &
+                                              *(ends(2) - 0.5_rk*(s(1, :) + s(2, :)))) &
+                                          /count(own))/whole
             end associate
          end do
          largest = largest_of(scene, problem, abs(smooth))
@@ -161,7 +168,8 @@ contains
 
    !> Errors of the tractions: differences between neighbours and between the ends of a cell, the
    !! traction that the error of the jump is equal to, and in contact that of the pressure. Faces
-   !! that slip have the friction of their normal traction.
+   !! that slip have the friction of their normal traction. Where contact ends is known to one cell:
+   !! open faces next to it may have half of its traction.
    subroutine note_tractions(scene, problem, state, jumps, of_stress, fields)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
@@ -184,8 +192,8 @@ contains
                         + friction*e%pressure
          where (fields%state == state_slip) e%traction_t = friction*e%traction_n
          where (fields%state == state_open)
-            e%traction_n = 0.0_rk
-            e%traction_t = 0.0_rk
+            e%traction_n = unevenness(fracture, fields%traction_n)
+            e%traction_t = unevenness(fracture, fields%traction_t)
          end where
       end associate
 

@@ -11,7 +11,6 @@ module twolevel_problem
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_rock, only: solid_t
-   use coarse_well_ways, only: decay_rate, way_with_uptake
    use coarse_well_rings, only: new_well_rings, ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
@@ -23,6 +22,7 @@ module twolevel_problem
    use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
+   use twolevel_well_ways, only: find_way
    use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, &
                              places_of_cells, rate, &
                              wells_of_entries
@@ -40,7 +40,8 @@ module twolevel_problem
       integer(ik), allocatable :: well_of(:)  !< (entries) number of the well
       real(rk), allocatable :: share(:, :)  !< (fracture cells, entries) of each entry's flow [-]
       real(rk), allocatable :: joint_share(:, :)  !< (joints, entries) of each entry's flow [-]
-      !> (fracture cells, entries) of place_wells, and with what is taken up on the way [-]
+      !> (fracture cells, entries) of place_wells, and with what is taken up on the way; next to a
+      !! joint the distance from the middle over that of the joint [-]
       real(rk), allocatable :: steady(:, :), path(:, :)
       !> (fracture cells, entries) 1: middle of the cell beyond a well at a point of its fracture,
       !! -1: before it, 0: neither
@@ -262,49 +263,34 @@ contains
          call self%model%change_sides(self%mesh, scene, timers, error)
          if (allocated(error)) return
       end if
-      call self%ask(scene, state%time, dt)
       call self%find_ways(state, state%time + dt)
+      call self%ask(scene, state%time, dt)
       if (present(control)) then
          where (control > 0) self%model%wells%control = control
       end if
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
 
-   !> Ways of the wells at points of fractures in the step that ends at a time (coarse_well_ways).
+   !> Ways of the wells at points of fractures in the step that ends at a time.
    pure subroutine find_ways(self, state, time)
       class(coarse_problem_t), intent(inout) :: self
       type(state_t), intent(in) :: state
       real(rk), intent(in) :: time  !< [s]
-      real(rk), allocatable :: resistance(:)
-      real(rk) :: theta
-      integer(ik) :: cell, e, i
-      logical :: at_tip
+      real(rk), allocatable :: conductance(:)
+      integer(ik) :: e, i
 
       if (size(self%entries) == 0 .or. self%mesh%fracture%n_cells == 0) return
-      resistance = 12.0_rk*self%model%settings%viscosity*self%thickness(state)/state%aperture**3
+      conductance = state%aperture**3/(12.0_rk*self%model%settings%viscosity*self%thickness(state))
       do e = 1, size(self%entries, kind=ik)
-         cell = maxloc(self%share(:, e), dim=1, kind=ik)
-         associate (well => self%entries(e), share => self%share(:, e), rock => self%model%rock, &
-                    s => self%mesh%fracture%cell_s, &
-                    age => time - max(0.0_rk, self%entries(e)%stage_start(1_ik)))
-            if (well%fracture == 0 .or. .not. (well%at_point .and. age > 0.0_rk)) cycle
-            if (any(self%joint_share(:, e) > 0.0_rk)) cycle
-            i = self%mesh%face_cells(1, self%mesh%fracture%cell_faces(1, cell))
-            theta = sum(s(2, :) - s(1, :), mask=share > 0.0_rk)/count(share > 0.0_rk) &
-                    *decay_rate(sum(share)/sum(share*resistance), rock%mobility_at(i), &
-                                rock%diffusivity_at(i), age, well%has_given_flow())
-            at_tip = count(share > 0.0_rk) == 1 .and. self%steady(cell, e) > same_value
-            where (share > 0.0_rk) self%path(:, e) = way_with_uptake(self%steady(:, e), theta, &
-                                                                     at_tip)
-            ! In the middle of a cell the way is one in half of it.
-            if (.not. (at_tip .or. self%steady(cell, e) > same_value)) then
-               self%path(cell, e) = 2.0_rk*self%path(cell, e)
-            end if
-         end associate
+         call find_way(self%entries(e), self%steady(:, e), self%model, self%mesh, conductance, &
+                       time, self%share(:, e), self%joint_share(:, e), self%path(:, e))
       end do
       do i = 1, size(self%model%wells%entry, kind=ik)
          e = self%model%wells%entry(i)
-         if (e > 0) self%model%wells%path(:, i) = self%path(:, e)
+         if (e == 0) cycle
+         self%model%wells%path(:, i) = self%path(:, e)
+         self%model%wells%share(:, i) = self%share(:, e)
+         self%model%wells%joint_share(:, i) = self%joint_share(:, e)
       end do
    end subroutine find_ways
 

@@ -19,6 +19,7 @@ module twolevel_state
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_pace, only: pace_t
+   use twolevel_place_errors, only: note_probes
    use twolevel_places, only: end_at_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
@@ -510,7 +511,7 @@ contains
 
       call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
       if (allocated(error)) return
-      call self%value_errors%note_probes(self%time(), self%now%trend%pressure_rise(), row)
+      call note_probes(self%value_errors, self%time(), self%now%trend%pressure_rise(), row)
    end subroutine probes
 
    !> Fields of the last accepted state, if there is one.

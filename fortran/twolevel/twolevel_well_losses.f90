@@ -7,7 +7,7 @@ module twolevel_well_losses
    implicit none(type, external)
    private
 
-   public :: entry_flows, unresolved_at, unresolved_in_cells
+   public :: entry_flows, unresolved_at, unresolved_in_cells, uptake
 
 contains
 
@@ -41,26 +41,34 @@ contains
       end associate
    end function half_cells
 
-   !> What leaks off or is stored in fracture cells, u, changes the pressure within each of them by
-   !! 12 mu u l/(8 a^3) at most, as wells with a steady flow would have it [Pa].
-   pure function by_uptake(problem, state) result(pressure)
+   !> What leaks off and is stored in each fracture cell [m2/s].
+   pure function uptake(problem, state) result(taken)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
-      real(rk) :: pressure(size(state%pressure))
+      real(rk) :: taken(size(state%pressure))
       integer(ik) :: b, k
 
-      pressure = state%injection
+      taken = state%injection
       do k = 1, size(state%flow, kind=ik)
          associate (cells => problem%model%connections(:, k))
-            pressure(cells) = pressure(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
+            taken(cells) = taken(cells) + [-1.0_rk, 1.0_rk]*state%flow(k)
          end associate
       end do
       do b = 1, problem%model%joints%branch_count()
          associate (cell => problem%model%joints%cell(b))
-            pressure(cell) = pressure(cell) - state%branch_flow(b)
+            taken(cell) = taken(cell) - state%branch_flow(b)
          end associate
       end do
-      pressure = 0.25_rk*half_cells(problem, state)*abs(pressure)
+   end function uptake
+
+   !> Uptake u changes the pressure within each fracture cell by 12 mu u l/(8 a^3) at most, as wells
+   !! with a steady flow would have it [Pa].
+   pure function by_uptake(problem, state) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: pressure(size(state%pressure))
+
+      pressure = 0.25_rk*half_cells(problem, state)*abs(uptake(problem, state))
    end function by_uptake
 
    !> The same in cells with wells at points, at most the difference between cell and well [Pa].
@@ -83,7 +91,7 @@ contains
 
    !> What may be missing in the pressure of an entry at a point: a tenth of what the leak-off of
    !! its flow on the way changes, as coarse_well_ways has it; what other uptake changes, with
-   !! stages and at joints of all; and twice the loss of the flows of other wells on its way to the
+   !! stages of all; and twice the loss of the flows of other wells on its way to the
    !! same cells, as the others lack that of its flow too [Pa].
    pure real(rk) function unresolved_at(problem, state, entry, flow) result(pressure)
       type(coarse_problem_t), intent(in) :: problem
@@ -91,7 +99,7 @@ contains
       integer(ik), intent(in) :: entry  !< number among those of all wells
       real(rk), intent(in) :: flow(:)  !< (wells) [m2/s]
       real(rk), parameter :: of_ways = 0.1_rk  ! 1/lambda of different laws of uptake
-      real(rk), dimension(size(state%pressure)) :: loss, most
+      real(rk), dimension(size(state%pressure)) :: loss, most, steady
       integer(ik) :: e
 
       pressure = 0.0_rk
@@ -101,12 +109,13 @@ contains
       pressure = sum(problem%share(:, entry)*most)
       associate (own => abs(flow(problem%well_of(entry))), path => problem%path(:, entry), &
                  s => problem%mesh%fracture%cell_s)
-         if (problem%entries(entry)%stage_count() == 1 &
-             .and. all(problem%joint_share(:, entry) <= 0.0_rk)) then
+         steady = problem%steady(:, entry)
+         if (any(problem%joint_share(:, entry) > 0.0_rk)) steady = steady*(1.0_rk - steady)
+         if (problem%entries(entry)%stage_count() == 1) then
             most = min(most, 0.25_rk*loss*abs(state%leakoff)*(s(2, :) - s(1, :)))
             pressure = pressure - own/max(sum(abs(flow)), tiny(1.0_rk)) &
                        *sum(problem%share(:, entry)*most) &
-                       + of_ways*own*sum(loss*min(path, abs(path - problem%steady(:, entry))))
+                       + of_ways*own*sum(loss*min(path, abs(path - steady)))
          end if
       end associate
       do e = 1, size(problem%entries, kind=ik)

@@ -83,6 +83,7 @@ contains
       !> (fracture cells, wells) pressure at the well above that in its cells, over the loss of its
       !! flow in half of each of them [-]
       real(rk), allocatable, intent(out) :: path(:, :)
+      real(rk), parameter :: next_to_joint = 1.0_rk - 1.0e-6_rk  ! its cell has a share
       real(rk) :: offset, t
       integer(ik) :: cell, end, joint, next, w
 
@@ -101,13 +102,12 @@ contains
          if (joints%n > 0) joint = findloc(joints%point, fracture%cell_points(end, cell), dim=1, &
                                            kind=ik)
          if (joint > 0) then
-            if (offset > 1.0_rk - same_value) then
-               offset = 1.0_rk
-               if (joints%is_outlet(joint)) cycle  ! all of it would leave at once
-            end if
+            ! All of it would leave at once.
+            if (offset > 1.0_rk - same_value .and. joints%is_outlet(joint)) cycle
+            offset = min(offset, next_to_joint)
             share(cell, w) = 1.0_rk - offset
             joint_share(joint, w) = offset
-            path(cell, w) = offset*(1.0_rk - offset)
+            path(cell, w) = offset
             cycle
          end if
          path(cell, w) = offset

@@ -3,13 +3,16 @@
     .venv/bin/python verification/wells_in_rock/make_reference.py
 
 Sinks and sources at (+-x + 2 i, +-y + 2 j), with the sign of each mirror; rows are summed in closed
-form, ln|sin|, so that the sum over the other direction converges like exp(-pi k).
+form, ln|sin|, so that the sum over the other direction converges like exp(-pi k). And the rise of a
+well in a narrow fracture (narrow.nml), by Stehfest's inversion of its integral over wave numbers.
 """
 
 from __future__ import annotations
 
 import cmath
 import math
+
+from scipy.integrate import quad
 
 UNIT = 1.0e-7 * 1.0e-3 / (2 * math.pi * 1.0e-15)  # Q mu/(2 pi K) [Pa]
 HALF = 1.0  # half-side [m]
@@ -39,7 +42,40 @@ def pressure(x: float, y: float, radius: float) -> float:
     return UNIT * total
 
 
+def in_line(s: float) -> float:
+    """Laplace transform of the rise of a well in a narrow fracture [Pa s]."""
+    young, poisson, biot, aperture, compressibility = 16e9, 0.2, 0.7, 5e-6, 4.4e-10
+    mobility = 4.5e-16 / 5e-4
+    storage = 0.02 * compressibility + (biot - 0.02) * 3 * (1 - 2 * poisson) / young
+    storage += biot**2 * (1 + poisson) * (1 - 2 * poisson) / (young * (1 - poisson))
+    conductance = aperture**3 / (12 * 5e-4)
+
+    def density(x: float) -> float:
+        k = math.exp(x)
+        taken = 2 * mobility * math.sqrt(k**2 + s * storage / mobility)
+        return k / (conductance * k**2 + taken + s * aperture * compressibility)
+
+    return 1e-6 / math.pi / s * float(quad(density, -40.0, 30.0, limit=1000)[0])
+
+
+def rise(t: float, n: int = 7) -> float:
+    """Rise at a time [Pa]."""
+    total = 0.0
+    for i in range(1, 2 * n + 1):
+        weight = sum(
+            j ** (n + 1)
+            * math.comb(n, j)
+            * math.comb(2 * j, j)
+            * math.comb(j, i - j)
+            / math.factorial(n)
+            for j in range((i + 1) // 2, min(i, n) + 1)
+        )
+        total += (-1) ** (i + n) * weight * in_line(i * math.log(2.0) / t)
+    return total * math.log(2.0) / t
+
+
 if __name__ == "__main__":
     print("in the middle", pressure(0.0, 0.0, 0.004), UNIT * math.log(1.0787052 / 0.004))
     print("at (0.3, 0.2)", pressure(0.3, 0.2, 0.004))
     print("at (-0.55, 0.7)", pressure(-0.55, 0.7, 0.004))
+    print("narrow fracture, 100 and 1000 s", rise(100.0), rise(1000.0))

@@ -1,0 +1,73 @@
+!> Ways of wells at points of fractures to the cells and joints that they supply, with what is taken
+!! up on the way (coarse_well_ways), and their shares next to joints.
+module twolevel_well_ways
+   use base_kinds, only: ik, rk
+   use base_tolerances, only: same_value
+   use coarse_joints, only: joints_t
+   use coarse_model, only: coarse_model_t
+   use coarse_well_ways, only: effective_s, uptake_t
+   use mesh_types, only: mesh_t
+   use scene_types, only: injection_t
+   implicit none(type, external)
+   private
+
+   public :: find_way
+
+contains
+
+   !> Way and shares of a well of one entry in the step that ends at a time.
+   pure subroutine find_way(well, steady, model, mesh, conductance, time, share, joint_share, path)
+      type(injection_t), intent(in) :: well
+      real(rk), intent(in) :: steady(:)  !< (fracture cells) of place_wells [-]
+      type(coarse_model_t), intent(in) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(inout) :: share(:), path(:)  !< (fracture cells) [-]
+      real(rk), intent(inout) :: joint_share(:)  !< (joints) [-]
+      real(rk) :: age, unused
+      type(uptake_t) :: uptake
+      integer(ik) :: cell, i, joint
+      logical :: around(size(steady))
+
+      age = time - max(0.0_rk, well%stage_start(1_ik))
+      if (well%fracture == 0 .or. .not. (well%at_point .and. age > 0.0_rk)) return
+      around = steady > 0.0_rk
+      cell = maxloc(merge(steady, 0.0_rk, share > 0.0_rk), dim=1, kind=ik)
+      associate (s => mesh%fracture%cell_s, &
+                 sides => mesh%face_cells(1, mesh%fracture%cell_faces(:, cell)))
+         uptake%conductance = count(around)/sum(1.0_rk/conductance, mask=around)
+         uptake%length = sum(s(2, :) - s(1, :), mask=around)/count(around)
+         uptake%mobility = [(model%rock%mobility_at(sides(i)), i=1, 2)]
+         uptake%diffusivity = [(model%rock%diffusivity_at(sides(i)), i=1, 2)]
+      end associate
+      if (allocated(model%cells%skin)) uptake%skin = model%cells%skin(cell)
+      call uptake%find(effective_s(age, well%has_given_flow()), 1.0_rk - steady(cell))
+      joint = findloc(joint_share > 0.0_rk, .true., dim=1, kind=ik)
+      if (joint > 0) then
+         call uptake%way_at_end(steady(cell), &
+                                other_branches(model%joints, joint, cell, conductance), .true., &
+                                path(cell), joint_share(joint))
+         share(cell) = 1.0_rk - joint_share(joint)
+      else if (count(around) == 1 .and. steady(cell) > same_value) then
+         call uptake%way_at_end(steady(cell), 0.0_rk, .false., path(cell), unused)
+      else
+         ! In the middle of a cell the way is one in half of it.
+         where (around) path = merge(1.0_rk, 2.0_rk, count(around) > 1)*uptake%way(steady)
+      end if
+   end subroutine find_way
+
+   !> What the branches of a joint take up by its pressure, over what that of one cell does: as the
+   !! roots of their conductances. The side of an outlet takes up all [-].
+   pure real(rk) function other_branches(joints, joint, cell, conductance) result(others)
+      type(joints_t), intent(in) :: joints
+      integer(ik), intent(in) :: joint, cell
+      real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
+
+      others = huge(1.0_rk)
+      if (joints%is_outlet(joint)) return
+      others = sum(sqrt(conductance(joints%cell)/conductance(cell)), &
+                   mask=joints%joint == joint .and. joints%cell /= cell .and. .not. joints%is_shut)
+   end function other_branches
+
+end module twolevel_well_ways
