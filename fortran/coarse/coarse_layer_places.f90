@@ -210,10 +210,11 @@ contains
       logical :: are(size(cell))
       real(rk), parameter :: most = -0.7_rk  ! cosine of the angle at nodes that are no bends
       logical, dimension(mesh%n_nodes) :: is_bent, is_near
-      integer(ik) :: i, l, node
+      integer(ik) :: i, l, node, number(mesh%n_cells)
       real(rk) :: along(2, 2)
       type(lists_t) :: at_node
 
+      number = 0
       at_node = inverted(mesh%face_nodes(:, mesh%layer_face), mesh%n_nodes)
       do node = 1, mesh%n_nodes
          is_bent(node) = at_node%length(node) > 2
@@ -228,12 +229,13 @@ contains
       end do
       is_near = is_bent
       do l = 1, mesh%n_layers
+         number(cell(l)) = number(cell(l)) + 1
          associate (nodes => mesh%face_nodes(:, mesh%layer_face(l)))
             if (any(is_bent(nodes))) is_near(nodes) = .true.
          end associate
       end do
       do l = 1, mesh%n_layers
-         are(l) = count(cell == cell(l)) == 1 .and. is_regular(mesh, cell(l), mesh%layer_face(l)) &
+         are(l) = number(cell(l)) == 1 .and. is_regular(mesh, cell(l), mesh%layer_face(l)) &
                   .and. .not. any(is_near(mesh%face_nodes(:, mesh%layer_face(l))))
       end do
    end function have_regular_cells
