@@ -40,7 +40,7 @@ module heat_model
    integer(ik), parameter :: finer = 2
    !> The last node of an extended layer, and how far the rest of its cell lies beyond the centre,
    !! both over the distance of the centre from the face (docs/theory.md) [-].
-   real(rk), parameter :: last_place = 0.9_rk, beyond_centre = 0.2_rk
+   real(rk), parameter :: last_place = 0.88_rk, beyond_centre = 0.2_rk
 
    type :: heat_model_t
       integer(ik) :: n = 0  !< unknowns
@@ -238,8 +238,8 @@ contains
             do a = 1, m
                if (around(a) == 0) cycle
                n = n + 1
-               self%row(n) = around(a)
-               self%col(n) = around(b)
+               self%row(n) = around(b)
+               self%col(n) = around(a)
                self%conduction(n) = share%matrix(a, b)
             end do
          end do
