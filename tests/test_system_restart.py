@@ -32,7 +32,9 @@ MECHANICS = (TOP / "inputs" / "paper_b" / "disc_path_30.nml").read_text()
 MECHANICS = re.sub(r"&scene.*?\n/\n", "", MECHANICS, flags=re.DOTALL)
 SCENES = {
     "steps": FINE,
-    "heat": with_heat(GROWING),
+    "heat": with_heat(GROWING).replace(
+        "&fluid", "&fluid table_temperature = 50.0, 150.0, viscosity_at = 3e-4, 1e-4,"
+    ),
     "growth": GROWING,
     "paris": GROWING_BY_PARIS,
     "mechanics": MECHANICS,

@@ -27,7 +27,7 @@ contains
 
    !> The equations of the fluxes of one region.
    pure subroutine set_flux_equations(mesh, resistivity, is_given, given, regions, region, local, &
-                                      relief)
+                                      relief, offset)
       type(mesh_t), intent(in) :: mesh
       !> gradient = -resistivity flux: (2, 2, 1) the same everywhere, or (2, 2, n_cells) [Pa s/m2]
       real(rk), intent(in) :: resistivity(:, :, :)
@@ -38,12 +38,14 @@ contains
       type(local_system_t), intent(inout) :: local
       !> (layers) resistance of the layers at each end of their faces [Pa s]
       real(rk), intent(in), optional :: relief(:)
+      !> (2, cells) where their scalars are, from their centres [m]
+      real(rk), intent(in), optional :: offset(:, :)
       integer(ik) :: m, n
 
       m = regions%scalar_count(region)
       n = regions%flow_faces%length(region)
       call new_local_system(n, m, local)
-      call add_corners(mesh, resistivity, regions, region, local)
+      call add_corners(mesh, resistivity, regions, region, local, offset)
       call add_fracture_faces(mesh, regions, region, local)
       if (present(relief)) call add_layers(mesh, regions, region, relief, local)
       local%equations(n + 1:n + m, :n) = local%coupling(:m, :n)
@@ -51,14 +53,15 @@ contains
    end subroutine set_flux_equations
 
    !> Contributions of the corners of cells around the vertex.
-   pure subroutine add_corners(mesh, resistivity, regions, region, local)
+   pure subroutine add_corners(mesh, resistivity, regions, region, local, offset)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: resistivity(:, :, :)  !< (2, 2, 1) or (2, 2, n_cells) [Pa s/m2]
       type(regions_t), intent(in) :: regions
       integer(ik), intent(in) :: region
       type(local_system_t), intent(inout) :: local
+      real(rk), intent(in), optional :: offset(:, :)
       integer(ik) :: at(2), c, cell, faces(2), i, j, k, kind
-      real(rk) :: sign_out(2), length(2), lever(2, 2), area, of_cell(2, 2), w
+      real(rk) :: sign_out(2), length(2), lever(2, 2), area, from_centre(2), of_cell(2, 2), w
 
       do c = 1, regions%cell_count(region)
          cell = regions%blocks%at(region, c)
@@ -70,6 +73,7 @@ contains
          end do
          w = area/3.0_rk
          of_cell = resistivity(:, :, kind)
+         if (present(offset)) from_centre = matmul(offset(:, cell), of_cell)
          do j = 1, 2
             do i = 1, 2
                local%equations(at(i), at(j)) = local%equations(at(i), at(j)) &
@@ -78,6 +82,13 @@ contains
                                                             matmul(of_cell, lever(:, j)))
             end do
             local%coupling(c, at(j)) = 0.5_rk*sign_out(j)*length(j)
+            if (.not. present(offset)) cycle
+            do i = 1, 2
+               associate (drop => sign_out(i)*dot_product(from_centre, lever(:, i)))
+                  local%equations(at(i), at(j)) = local%equations(at(i), at(j)) &
+                                                  - local%coupling(c, at(j))*drop
+               end associate
+            end do
          end do
       end do
    end subroutine add_corners

@@ -3,8 +3,9 @@
 !! unknowns to the global ones.
 !!
 !! The system of a vertex is M y = R d + b, with unknowns y and the global ones d around it; C' y
-!! enters the balances of d. `eliminate` finds y = response (d, 1) and -C' response. M is symmetric,
-!! though not definite: rows are exchanged for the largest pivots.
+!! enters the balances of d. `eliminate` finds y = response (d, 1) and -C' response. M is symmetric
+!! (not where scalars are offset, coarse_diffusion) but not definite: rows are exchanged for the
+!! largest pivots.
 !!
 !! There are as many of these systems as vertices, each of some ten unknowns: too few for LAPACK,
 !! whose calls cost more than its arithmetic there. All arrays contain one equation per column, so
@@ -37,7 +38,8 @@ module coarse_elimination
 
    !> What a vertex adds to the global system.
    type :: share_t
-      real(rk), allocatable :: matrix(:, :)  !< (m, m) symmetric
+      !> (m, m) what each global unknown adds to each balance, symmetric where M is
+      real(rk), allocatable :: matrix(:, :)
       real(rk), allocatable :: known(:)  !< (m) right-hand side, from boundary data
    end type share_t
 

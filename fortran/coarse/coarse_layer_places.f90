@@ -2,7 +2,7 @@
 !! round tips beyond that in one dimension (docs/theory.md).
 module coarse_layer_places
    use base_kinds, only: ik, rk
-   use base_lists, only: inverted
+   use base_lists, only: inverted, lists_t
    use base_plane, only: norm2
    use coarse_chain, only: new_chain
    use coarse_layers, only: layers_t
@@ -31,13 +31,15 @@ module coarse_layer_places
 contains
 
    !> Choose the faces that get layers, number the layers in the mesh, and set up their chains.
-   subroutine place_layers(mesh, rock, sides, first_step, layers, times_finer)
+   subroutine place_layers(mesh, rock, sides, first_step, layers, times_finer, last_place)
       type(mesh_t), intent(inout) :: mesh
       type(rock_t), intent(in) :: rock
       type(boundary_side_t), intent(in) :: sides(:)
       real(rk), intent(in) :: first_step  !< [s]
       type(layers_t), intent(out) :: layers
       integer(ik), intent(in), optional :: times_finer  !< of coarse_chain
+      !> where the last node of an extended layer lies, over the distance of the centre [-]
+      real(rk), intent(in), optional :: last_place
       logical :: is_layered(3)
       integer(ik) :: c, f, k, l
       integer(ik), allocatable :: cell(:), face_of_cell(:)
@@ -69,7 +71,7 @@ contains
       end do
       layers%cell = cell
       layers%face_of_cell = face_of_cell
-      call set_up(mesh, rock, first_step, layers, times_finer)
+      call set_up(mesh, rock, first_step, layers, times_finer, last_place)
    end subroutine place_layers
 
    !> K/mu across a face [m2/(Pa s)].
@@ -107,18 +109,21 @@ contains
    end function uniaxial_storage
 
    !> The chains, their places among the unknowns, and the cells they lie in.
-   subroutine set_up(mesh, rock, first_step, layers, times_finer)
+   subroutine set_up(mesh, rock, first_step, layers, times_finer, last_place)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(in) :: rock
       real(rk), intent(in) :: first_step  !< [s]
       type(layers_t), intent(inout) :: layers
       integer(ik), intent(in), optional :: times_finer
-      real(rk) :: mobility, storage, thickness
+      real(rk), intent(in), optional :: last_place
+      real(rk) :: mobility, storage, thickness, to_centre
       integer(ik) :: f, k, l, n
       integer(ik), allocatable :: place(:)
 
       n = layers%n
       allocate (layers%chain(n), layers%fracture_cell(n), layers%side(n), layers%at(3, n))
+      layers%extended = spread(.false., 1, int(n))
+      if (present(last_place)) layers%extended = have_regular_cells(mesh, layers%cell)
       allocate (layers%between(n), layers%relief(n), layers%given(n), source=0.0_rk)
       layers%cells = pack(layers%cell, [.true., layers%cell(2:) /= layers%cell(:n - 1)])
       allocate (place(n))
@@ -151,11 +156,13 @@ contains
             end if
             mobility = mobility_across(mesh, rock, c, f)
             storage = layers%storage(place(l))
-            thickness = min(thickest, all_together/layers%of_cell%length(place(l))) &
-                        *2.0_rk/3.0_rk*layers%volume(place(l))/length
-            layers%chain(l) = new_chain(thickness, &
-                                        first_volume*sqrt(mobility/storage*first_step), length, &
-                                        mobility, storage, times_finer)
+            to_centre = 2.0_rk/3.0_rk*layers%volume(place(l))/length
+            thickness = min(thickest, all_together/layers%of_cell%length(place(l)))*to_centre
+            call set_chain()
+            if (layers%extended(l)) then
+               thickness = thickness*last_place*to_centre/layers%chain(l)%place(layers%chain(l)%n)
+               call set_chain()
+            end if
             associate (chain => layers%chain(l))
                layers%between(l) = mobility*length/chain%place(chain%n)
                layers%relief(l) = 0.5_rk*length*chain%place(chain%n)/mobility
@@ -166,7 +173,72 @@ contains
       end do
       allocate (layers%rho(layers%n_nodes - 1, n), layers%means(2, n), layers%first_mean(n), &
                 source=0.0_rk)
+
+   contains
+
+      subroutine set_chain()
+         layers%chain(l) = new_chain(thickness, first_volume*sqrt(mobility/storage*first_step), &
+                                     face_length(mesh, f), mobility, storage, times_finer)
+      end subroutine set_chain
+
    end subroutine set_up
+
+   !> Whether the corner opposite to a face of a cell lies before the face, or nearly so, and the
+   !! angles at the face are not small.
+   pure logical function is_regular(mesh, cell, face)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell, face
+      real(rk), parameter :: farthest = 1.3_rk, slope = 0.5_rk
+      real(rk) :: along(2), at(3)  ! corners along the face, over its length
+      integer(ik) :: k
+
+      associate (ends => mesh%xy(:, mesh%face_nodes(:, face)))
+         along = (ends(:, 2) - ends(:, 1))/face_length(mesh, face)**2
+         at = [(dot_product(mesh%xy(:, mesh%cell_nodes(k, cell)) - ends(:, 1), along), k=1, 3)]
+      end associate
+      associate (far => max(maxval(at), 1.0_rk - minval(at)), &
+                 height => 2.0_rk*cell_area(mesh, cell)/face_length(mesh, face)**2)
+         is_regular = far <= farthest .and. height >= slope*far
+      end associate
+   end function is_regular
+
+   !> Whether the cells of layers are regular, have one layer, and do not lie at a face next to a
+   !! bend, tip or corner of faces with layers, where temperatures would leave their range.
+   pure function have_regular_cells(mesh, cell) result(are)
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: cell(:)  !< (layers)
+      logical :: are(size(cell))
+      real(rk), parameter :: most = -0.7_rk  ! cosine of the angle at nodes that are no bends
+      logical, dimension(mesh%n_nodes) :: is_bent, is_near
+      integer(ik) :: i, l, node, number(mesh%n_cells)
+      real(rk) :: along(2, 2)
+      type(lists_t) :: at_node
+
+      number = 0
+      at_node = inverted(mesh%face_nodes(:, mesh%layer_face), mesh%n_nodes)
+      do node = 1, mesh%n_nodes
+         is_bent(node) = at_node%length(node) > 2
+         if (at_node%length(node) /= 2) cycle
+         do i = 1, 2
+            associate (nodes => mesh%face_nodes(:, mesh%layer_face(at_node%at(node, i))))
+               along(:, i) = mesh%xy(:, sum(nodes) - node) - mesh%xy(:, node)
+            end associate
+         end do
+         is_bent(node) = dot_product(along(:, 1), along(:, 2)) &
+                         > most*norm2(along(:, 1))*norm2(along(:, 2))
+      end do
+      is_near = is_bent
+      do l = 1, mesh%n_layers
+         number(cell(l)) = number(cell(l)) + 1
+         associate (nodes => mesh%face_nodes(:, mesh%layer_face(l)))
+            if (any(is_bent(nodes))) is_near(nodes) = .true.
+         end associate
+      end do
+      do l = 1, mesh%n_layers
+         are(l) = number(cell(l)) == 1 .and. is_regular(mesh, cell(l), mesh%layer_face(l)) &
+                  .and. .not. any(is_near(mesh%face_nodes(:, mesh%layer_face(l))))
+      end do
+   end function have_regular_cells
 
    !> Flow round tips: a conductance from the faces of a tip's cell with layers to the cell ahead.
    pure subroutine add_tip_flow(layers, mesh, rock, matrix)

@@ -41,6 +41,7 @@ module coarse_layers
       !> (3, n) numbers of the unknowns: pressure at the face (0: given); mean and half difference
       !! at the outer end
       integer(ik), allocatable :: at(:, :)
+      logical, allocatable :: extended(:)  !< (n) it is thicker than usual (coarse_layer_places)
       real(rk), allocatable :: between(:)  !< (n) between the ends of the face [m2/(Pa s)]
       !> (n) taken out of the resistance of each end in coarse_diffusion [Pa s]
       real(rk), allocatable :: relief(:)

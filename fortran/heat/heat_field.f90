@@ -7,7 +7,7 @@ module heat_field
    use coarse_layer_profiles, only: profile_t
    use coarse_layout, only: at_component, layer_block
    use heat_model, only: heat_model_t
-   use mesh_geometry, only: cell_area, cell_centre
+   use mesh_geometry, only: cell_area
    implicit none(type, external)
    private
 
@@ -136,7 +136,7 @@ contains
                associate (v => mesh%cell_nodes(k, cell))
                   number(v) = number(v) + 1.0_rk
                   nodal(v) = nodal(v) + temperature(cell) &
-                             + dot_product(gradient, mesh%xy(:, v) - cell_centre(mesh, cell))
+                             + dot_product(gradient, mesh%xy(:, v) - heat%place(:, cell))
                end associate
             end do
          end do

@@ -38,6 +38,9 @@ module heat_model
    !> Nodes of layers compared with those of the pressure, for temperatures at points and not only
    !! flows through faces.
    integer(ik), parameter :: finer = 2
+   !> The last node of an extended layer, and how far the rest of its cell lies beyond the centre,
+   !! both over the distance of the centre from the face (docs/theory.md) [-].
+   real(rk), parameter :: last_place = 0.88_rk, beyond_centre = 0.2_rk
 
    type :: heat_model_t
       integer(ik) :: n = 0  !< unknowns
@@ -92,7 +95,8 @@ contains
       self%sides%pressure_given = self%sides%temperature_given
       self%sides%temperature = self%sides%temperature - self%heat%temperature
       self%rock = thermal_rock(scene, mesh)
-      call place_layers(self%mesh, self%rock, self%sides, first, self%layers, finer)
+      call place_layers(self%mesh, self%rock, self%sides, first, self%layers, finer, &
+                        last_place)
       do l = 1, self%layers%n
          if (self%layers%fracture_cell(l) > 0) cycle
          ! In the rise above the initial temperatures (heat_field)
@@ -167,6 +171,11 @@ contains
             associate (chain => layers%chain(l), at => at_component(layer_block(mesh, l), 1_ik))
                f = mesh%layer_face(l)
                middle = 0.5_rk*sum(mesh%xy(:, mesh%face_nodes(:, f)), dim=2)
+               c = layers%cell(l)
+               if (layers%extended(l)) then
+                  self%place(:, c) = self%place(:, c) &
+                                     - beyond_centre*distance(self, c, f)*outward_normal(mesh, f)
+               end if
                do i = 1, chain%n
                   self%place(:, self%first_node(l) + i - 1) = &
                      middle - chain%place(i)*outward_normal(mesh, f)
@@ -202,8 +211,11 @@ contains
       integer(ik), allocatable :: around(:)
       logical :: is_given(size(self%sides))
       real(rk) :: given(size(self%sides))  ! [K] or [W/m2]
+      real(rk) :: offset(2, self%mesh%n_cells)  ! [m]
       integer(ik) :: a, b, info, m, n, r
 
+      offset = self%place(:, :self%mesh%n_cells) &
+               - reshape([(cell_centre(self%mesh, a), a=1, self%mesh%n_cells)], shape(offset))
       is_given = self%sides%temperature_given
       given = merge(self%sides%temperature, -self%sides%heat_flux, is_given)
       n = sum([(self%regions%scalar_count(r)**2, r=1, self%regions%n_regions)])
@@ -212,7 +224,7 @@ contains
       n = 0
       do r = 1, self%regions%n_regions
          call set_flux_equations(self%mesh, self%rock%resistivity, is_given, given, self%regions, &
-                                 r, local, self%layers%relief)
+                                 r, local, self%layers%relief, offset)
          call eliminate(local, self%regions%flux(r), share, info)
          if (info /= 0) then
             call raise_error(error, "heat_model", "the cells around a vertex are degenerate")
@@ -226,8 +238,8 @@ contains
             do a = 1, m
                if (around(a) == 0) cycle
                n = n + 1
-               self%row(n) = around(a)
-               self%col(n) = around(b)
+               self%row(n) = around(b)
+               self%col(n) = around(a)
                self%conduction(n) = share%matrix(a, b)
             end do
          end do
@@ -353,7 +365,18 @@ contains
       end associate
    end function face_link
 
-   !> Conductance between a distance from a face and the centre of one of its cells [W/(m K)].
+   !> Distance of the place of a cell from one of its faces [m].
+   pure real(rk) function distance(self, cell, face)
+      class(heat_model_t), intent(in) :: self
+      integer(ik), intent(in) :: cell, face
+
+      associate (mesh => self%mesh)
+         distance = abs(dot_product(outward_normal(mesh, face), self%place(:, cell) &
+                                    - mesh%xy(:, mesh%face_nodes(1, face))))
+      end associate
+   end function distance
+
+   !> Conductance between a distance from a face and the place of one of its cells [W/(m K)].
    pure real(rk) function across(self, f, from, which) result(conductance)
       class(heat_model_t), intent(in) :: self
       integer(ik), intent(in) :: f
@@ -363,9 +386,9 @@ contains
 
       k = 1
       if (present(which)) k = which
-      associate (c => self%mesh%face_cells(k, f), length => face_length(self%mesh, f))
-         conductance = self%rock%mobility_at(c)*length &
-                       /(2.0_rk/3.0_rk*cell_area(self%mesh, c)/length - from)
+      associate (c => self%mesh%face_cells(k, f))
+         conductance = self%rock%mobility_at(c)*face_length(self%mesh, f) &
+                       /(distance(self, c, f) - from)
       end associate
    end function across
 
