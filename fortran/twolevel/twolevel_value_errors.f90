@@ -410,7 +410,7 @@ contains
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
       real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, missing
-      real(rk) :: drop, share, taken(2)
+      real(rk) :: drop, part, share, taken(2)
       integer(ik) :: w
       logical :: keeps(size(rows))
 
@@ -440,15 +440,16 @@ contains
             if (.not. well%has_given_flow()) then
                if (well%fracture > 0) self%of_given(well%fracture) = max(missing, &
                                                                        self%of_given(well%fracture))
-               flow = max(share, self%of_flow) + self%of_drive &
-                      + missing/max(tiny(1.0_rk), changes(w))
+               ! A well that keeps the pressure that it had is driven by others, or by sides.
+               part = merge(changes(w), max(missing, maxval(changes(:n))), changes(w) > 0.0_rk)
+               part = missing/max(part, tiny(1.0_rk))
+               flow = max(share, self%of_flow) + self%of_drive + part
                ! Errors are those of what the fractures and the rock take up.
                taken = abs([row%flow, row%injected])
                if (has_one_free(scene)) taken = abs([sum(rows%flow), sum(rows%injected)])
                error%injected = time(2*n + w) + flow*taken(2)
                if (has_one_free(scene)) then
-                  error%injected = self%row%injected + missing/max(tiny(1.0_rk), changes(w)) &
-                                   *taken(2)
+                  error%injected = self%row%injected + part*taken(2)
                else
                   error%injected = max(error%injected, self%of_held)
                end if
