@@ -77,10 +77,10 @@ contains
       integer(ik), intent(in) :: n, n_pivots
       real(rk), intent(inout) :: matrix(n, n)
 
-      if (n - n_pivots <= square_columns .or. is_in_team()) then
+      if (is_in_team()) then
          call subtract_blocks(n, n_pivots, matrix)
       else
-         !$omp parallel
+         !$omp parallel if(n - n_pivots > square_columns)
          !$omp single
          call subtract_blocks(n, n_pivots, matrix)
          !$omp end single
