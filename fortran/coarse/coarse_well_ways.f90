@@ -50,22 +50,31 @@ contains
       integer, parameter :: n = 200  ! places of the midpoint rule, dense at k = 0
       real(rk) :: cell, decay, g, k, v
       integer :: i
+      logical :: is_little
 
       self%at_middle = 0.0_rk
-      self%between = 0.0_rk
+      self%between = 1.0_rk
       ! What differs from layers has no tail that oscillates.
       decay = sqrt(taken(pi))
+      ! With little uptake, less what there is without: that is 0, and the rule leaves 1e-5 of it.
+      is_little = decay < 1.0_rk
       self%to_side = 0.5_rk*(1.0_rk - exp(-decay*from_side))/decay
       do i = 1, n
          v = (i - 0.5_rk)/n
          k = pi*v**3
          cell = 4.0_rk*sin(0.5_rk*k)**2
          g = taken(k)
-         self%at_middle = self%at_middle + 3.0_rk*v**2/n*(cell - k**2)/((k**2 + g)*(cell + g))
-         self%between = self%between + 3.0_rk*v**2/n*cell/(cell + g)
+         if (is_little) then
+            self%at_middle = self%at_middle + 3.0_rk*v**2/n*excess(k, cell)*g*(k**2 + cell + g) &
+                             /((k**2 + g)*(cell + g))
+         else
+            self%at_middle = self%at_middle + 3.0_rk*v**2/n*(cell - k**2)/((k**2 + g)*(cell + g))
+         end if
+         self%between = self%between - 3.0_rk*v**2/n*g/(cell + g)
          self%to_side = self%to_side + v**2*unlike_layers(k)
          k = pi/v**3
-         self%at_middle = self%at_middle + 3.0_rk/(n*v**4*(k**2 + taken(k)))
+         self%at_middle = self%at_middle + merge(-taken(k)/k**2, 1.0_rk, is_little) &
+                          *3.0_rk/(n*v**4*(k**2 + taken(k)))
          self%to_side = self%to_side + unlike_layers(k)/v**4
       end do
       associate (d => min(1.0_rk, max(tiny(1.0_rk), self%between)))
@@ -73,6 +82,15 @@ contains
       end associate
 
    contains
+
+      !> 1/cell - 1/k^2 for cell = 4 sin^2(k/2).
+      pure real(rk) function excess(k, cell)
+         real(rk), intent(in) :: k, cell
+         real(rk), parameter :: small = 0.1_rk
+
+         excess = 1.0_rk/12.0_rk + k**2/240.0_rk + k**4/6048.0_rk + k**6/172800.0_rk
+         if (k > small) excess = 1.0_rk/cell - 1.0_rk/k**2
+      end function excess
 
       !> What the pressure next to a side has for k.
       pure real(rk) function unlike_layers(k)

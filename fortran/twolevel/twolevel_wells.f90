@@ -83,7 +83,7 @@ contains
       !> (fracture cells, wells) pressure at the well above that in its cells, over the loss of its
       !! flow in half of each of them [-]
       real(rk), allocatable, intent(out) :: path(:, :)
-      real(rk), parameter :: next_to_joint = 1.0_rk - 1.0e-6_rk  ! its cell has a share
+      real(rk), parameter :: next_to_joint = 1.0_rk - 1.0e-9_rk  ! its cell has a share
       real(rk) :: offset, t
       integer(ik) :: cell, end, joint, next, w
 
