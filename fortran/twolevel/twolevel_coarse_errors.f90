@@ -4,8 +4,8 @@
 !!   - The error of the edge follows from a comparison with the whole body as one window for all
 !!     tips, which takes nothing on its edge: the difference of K, and the error of K there, which
 !!     is that of its elements alone. No factor of safety is therefore needed. The comparison costs
-!!     about as much as the windows, and is repeated where tips have moved or K has changed and their
-!!     growth could not be judged without it.
+!!     about as much as the windows, and is repeated where tips have moved or K has changed and
+!!     their growth could not be judged without it.
 !!   - The rock's pressure is linear in each cell. A quarter of the change of K with the pressures
 !!     of the cells' middles counts as error: slip changes the pressure of the rock around a tip,
 !!     and layers that are thinner than a cell appear there. At a fast well (C2 at 1e-6 m2/s, cells
