@@ -10,7 +10,7 @@ program test_twolevel_wells
    use twolevel_wells, only: place_wells, share_wells, transfer_shares
    implicit none(type, external)
 
-   real(rk), parameter :: nearly = 1.0e-6_rk  !< share of the cell at a joint
+   real(rk), parameter :: nearly = 1.0e-9_rk  !< share of the cell at a joint
    type(checks_t) :: checks
    type(fracture_mesh_t) :: fracture
    type(injection_t) :: wells(5)
