@@ -262,7 +262,7 @@ contains
    pure real(rk) function error_of_largest(fracture, values, errors) result(error)
       type(fracture_mesh_t), intent(in) :: fracture
       real(rk), intent(in) :: values(:), errors(:)  !< (cells)
-      real(rk) :: beside(2), height(size(values))
+      real(rk) :: around(2), height(size(values))
       integer(ik) :: at, k, next
 
       at = maxloc(values, dim=1, kind=ik)
@@ -273,13 +273,13 @@ contains
       end if
       height = unevenness(fracture, values)
       if (.not. height(at) > 0.0_rk) return
-      beside = values(at)
+      around = values(at)
       do k = 1, 2
          next = at + 2*k - 3
          if (next < 1 .or. next > fracture%n_cells) cycle
-         if (fracture%cell_fracture(next) == fracture%cell_fracture(at)) beside(k) = values(next)
+         if (fracture%cell_fracture(next) == fracture%cell_fracture(at)) around(k) = values(next)
       end do
-      associate (apart => min(0.5_rk, abs(beside(2) - beside(1))/(4.0_rk*height(at))))
+      associate (apart => min(0.5_rk, abs(around(2) - around(1))/(4.0_rk*height(at))))
          error = error + height(at)*apart**2
       end associate
    end function error_of_largest
