@@ -19,8 +19,10 @@ constexpr double largest_ratio = 3.0;
 // It may turn by up to this [rad].
 constexpr double largest_turn = 0.3;
 
-// Cells may get smaller angles than they have, down to this one [rad].
+// Cells may get smaller angles than they have, down to this one [rad], and those that have smaller
+// ones keep this share of its sine.
 constexpr double fair_angle = 0.3;
+constexpr double kept_shape = 0.9;
 
 // Displacements are as good as this share of the largest.
 constexpr double precision = 1e-3;
@@ -235,7 +237,7 @@ private:
                 return sine_of_smallest_angle(xy[cell[0]], xy[cell[1]], xy[cell[2]]);
             };
             const double now = shape(made_.plane.xy);
-            if (!(now >= fair) && !(now >= shape(old_.xy)))
+            if (!(now >= fair) && !(now >= kept_shape * shape(old_.xy)))
                 throw MeshError("cells would have a bad shape");
         }
     }

@@ -140,6 +140,29 @@ void only_within_reach(Checks& checks) {
                    std::to_string(n_moved) + " nodes have moved");
 }
 
+// A short piece between long ones makes cells of bad shape. They hardly change where the tip ahead of
+// them moves, and do not hold it.
+void past_bad_shapes(Checks& checks) {
+    const auto network = [](double share) {
+        return TestNetwork(
+            {{{0.1, 0.25}, {0.3, 0.25}, {0.3004, 0.2503}, {0.3004 + share, 0.2503}}});
+    };
+    cm_spec spec = rectangle_spec(0.6, 0.5, 0.03, 0.1);
+    spec.is_window = 1;
+    spec.rosette_sectors = 12;
+    spec.rosette_radius = 0.02;
+    ApiMesh made;
+    checks.is_true(made.create(spec, network(0.05)), made.error);
+    checks.is_true(made.smallest_angle() < 5.0,
+                   "bad shapes: " + std::to_string(made.smallest_angle()) + " degrees");
+    for (double share : {0.045, 0.0501, 0.055}) {
+        ApiMesh moved;
+        checks.is_true(moved.move_tips(made, network(share)), moved.error);
+        checks.is_true(moved.all_positive() && moved.smallest_angle() > 0.9 * made.smallest_angle(),
+                       "bad shapes stay");
+    }
+}
+
 void refusals(Checks& checks) {
     Window window(1.0);
     ApiMesh made, moved;
@@ -172,6 +195,7 @@ int main() {
     Checks checks;
     along_and_about(checks);
     only_within_reach(checks);
+    past_bad_shapes(checks);
     refusals(checks);
     return checks.finish();
 }

@@ -10,13 +10,12 @@
 !! six of each per fracture cell (condensed_layout_t), jumps and forces in n, tau of the cell.
 !!
 !! Cells that stick without a jump may be held (coarse_held_cells): their jumps are no unknowns, and
-!! S and g have zeros instead.
+!! g and S q have zeros instead.
 !!
 !! For many fracture cells S is not formed: its size grows with the square of their number, and the
 !! cost of its elimination with the cube. The rock is then factorized without its fractures, and S q
 !! costs one solution with these factors (coarse_coupling).
 module coarse_condensed
-   use algebra_lapack, only: symmetric_product
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
@@ -24,6 +23,7 @@ module coarse_condensed
    use coarse_factors, only: coarse_factors_t
    use coarse_layout, only: condensed_layout_t
    use coarse_matrix, only: matrix_t
+   use coarse_stiffness, only: new_stiffness, stiffness_t
    use mesh_types, only: mesh_t
    implicit none(type, external)
    private
@@ -35,14 +35,12 @@ module coarse_condensed
       real(rk) :: dt = -1.0_rk  !< the factorized time step [s]; negative: none
       integer(ik) :: factorizations = 0  !< number so far; identifies factors
       logical :: is_full = .true.  !< S is formed; to be chosen before the first factorization
-      !> S (6 n, 6 n) for q in [m], [Pa] and forces in [N/m], volumes in [m2]; none unless full
-      real(rk), allocatable :: stiffness(:, :)
+      type(stiffness_t) :: stiffness  !< S, with springs; if full
       type(coupling_t) :: coupling  !< of the fractures with the rest; unless full
       !> (3 n_cells) response of the cells to the last q; unless full [m], [m], [Pa]
       real(rk), allocatable :: rock(:)
       !> (6 n) diagonal of S as far as it is known, else huge; unless full
       real(rk), allocatable :: diagonal(:)
-      real(rk), allocatable :: body(:)  !< (6 n) its diagonal without springs [Pa]; if full
       real(rk), allocatable :: spring(:)  !< (6 n) springs, added to the diagonal [Pa]
       real(rk), allocatable :: normal(:, :)  !< (2, n) from side + to side - [-]
       real(rk), allocatable :: length(:)  !< (n) [m]
@@ -116,6 +114,7 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
       integer(ik), allocatable :: fixed(:)
+      real(rk), allocatable :: schur(:, :)
       integer(ik) :: cell, end
 
       self%dt = -1.0_rk
@@ -131,10 +130,16 @@ contains
       if (self%is_full) then
          fixed = pack([((2*cell - 2 + end, end=1, 2), cell=1, self%n)], &
                       [((self%holds(cell), end=1, 2), cell=1, self%n)])
-         call self%factors%factorize(matrix, dt, error, self%stiffness, matrix%n_cells + fixed)
+         call self%factors%factorize(matrix, dt, error, schur, matrix%n_cells + fixed)
          if (allocated(error)) return
          if (allocated(self%held) .and. .not. self%factors%by_fronts) deallocate (self%held)
-         call find_stiffness(self)
+         associate (factors => self%factors, layout => self%layout)
+            call new_stiffness(schur, factors%kept, factors%scale(factors%at_fractures:), &
+                               self%stiffness)
+            call self%stiffness%turn([((layout%at_jump(cell, end), end=1, 2), cell=1, self%n)], &
+                                     self%normal(:, [((cell, end=1, 2), cell=1, self%n)]))
+            self%spring = spread(0.0_rk, 1, layout%count())
+         end associate
       else
          call self%factors%factorize(matrix, dt, error)
          if (allocated(error)) return
@@ -213,7 +218,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (self%is_full) then
-         force = symmetric_product(self%stiffness, q)
+         force = self%stiffness%product(q)
       else
          if (.not. allocated(self%rock)) allocate (self%rock(self%coupling%n_bulk))
          call self%coupling%bulk_load(q, self%rock)
@@ -271,7 +276,7 @@ contains
       integer(ik) :: i
 
       if (self%is_full) then
-         slope = [(self%stiffness(at(i), at(i)), i=1, size(at))]
+         slope = self%stiffness%diagonal(at)
       else
          missing = pack(at,.not. self%diagonal(at) < huge(1.0_rk))
          call find_diagonal(self, missing, error)
@@ -329,43 +334,12 @@ contains
       end associate
    end subroutine solve_rock
 
-   !> S, in its units and in the fractures' own directions.
-   subroutine find_stiffness(self)
-      class(condensed_t), intent(inout) :: self
-      integer(ik) :: at, cell, end, i
-      real(rk), allocatable :: first(:)
-
-      associate (s => self%factors%scale(self%factors%at_fractures:), stiffness => self%stiffness)
-         do i = 1, size(s)
-            stiffness(:, i) = stiffness(:, i)/(s*s(i))
-            call turn(self, stiffness(:, i))
-         end do
-         do cell = 1, self%n
-            associate (n => self%normal(:, cell))
-               do end = 1, 2
-                  at = self%layout%at_jump(cell, end)
-                  first = stiffness(:, at)
-                  stiffness(:, at) = n(1)*first + n(2)*stiffness(:, at + 1)
-                  stiffness(:, at + 1) = n(2)*first - n(1)*stiffness(:, at + 1)
-               end do
-            end associate
-         end do
-      end associate
-      self%spring = spread(0.0_rk, 1, self%layout%count())
-      self%body = [(self%stiffness(i, i), i=1, size(self%spring))]
-   end subroutine find_stiffness
-
    !> Replace the springs on the unknowns of q.
    pure subroutine support(self, spring)
       class(condensed_t), intent(inout) :: self
       real(rk), intent(in) :: spring(:)  !< (6 n) [Pa]
-      integer(ik) :: i
 
-      if (self%is_full) then
-         do i = 1, size(spring, kind=ik)
-            self%stiffness(i, i) = self%body(i) + spring(i)
-         end do
-      end if
+      if (self%is_full) call self%stiffness%support(spring)
       self%spring = spring
    end subroutine support
 

@@ -78,8 +78,8 @@ contains
       type(matrix_t), intent(in) :: matrix
       real(rk), intent(in) :: dt  !< [s]
       type(error_t), allocatable, intent(out) :: error
-      !> Scaled matrix condensed onto the unknowns of the fractures, zero for fixed ones. Absent:
-      !! the cells alone are factorized.
+      !> Scaled matrix condensed onto the unknowns of the fractures that are kept. Absent: the cells
+      !! alone are factorized.
       real(rk), allocatable, intent(inout), optional :: schur(:, :)
       !> Blocks with jumps that are zero, at the first call. By MUMPS none are fixed.
       integer(ik), intent(in), optional :: fixed(:)
@@ -226,7 +226,6 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable, intent(inout) :: schur(:, :)
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: of_kept(:, :)
       integer(ik), allocatable :: place(:)
       integer(ik) :: i, n
 
@@ -244,18 +243,8 @@ contains
       self%rows%dt = dt
       call self%fronts%factorize(self%rows, error)
       if (.not. allocated(error)) then
-         call self%fronts%get_schur(of_kept)
-         call check_factors(self, of_kept, error)
-         if (size(self%rows%fixed) == 0) then
-            call move_alloc(of_kept, schur)
-         else
-            if (allocated(schur)) deallocate (schur)
-            n = 3*n - self%at_fractures + 1
-            allocate (schur(n, n), source=0.0_rk)
-            do i = 1, size(self%kept, kind=ik)
-               schur(self%kept, self%kept(i)) = of_kept(:, i)
-            end do
-         end if
+         call self%fronts%get_schur(schur)
+         call check_factors(self, schur, error)
       end if
       nullify (self%rows%matrix, self%rows%scale)
    end subroutine factorize_by_fronts

@@ -258,8 +258,14 @@ contains
          do m = 1, size(slopes%force, 1)
             if (slopes%force(m, row) == 0) cycle
             if (condensed%is_full) then
-               slope(slopes%x_of_q) = slope(slopes%x_of_q) + slopes%weight(m, row) &
-                                      *slopes%q_per_x*condensed%stiffness(:, slopes%force(m, row))
+               associate (stiffness => condensed%stiffness, force => slopes%force(m, row))
+                  if (stiffness%place(force) == 0) cycle
+                  associate (x => slopes%x_of_q(stiffness%kept), &
+                             per_x => slopes%q_per_x(stiffness%kept))
+                     slope(x) = slope(x) + slopes%weight(m, row)*per_x &
+                                *stiffness%entry(:, stiffness%place(force))
+                  end associate
+               end associate
             else
                total = total + abs(slopes%weight(m, row)) &
                        *condensed%coupling%sizes(condensed%rock, self%q, slopes%force(m, row))

@@ -9,10 +9,10 @@
 !! the complete equations.
 module coarse_full_step
    use algebra_blocks, only: is_in_team
-   use algebra_lapack, only: symmetric_product
    use algebra_links, only: links_t, new_links
    use base_kinds, only: ik, rk
    use coarse_slopes, only: slopes_t
+   use coarse_stiffness, only: stiffness_t
    use contact_dense, only: factorize_full, solve_factorized
    use contact_newton, only: step_quality_t
    implicit none(type, external)
@@ -54,8 +54,7 @@ contains
    !! there are many unknowns and the step can be improved until it satisfies all equations.
    subroutine find_full_step(stiffness, slopes, kinds, residual, stress_scale, with_condition, &
                              step, quality)
-      !> S of coarse_condensed, symmetric [Pa]
-      real(rk), intent(in), contiguous :: stiffness(:, :)
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(inout) :: slopes  !< numbered by row afterwards
       type(kinds_t), intent(in) :: kinds
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
@@ -85,7 +84,7 @@ contains
    !> Factorize the equations that remain after elimination of the links.
    subroutine reduce(stiffness, slopes, kinds, with_faces, residual, with_condition, reduced, &
                      quality)
-      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       type(kinds_t), intent(in) :: kinds
       logical, intent(in) :: with_faces  !< whose links are not exact
@@ -119,7 +118,7 @@ contains
 
    !> Eliminate the links from the remaining equations.
    subroutine reduce_blocks(stiffness, slopes, reduced)
-      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       type(reduced_t), intent(inout) :: reduced
       integer(ik), parameter :: block = 64  ! equations reduced together
@@ -137,7 +136,7 @@ contains
 
    !> Eliminate the links from some of the remaining equations.
    pure subroutine reduce_block(stiffness, slopes, counts, first, last, reduced)
-      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       logical, intent(in) :: counts(:)  !< (n) unknowns that are left, or have a value, or partners
       integer(ik), intent(in) :: first, last
@@ -162,7 +161,7 @@ contains
 
    !> Improve a step with approximate links until it satisfies the complete equations.
    subroutine improve(stiffness, slopes, residual, reduced, step, worst, is_good)
-      real(rk), intent(in), contiguous :: stiffness(:, :)  !< [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       real(rk), intent(in) :: residual(:)  !< (n) before the step [Pa]
       type(reduced_t), intent(inout) :: reduced
@@ -197,15 +196,14 @@ contains
          real(rk), intent(in) :: x(:)  !< [Pa]
          real(rk) :: answer(size(x))  !< [Pa]
 
-         call slopes%apply(x, symmetric_product(stiffness, x(slopes%x_of_q)*slopes%q_per_x), &
-                           answer)
+         call slopes%apply(x, stiffness%product(x(slopes%x_of_q)*slopes%q_per_x), answer)
       end function matrix_product
 
    end subroutine improve
 
    !> Find the links: faces first, then, exactly, pressures of the fluid, then jumps.
    subroutine find_links(stiffness, slopes, kinds, with_faces, links, n_faces)
-      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       type(kinds_t), intent(in) :: kinds
       logical, intent(in) :: with_faces  !< whose links are not exact
@@ -249,7 +247,7 @@ contains
 
    !> Whether the volume that leaves through a face is negligible in the equation of its pressure.
    pure logical function is_little(stiffness, slopes, face)
-      real(rk), intent(in) :: stiffness(:, :)  !< [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: face
       real(rk) :: by_itself
@@ -264,7 +262,7 @@ contains
          end associate
       end do
       associate (force => slopes%force(1, face))
-         is_little = abs(slopes%weight(1, face)*stiffness(force, force)) < little*abs(by_itself)
+         is_little = abs(slopes%weight(1, face)*stiffness%diagonal(force)) < little*abs(by_itself)
       end associate
    end function is_little
 
@@ -327,27 +325,31 @@ contains
 
    !> All derivatives of equations by the unknowns that count; 0 by the others.
    pure subroutine fill_rows(stiffness, slopes, equations, counts, rows)
-      real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       integer(ik), intent(in) :: equations(:)
       logical, intent(in) :: counts(:)  !< (n)
       real(rk), intent(out) :: rows(:, :)  !< (equations, n) [-]
-      integer(ik) :: force(size(equations), size(slopes%force, 1)), k, m, q
+      integer(ik) :: force(size(equations), size(slopes%force, 1)), k, m, q  ! rows of S
       real(rk) :: weight(size(equations), size(slopes%force, 1))
 
       rows = 0.0_rk
       force = transpose(slopes%force(:, equations))
       weight = transpose(slopes%weight(:, equations))
+      do m = 1, size(force, 2)
+         where (force(:, m) > 0) force(:, m) = stiffness%place(max(force(:, m), 1_ik))
+      end do
       where (force == 0)
          force = 1  ! any, without weight
          weight = 0.0_rk
       end where
-      do q = 1, size(slopes%x_of_q, kind=ik)
-         associate (column => rows(:, slopes%x_of_q(q)), factor => slopes%q_per_x(q))
-            if (.not. counts(slopes%x_of_q(q))) cycle
+      do q = 1, size(stiffness%kept, kind=ik)
+         associate (x => slopes%x_of_q(stiffness%kept(q)), &
+                    factor => slopes%q_per_x(stiffness%kept(q)))
+            if (.not. counts(x)) cycle
             do m = 1, size(force, 2)
                do k = 1, size(force, 1)
-                  column(k) = column(k) + weight(k, m)*factor*stiffness(q, force(k, m))
+                  rows(k, x) = rows(k, x) + weight(k, m)*factor*stiffness%entry(q, force(k, m))
                end do
             end do
          end associate
@@ -363,7 +365,7 @@ contains
 
    !> All derivatives as a full matrix.
    pure subroutine full_slopes(stiffness, slopes, jacobian)
-      real(rk), intent(in) :: stiffness(:, :)  !< S of coarse_condensed, symmetric [Pa]
+      type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(inout) :: slopes  !< numbered by row afterwards
       real(rk), allocatable, intent(out) :: jacobian(:, :)  !< (n, n) an equation per column [-]
       integer(ik) :: i

@@ -131,7 +131,7 @@ contains
          rhs = some_load(matrix, steps(k))
          call condensed%condense(rhs, g, error)
          call checks%no_error(error, "condensation")
-         stiffness = condensed%stiffness
+         stiffness = condensed%stiffness%entry
          call checks%is_close(maxval(abs(stiffness - transpose(stiffness))), 0.0_rk, &
                               1.0e-12_rk*maxval(abs(stiffness)), &
                               "the condensed matrix is symmetric")

@@ -5,6 +5,7 @@ program test_coarse_full_step
    use base_kinds, only: ik, rk
    use coarse_full_step, only: find_full_step, full_slopes, kinds_t
    use coarse_slopes, only: slopes_t
+   use coarse_stiffness, only: new_stiffness, stiffness_t
    use contact_newton, only: step_quality_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -30,14 +31,17 @@ contains
       type(kinds_t) :: kinds
       type(step_quality_t) :: quality
       real(rk), allocatable :: jacobian(:, :)
-      real(rk) :: residual(n), step(n), stiffness(2, 2)
+      real(rk) :: residual(n), step(n)
+      real(rk), allocatable :: matrix(:, :)
+      type(stiffness_t) :: stiffness
       integer(ik) :: i
 
-      stiffness = -volume*reshape([1.0_rk, 0.3_rk, 0.3_rk, 1.0_rk], [2, 2])
+      matrix = -volume*reshape([1.0_rk, 0.3_rk, 0.3_rk, 1.0_rk], [2, 2])
       if (present(by_other)) then
-         stiffness(1, 2) = volume*by_other
-         stiffness(2, 1) = volume*by_other
+         matrix(1, 2) = volume*by_other
+         matrix(2, 1) = volume*by_other
       end if
+      call new_stiffness(matrix, [1_ik, 2_ik], [1.0_rk, 1.0_rk], stiffness)
       slopes%x_of_q = [1_ik, 2_ik]
       slopes%q_per_x = [1.0_rk, 1.0_rk]
       call slopes%clear(n)
