@@ -140,8 +140,8 @@ void only_within_reach(Checks& checks) {
                    std::to_string(n_moved) + " nodes have moved");
 }
 
-// A short piece between long ones makes cells of bad shape. They hardly change where the tip ahead of
-// them moves, and do not hold it.
+// A short piece between long ones makes cells of bad shape. They hardly change where the tip ahead
+// of them moves, and do not hold it.
 void past_bad_shapes(Checks& checks) {
     const auto network = [](double share) {
         return TestNetwork(

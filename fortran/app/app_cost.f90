@@ -1,7 +1,8 @@
 !> The estimated cost of a run: its steps and CPU time on one thread. The coefficients are fitted to
 !! the scenes of inputs (docs/howto_stress.md has predicted and measured values), within a factor
 !! of two for scenes like them. How far fractures grow is not known before: without a fluid their
-!! growth is taken to cross half of the body, with one to double the number of steps of a stage.
+!! growth is taken to cross half of the body, with one to double the number of steps of a stage. In
+!! networks few tips grow, those that the fluid reaches; which ones is not known either.
 module app_cost
    use app_size, only: estimate_t, size_of_scene
    use base_kinds, only: ik, rk
@@ -18,6 +19,7 @@ module app_cost
       real(rk) :: increments = 0.0_rk  !< of growth, which are steps without a fluid
       real(rk) :: cells = 0.0_rk  !< at the beginning
       real(rk) :: seconds = 0.0_rk  !< [s]
+      real(rk) :: factor = 2.0_rk  !< the time is known within this factor, as a rule [-]
    end type cost_t
 
    ! Chosen steps: they begin small after each switch of a well.
@@ -26,6 +28,8 @@ module app_cost
    ! With a fluid, per step [s]
    real(rk), parameter :: per_cell = 4.0e-6_rk, per_fracture_cell = 1.3e-4_rk
    real(rk), parameter :: per_tip = 1.5e-3_rk, per_cell_and_growing_tip = 1.1e-5_rk
+   real(rk), parameter :: tips_that_grow = 4.0_rk  !< at most [-]
+   real(rk), parameter :: factor_of_networks = 4.0_rk  !< cost_t%factor with more of them [-]
    ! Without a fluid [s]
    real(rk), parameter :: per_first_cell = 9.5e-5_rk  !< mesh and stated errors, once
    real(rk), parameter :: per_element = 5.0e-6_rk, per_element_and_tip = 1.8e-6_rk
@@ -56,7 +60,9 @@ contains
          cost%seconds = cost%steps*(per_cell*size_of%cells &
                                     + per_fracture_cell*size_of%fracture_cells)
          if (scene%growth%enabled) then
-            cost%seconds = cost%seconds + cost%steps*tips*per_cell_and_growing_tip*size_of%cells
+            cost%seconds = cost%seconds + cost%steps*min(tips, tips_that_grow) &
+                           *per_cell_and_growing_tip*size_of%cells
+            if (tips > tips_that_grow) cost%factor = factor_of_networks
          else if (scene%growth%intensities) then
             cost%seconds = cost%seconds + cost%steps*tips*per_tip
          end if

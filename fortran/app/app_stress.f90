@@ -87,6 +87,7 @@ contains
       call json%add("increments", nint(cost%increments, ik))
       call json%add("cells", nint(cost%cells, ik))
       call json%add("cpu_s", cost%seconds)
+      call json%add("factor", cost%factor)
       call json%end_object()
       associate (doubts => doubts_of_scene(scene))
          call json%begin_array("warnings")

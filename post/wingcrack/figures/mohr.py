@@ -68,7 +68,7 @@ def table(found: dict[str, Any]) -> Iterator[str]:
     cost = found["cost"]
     yield (
         f"cost:         about {cost['steps']} steps, {cost['cells']} cells at the start and"
-        f" {_duration(cost['cpu_s'])} of CPU time, within a factor of two as a rule"
+        f" {_duration(cost['cpu_s'])} of CPU time, within a factor of {cost['factor']:g} as a rule"
     )
     for warning in found["warnings"]:
         yield f"warning:      {warning}"
