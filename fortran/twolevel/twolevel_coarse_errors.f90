@@ -25,29 +25,18 @@
 !! An error that no window refinement can reduce and that decreases with time does not prevent
 !! growth (report_watch): the error is stated, with a warning. Errors of the coarse level in the
 !! pressure of the fractures are not included.
-!!
-!! Layers of fluid pressure thinner than a coarse cell: windows take the rock's own pressure
-!! (coarse_own_pressure). Within sqrt(c t) of the faces the pressure is that of the fluid. Where
-!! this distance is less than a cell there are two effects (docs/theory.md):
-!!   - the tip is drained where the surrounding rock is not. K of the window is too large by up to a
-!!     fifth of 1 - F times K, F = (1 - nu_u)/(1 - nu). K_II of the body as one window exceeds the
-!!     exact one, sqrt(F) times that of undrained rock, by a part of this that does not depend on
-!!     the size of the cells. The corrected K_II is without it (drained_excess);
-!!   - the layer presses the faces together. Where the coarse level has the layer K_I contains this
-!!     (twolevel_back_stress). Where it does not, the stated error does: a difference dp between
-!!     fluid and rock since the time t lowers K_I by
-!!     (1 + F)/2 sqrt(2) eta/Gamma(5/4) dp (c t)^(1/4), eta = alpha G/(lambda + 2 G).
 module twolevel_coarse_errors
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
    use base_timers, only: phase_tips, timers_t
-   use coarse_rock, only: rock_t
    use coarse_state, only: state_t
    use growth_front, only: front_state_t
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t, mesh_t
+   use mesh_types, only: fracture_mesh_t
+  use twolevel_body_comparison, only: admissible_change, compare_tip, is_new, keep_comparison, shown
    use twolevel_correction, only: improve
+   use twolevel_drained_tips, only: drained_excess, layer_at_tip, layer_t, thin_layer_errors
    use twolevel_problem, only: coarse_problem_t
    use report_limits, only: judge, limit_k_to_grow, verdict_fine
    use report_watch, only: uncertainty
@@ -58,121 +47,17 @@ module twolevel_coarse_errors
    implicit none(type, external)
    private
 
-   public :: drained_excess, estimate_coarse_errors, keep_body, layer_at_tip, layer_t
-   public :: thin_layer_errors
-
-   !> Data of the layer at the end of a fracture.
-   type :: layer_t
-      real(rk) :: cell = 0.0_rk  !< length of the coarse fracture cell at the tip [m]
-      real(rk) :: diffusivity = 0.0_rk  !< c [m2/s]
-      real(rk) :: drained_tip = 1.0_rk  !< F = (1 - nu_u)/(1 - nu) [-]
-      real(rk) :: eta = 0.0_rk  !< poroelastic stress coefficient [-]
-      !> pressure of the fluid minus the rock's own pressure at the faces [Pa]
-      real(rk) :: jump = 0.0_rk
-      logical :: is_known = .false.  !< the coarse level has the layer (coarse_layers)
-   end type layer_t
+   public :: estimate_coarse_errors
 
    !> stated error, over the difference in the comparisons [-]
    real(rk), parameter :: safety = 1.8_rk
    !> weight of the comparison with linear interpolation [-]
    real(rk), parameter :: share_of_order = 0.5_rk
    real(rk), parameter :: share_of_pressure = 0.25_rk  !< weight of the comparison of pressures [-]
-   !> Error of K at a drained tip in undrained rock, over 1 - F times K, and of K_I of layers, over
-   !! itself: verification/sudden_pressure [-].
-   real(rk), parameter :: share_of_drained_tip = 0.2_rk, share_of_layer = 0.15_rk
-   !> Excess of K_II of the body as one window, over 1 - F times K_II, and how it falls with
-   !! x = sqrt(c t) over the cell: 1/(1 + 2.5 x + 4 x**2). Within 0.03 in 13 bodies with other
-   !! directions, rocks and cells [-].
-   real(rk), parameter :: excess_of_drained = 0.16_rk, falls(2) = [2.5_rk, 4.0_rk]
-
-   !> Relative change of the intensities within which the last comparison with the body still
-   !! applies [-].
-   real(rk), parameter :: like_before = 0.05_rk
-
-   !> Change of the difference between window and body while the last comparison applies, over K:
-   !! where the tip has not moved and where it has, over the relative change of K, and at most.
-   !! With the difference before it is not exceeded in 97 % of 4,000 states of tips near their
-   !! toughness and in 98 % of 3,500 others (D1, D4, four networks of 30 fractures, of which three
-   !! were drawn afterwards) [-].
-   real(rk), parameter :: of_still = 0.002_rk, of_moved = 0.01_rk, of_change = 0.2_rk, &
-                          of_all = 0.03_rk
-
 contains
 
-   !> Layer at an end of a fracture; without effect if the fracture has no cells.
-   pure function layer_at_tip(mesh, rock, state, own_pressure, fracture, end) result(layer)
-      type(mesh_t), intent(in) :: mesh  !< coarse
-      type(rock_t), intent(in) :: rock
-      type(state_t), intent(in) :: state
-      real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) pressure of the rock [Pa]
-      integer(ik), intent(in) :: fracture  !< number of the fracture in the network
-      integer(ik), intent(in) :: end  !< 1: start of the polyline, 2: its end
-      type(layer_t) :: layer
-      integer(ik) :: at, cell, i, side
-      real(rk) :: stiffness, undrained
-
-      associate (here => mesh%fracture)
-         if (end == 1) then
-            at = minloc(here%cell_s(1, :), dim=1, mask=here%cell_fracture == fracture)
-         else
-            at = maxloc(here%cell_s(2, :), dim=1, mask=here%cell_fracture == fracture)
-         end if
-         if (at == 0) return
-         layer%cell = here%cell_s(2, at) - here%cell_s(1, at)
-         if (mesh%n_layers > 0) layer%is_known = any(mesh%face_layer(here%cell_faces(:, at)) > 0)
-         cell = mesh%face_cells(1, here%cell_faces(1, at))
-         layer%jump = state%pressure(at) &
-           - 0.25_rk*sum([(own_pressure(mesh%face_nodes(:, here%cell_faces(side, at))), side=1, 2)])
-      end associate
-      i = min(cell, size(rock%shear, kind=ik))
-      associate (g => rock%shear(i), lame => rock%lame(i), biot => rock%biot(i), &
-                 storage => rock%storage(i))
-         stiffness = lame + 2.0_rk*g
-         undrained = lame + biot**2/storage
-         layer%diffusivity = rock%mobility_at(cell)/(storage + biot**2/stiffness)
-         layer%drained_tip = (undrained + 2.0_rk*g)/(undrained + g)*(lame + g)/stiffness
-         layer%eta = biot*g/stiffness
-      end associate
-   end function layer_at_tip
-
-   !> Possible errors of K_I and K_II by layers that the cells do not resolve [Pa m^1/2].
-   pure function thin_layer_errors(layer, k, is_closed, age, back_stress) result(errors)
-      type(layer_t), intent(in) :: layer
-      real(rk), intent(in) :: k(2)  !< K_I, K_II [Pa m^1/2]
-      logical, intent(in) :: is_closed  !< the faces touch at the tip: K_I = 0
-      real(rk), intent(in) :: age  !< age of the layer [s]
-      !> K_I of the layers, which is known where the coarse level has them [Pa m^1/2]
-      real(rk), intent(in) :: back_stress
-      real(rk) :: errors(2)
-      real(rk) :: factor, unresolved
-
-      errors = 0.0_rk
-      if (.not. layer%cell > 0.0_rk) return
-      unresolved = 1.0_rk/(1.0_rk + 4.0_rk*layer%diffusivity*age/layer%cell**2)
-      errors = share_of_drained_tip*(1.0_rk - layer%drained_tip)*abs(k)*unresolved
-      if (layer%is_known) then
-         errors(1) = errors(1) + share_of_layer*abs(back_stress)
-      else
-         factor = 0.5_rk*(1.0_rk + layer%drained_tip)*sqrt(2.0_rk)*layer%eta/gamma(1.25_rk)
-         errors(1) = errors(1) + factor*abs(layer%jump)*unresolved &
-                     *min(layer%diffusivity*age, layer%cell**2)**0.25_rk
-      end if
-      if (is_closed) errors(1) = 0.0_rk
-   end function thin_layer_errors
-
-   !> Relative excess of K_II of the body as one window by a drained tip [-].
-   pure real(rk) function drained_excess(layer, age) result(excess)
-      type(layer_t), intent(in) :: layer
-      real(rk), intent(in) :: age  !< [s]
-      real(rk) :: x
-
-      excess = 0.0_rk
-      if (.not. layer%cell > 0.0_rk) return
-      x = sqrt(layer%diffusivity*age)/layer%cell
-      excess = excess_of_drained*(1.0_rk - layer%drained_tip)/(1.0_rk + x*(falls(1) + x*falls(2)))
-   end function drained_excess
-
-   !> The same of a tip in a state; none in an undrained response.
+   !> Relative excess of K_II of the body as one window by a drained tip; none in an undrained
+   !! response.
    pure real(rk) function excess_at(self, tip) result(excess)
       class(two_levels_t), intent(in) :: self
       type(tip_t), intent(in) :: tip
@@ -281,84 +166,6 @@ contains
          is_due = judge(limit_k_to_grow, uncertainty(tip, self%rules%toughness)) /= verdict_fine
       end do
    end function is_due
-
-   !> Whether a tip has not been compared with the body in its present window.
-   pure logical function is_new(tip)
-      type(window_tip_t), intent(in) :: tip
-
-      is_new = .not. norm2(tip%compared) > 0.0_rk
-   end function is_new
-
-   !> Change of the intensities of a tip within which its last comparison with the body still
-   !! applies: more where the tip is below its toughness, as long as it cannot have reached it
-   !! [Pa m^1/2].
-   pure real(rk) function admissible_change(tip, seen, toughness) result(change)
-      type(tip_t), intent(in) :: tip
-      type(window_tip_t), intent(in) :: seen  !< the tip in its window
-      real(rk), intent(in) :: toughness  !< [Pa m^1/2]
-      real(rk), parameter :: far = 0.5_rk, small = 0.1_rk
-      real(rk) :: lack  ! of toughness, error included [-]
-
-      lack = -tip%excess(toughness) - tip%relative_error(toughness)
-      change = max(like_before, min(lack, 1.0_rk))*norm2(seen%compared)
-      if (lack < far) return
-      change = max(norm2(seen%compared), small*toughness*tip%drive%resistance)
-   end function admissible_change
-
-   !> Errors of a tip from its K in the whole body.
-   pure subroutine compare_tip(body, excess, tip)
-      type(window_tip_t), intent(in) :: body
-      real(rk), intent(in) :: excess  !< of K_II there [-]
-      type(window_tip_t), intent(inout) :: tip
-      real(rk) :: of_body(2), of_window(2)
-
-      of_body = [body%found%k1_error, body%found%k2_error]
-      of_window = [tip%found%k1_error, tip%found%k2_error]
-      tip%compared = [tip%found%k1, tip%found%k2]
-      tip%lacking = [body%found%k1, (1.0_rk - excess)*body%found%k2] - tip%compared
-      tip%uncertain = shown(tip%lacking, tip%found%closed)
-      tip%of_edge = maxval(tip%uncertain)
-      tip%of_elements = max(maxval(of_body), maxval(of_window))
-      tip%uncertain = tip%uncertain + max(0.0_rk, of_body - of_window)
-   end subroutine compare_tip
-
-   !> Compare a tip with its K in the body as it was found by the last comparison: its window is
-   !! another one in the same state. Without a comparison that applies there will be a new one.
-   pure subroutine keep_body(before, reference, tip)
-      type(window_tip_t), intent(in) :: before  !< the tip in its window before
-      type(window_tip_t), intent(in) :: reference  !< the tip in the body as one window
-      type(window_tip_t), intent(inout) :: tip
-      type(window_tip_t) :: body
-
-      associate (found => [before%found%k1, before%found%k2])
-         if (.not. norm2(found - before%compared) <= like_before*norm2(before%compared)) return
-         body%found = reference%found
-         body%found%k1 = found(1) + before%lacking(1)
-         body%found%k2 = found(2) + before%lacking(2)
-      end associate
-      call compare_tip(body, 0.0_rk, tip)
-   end subroutine keep_body
-
-   !> Errors of a tip from the last comparison with the whole body, larger where its intensities
-   !! have changed since.
-   pure subroutine keep_comparison(xy, tip)
-      real(rk), intent(in) :: xy(2)  !< its position [m]
-      type(window_tip_t), intent(inout) :: tip
-      real(rk) :: change, ratio
-
-      associate (found => [tip%found%k1, tip%found%k2], before => norm2(tip%compared))
-         if (is_new(tip)) then
-            tip%uncertain = shown(found, tip%found%closed)
-         else
-            ratio = max(1.0_rk, norm2(found)/before)
-            change = merge(of_moved, of_still, norm2(xy - tip%compared_at) > 0.0_rk) &
-                     + of_change*norm2(found - tip%compared)/before
-            tip%uncertain = shown(ratio*tip%lacking, tip%found%closed) &
-                            + min(change, of_all)*shown(found, tip%found%closed)
-         end if
-      end associate
-      tip%of_elements = max(tip%found%k1_error, tip%found%k2_error)
-   end subroutine keep_comparison
 
    !> Compare the edges of the windows with more and less accurate ones.
    subroutine compare_edges(self, error)
@@ -492,16 +299,5 @@ contains
          if (holds_a_cell) return
       end do
    end function holds_a_cell
-
-   !> Errors of K_I and K_II from their differences. An error of one mode is an error of both: a
-   !! small difference of a single mode is chance, unless the contact law closes the tip.
-   pure function shown(difference, is_closed) result(error)
-      real(rk), intent(in) :: difference(2)  !< [Pa m^1/2]
-      logical, intent(in) :: is_closed
-      real(rk) :: error(2)  !< [Pa m^1/2]
-
-      error = norm2(difference)
-      if (is_closed) error(1) = abs(difference(1))
-   end function shown
 
 end module twolevel_coarse_errors

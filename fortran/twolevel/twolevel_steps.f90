@@ -9,7 +9,8 @@ submodule(twolevel_state) twolevel_steps
    use coarse_state, only: go_back
    use report_rows, only: event_step_cut, event_unstable
    use report_limits, only: limit_time_error
-   use twolevel_coarse_errors, only: estimate_coarse_errors, keep_body
+   use twolevel_body_comparison, only: keep_body
+   use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_equilibrium, only: accept_equilibrium, find_equilibrium, punctual
    use twolevel_stepping, only: refinement_t, trial_t
    use twolevel_heat, only: settle_heat, settlings_max

@@ -9,7 +9,7 @@ program test_twolevel_back_stress
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    use twolevel_back_stress, only: back_stress_of, weighted
-   use twolevel_coarse_errors, only: layer_at_tip, layer_t
+   use twolevel_drained_tips, only: layer_at_tip, layer_t
    use twolevel_state, only: two_levels_t
    use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)

@@ -8,7 +8,8 @@ program test_twolevel_coarse_errors
    use sample_scenes, only: add_fracture, evaluate_initial_state, squeezed_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
-   use twolevel_coarse_errors, only: estimate_coarse_errors, layer_at_tip, layer_t
+   use twolevel_coarse_errors, only: estimate_coarse_errors
+   use twolevel_drained_tips, only: layer_at_tip, layer_t
    use twolevel_faces, only: coarse_jumps
    use twolevel_state, only: two_levels_t
    implicit none(type, external)

@@ -2,7 +2,7 @@
 program test_twolevel_thin_layers
    use base_kinds, only: rk
    use testing_checks, only: checks_t
-   use twolevel_coarse_errors, only: drained_excess, layer_t, thin_layer_errors
+   use twolevel_drained_tips, only: drained_excess, layer_t, thin_layer_errors
    implicit none(type, external)
 
    type(checks_t) :: checks
