@@ -25,8 +25,11 @@ step() {
 ahead() {
     ahead_log=$root/build/ahead.log
     mkdir -p "$root/build"
+    set -m # a process group, which ends with this call
     "$@" >"$ahead_log" 2>&1 &
+    set +m
     ahead_process=$!
+    trap 'kill -- "-$ahead_process" 2>/dev/null' EXIT
 }
 
 # The status of the command in the background, and its output.
@@ -34,6 +37,7 @@ await() {
     local status
     wait "$ahead_process"
     status=$?
+    trap - EXIT
     cat "$ahead_log"
     return "$status"
 }

@@ -12,8 +12,8 @@ module scene_exchange
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: discretization_t, fluid_t, fracture_t, growth_t, injection_t, name_length, &
-                          scene_t
+   use scene_types, only: discretization_t, fluid_t, fracture_t, growth_t, injection_t, &
+                          name_length, scene_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
