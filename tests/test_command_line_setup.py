@@ -386,7 +386,7 @@ def test_a_failed_check_does_not_stop_the_others(own_tree: Tree) -> None:
     assert done.returncode == 1
     assert done.stdout.rindex("== pytest") > done.stdout.index("== fprettify")
     reason = done.stderr.splitlines()[-1]
-    for step in ("shellcheck", "fprettify", "ruff check", "mypy", "CTest, debug build", "pytest"):
+    for step in ("shellcheck", "fprettify", "ruff check", "mypy", "CTest and bench", "pytest"):
         assert step in reason
 
 

@@ -21,18 +21,14 @@ readonly linters=(
 
 # lint [NAME...]: all linters, or those that one of the names is part of.
 lint() {
-    local linter name words asked types_log=$root/build/mypy.log types=''
-    if (($# == 0)); then
-        # it takes one processor only, so it runs while the others do
-        mkdir -p "$root/build"
-        check_python_types >"$types_log" 2>&1 &
-        types=$!
-    fi
+    local linter name words asked
+    # on one processor, while the others run
+    if (($# == 0)); then ahead check_python_types; fi
     for linter in "${linters[@]}"; do
         name=${linter%%|*}
         read -ra words <<<"${linter#*|}"
-        if [[ $name == mypy && -n $types ]]; then
-            step "$name" await "$types" "$types_log"
+        if [[ $name == mypy ]] && (($# == 0)); then
+            step "$name" await
         elif (($# == 0)); then
             step "$name" "${words[@]}"
         fi
@@ -43,15 +39,6 @@ lint() {
             fi
         done
     done
-}
-
-# await PROCESS LOG: its status, and what it said.
-await() {
-    local status
-    wait "$1"
-    status=$?
-    cat "$2"
-    return "$status"
 }
 
 format_sources() {
@@ -98,7 +85,7 @@ format_cpp() {
 # Settings: .clang-tidy. The release build tells how each file is compiled.
 check_cpp() {
     with_lock configure release
-    find "${cpp_folders[@]}" -path '*/tests/*' -prune -o -name '*.cpp' -print0 |
+    find build/release/cpp_mesh fortran -name 'unity_*.cxx' -print0 -o -name '*.cpp' -print0 |
         xargs -0 -n 1 -P "$processors" "$venv_python" "$venv/bin/clang-tidy" --quiet -p build/release
 }
 

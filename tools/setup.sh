@@ -361,7 +361,8 @@ install_python() {
         logged "$system_python" -m venv --clear "$venv" ||
             fail_with_log 'making the Python environment .venv failed'
     fi
-    logged "$venv_python" -m pip install --no-input --disable-pip-version-check "${wanted[@]}" ||
+    # Python compiles a file when it is first imported; many never are.
+    logged "$venv_python" -m pip install --no-compile --no-input --disable-pip-version-check "${wanted[@]}" ||
         fail_with_log 'installing the Python packages failed'
     record_python || fail "$exit_environment" "$venv cannot be written"
     if [[ -n ${claim:-} ]]; then exec {claim}>&- && unset claim; fi

@@ -21,6 +21,27 @@ step() {
     printf -- '-- %s: %d s\n' "$name" "$((SECONDS - began))"
 }
 
+# ahead COMMAND...: start it in the background; the step `await` reports it.
+ahead() {
+    ahead_log=$root/build/ahead.log
+    mkdir -p "$root/build"
+    set -m # a process group, which ends with this call
+    "$@" >"$ahead_log" 2>&1 &
+    set +m
+    ahead_process=$!
+    trap 'kill -- "-$ahead_process" 2>/dev/null' EXIT
+}
+
+# The status of the command in the background, and its output.
+await() {
+    local status
+    wait "$ahead_process"
+    status=$?
+    trap - EXIT
+    cat "$ahead_log"
+    return "$status"
+}
+
 # What failed is the last line on stderr.
 end_steps() {
     if ((${#failed_steps[@]} == 0)); then return; fi

@@ -7,13 +7,26 @@ run_all_tests() {
     lint
     # The builds end the run when they fail: there is nothing to test then.
     with_lock build_both
-    step 'CTest, debug build' run_ctest debug
-    step 'CTest, release build' run_ctest release
-    step 'pytest' run_pytest --junitxml "$results/pytest.xml" --numprocesses "$processors" --dist loadfile --durations 25
-    # counts, which do not depend on what else the machine does
-    step 'bench, the short form' run_quick_bench
+    # One after another, while pytest runs: no processor waits for the last test of a step. Bench
+    # counts instructions, which do not depend on other processes.
+    ahead run_compiled_tests
+    step 'pytest' run_all_pytests
+    step 'CTest and bench' await
     step 'skipped tests' tell_skipped
     end_steps
+}
+
+run_compiled_tests() {
+    local status=0 preset
+    for preset in debug release; do run_ctest "$preset" || status=1; done
+    run_quick_bench || status=1
+    return "$status"
+}
+
+# Those of the whole program, which take longest, first.
+run_all_pytests() {
+    run_pytest --junitxml "$results/pytest.xml" --numprocesses "$processors" --dist loadfile \
+        --no-loadscope-reorder --durations 25 tests post/tests
 }
 
 # Both builds at once: at its end each has parts that wait for one large file.
@@ -71,7 +84,7 @@ tell_skipped() { "$venv_python" -I "$root/tools/skipped.py" "$results"; }
 
 # run_ctest PRESET ARGUMENT...
 run_ctest() {
-    ctest --preset "$1" -j "$processors" --output-junit "$results/CTest, $1 build.xml" "${@:2}"
+    ctest --preset "$1" --output-junit "$results/CTest, $1 build.xml" "${@:2}"
 }
 
 run_pytest() { "$venv_python" -P -m pytest "$@"; }

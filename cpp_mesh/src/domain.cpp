@@ -9,8 +9,6 @@ namespace cpp_mesh {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Corners sharper than this leave no room for cells of fair shape.
 constexpr double sharpest_corner = 3.0 * pi / 180.0;
 

@@ -8,6 +8,11 @@
 
 namespace cpp_mesh {
 
+constexpr double pi = 3.14159265358979323846;
+
+// Sizes and lengths that differ by this share are equal, whatever their rounding errors.
+constexpr double tie_margin = 1e-9;
+
 struct Vec2 {
     double x = 0.0;
     double y = 0.0;

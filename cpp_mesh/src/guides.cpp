@@ -7,8 +7,6 @@ namespace cpp_mesh {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Vertices where a line turns by more than this stay nodes [rad].
 constexpr double sharp_turn = 0.3;
 

@@ -6,8 +6,6 @@ namespace cpp_mesh {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Vertices added before the first vertex of the old polyline, or -1 if the old one is not part of
 // the new.
 int added_before(const Network& before, const Network& after, int f) {

@@ -8,8 +8,6 @@ namespace cpp_mesh {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Turns at the last kink by up to this leave room for the ring right next to the kink.
 constexpr double largest_turn = 75.0 * pi / 180.0;
 

@@ -14,9 +14,6 @@ constexpr double reach = 0.5;
 // How far outside a disc cells grow by its slope, in radii, before they grow faster.
 constexpr double near_part = 2.0;
 
-// Numbers this near to a tie are on one side of it whatever their rounding errors.
-constexpr double tie_margin = 1e-9;
-
 // The farthest point is looked for on a grid: sizes depend on it only weakly.
 constexpr int search_intervals = 32;
 

@@ -8,9 +8,6 @@ namespace cpp_mesh {
 
 namespace {
 
-// Lengths that differ by this share are the same.
-constexpr double tie_margin = 1e-9;
-
 // Arc lengths of an old cell and of the edge that it lies on agree up to this share of the cell.
 constexpr double largest_rounding = 1e-6;
 

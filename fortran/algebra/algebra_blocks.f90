@@ -63,10 +63,8 @@ contains
          k = min(lu_columns, n - at + 1)
          call dlaswp(k, matrix(1, at), n, first, first + m - 1, pivots, 1_ik)
          call dtrsm("L", "L", "N", "U", m, k, 1.0_rk, matrix(first, first), n, matrix(first, at), n)
-         if (first + m <= n) then
-            call dgemm("N", "N", n - first - m + 1, k, m, -1.0_rk, matrix(first + m, first), n, &
-                       matrix(first, at), n, 1.0_rk, matrix(first + m, at), n)
-         end if
+         call dgemm("N", "N", n - first - m + 1, k, m, -1.0_rk, matrix(first + m, first), n, &
+                    matrix(first, at), n, 1.0_rk, matrix(first + m, at), n)
       end do
       !$omp end taskloop
    end subroutine update_columns

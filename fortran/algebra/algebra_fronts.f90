@@ -239,7 +239,7 @@ contains
       item(n) = q
    end subroutine add
 
-   !> Room for twice as many numbers, the first n of which are kept.
+   !> Space for twice as many numbers, the first n of which are kept.
    pure subroutine extend(item, n)
       integer(ik), allocatable, intent(inout) :: item(:)
       integer(ik), intent(in) :: n
@@ -336,10 +336,13 @@ contains
       members = grouped(head, n_free)
 
       ! From the roots downwards, to be read backwards.
-      waiting = pack([(p, p=1, n_free)], [(head(p) == p .and. above(p) == 0, p=1, n_free)])
-      n_waiting = size(waiting)
-      call extend_to(waiting, n_free)
-      allocate (sequence(n_free))
+      allocate (sequence(n_free), waiting(n_free))
+      n_waiting = 0
+      do p = 1, n_free
+         if (head(p) /= p .or. above(p) > 0) cycle
+         n_waiting = n_waiting + 1
+         waiting(n_waiting) = p
+      end do
       n = 0
       do while (n_waiting > 0)
          p = waiting(n_waiting)
@@ -379,17 +382,6 @@ contains
       fronts%elements = grouped(taker, n + 1_ik)
       heads = sequence(n:1:-1)
    end subroutine arrange_fronts
-
-   !> Room for n numbers.
-   pure subroutine extend_to(item, n)
-      integer(ik), allocatable, intent(inout) :: item(:)
-      integer(ik), intent(in) :: n
-      integer(ik), allocatable :: longer(:)
-
-      allocate (longer(max(n, size(item, kind=ik))))
-      longer(:size(item)) = item
-      call move_alloc(longer, item)
-   end subroutine extend_to
 
    !> The rows of each front: the unknowns that its last block leaves.
    pure subroutine expand_rows(elimination, heads, first_unknown, order, fronts)

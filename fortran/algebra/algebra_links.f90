@@ -12,7 +12,10 @@ module algebra_links
    implicit none(type, external)
    private
 
-   public :: links_t, new_links
+   public :: equations_together, links_t, new_links
+
+   !> Equations from which links are eliminated together, as a block.
+   integer(ik), parameter :: equations_together = 64
 
    type :: links_t
       integer(ik) :: n = 0  !< links

@@ -9,7 +9,7 @@
 !! the complete equations.
 module coarse_full_step
    use algebra_blocks, only: is_in_team
-   use algebra_links, only: links_t, new_links
+   use algebra_links, only: equations_together, links_t, new_links
    use base_kinds, only: ik, rk
    use coarse_slopes, only: slopes_t
    use coarse_stiffness, only: stiffness_t
@@ -121,15 +121,15 @@ contains
       type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       type(reduced_t), intent(inout) :: reduced
-      integer(ik), parameter :: block = 64  ! equations reduced together
       logical :: counts(slopes%n)
       integer(ik) :: k, n
 
       counts = reduced%links%that_count()
       n = size(reduced%unknowns, kind=ik)
       !$omp taskloop grainsize(1) default(shared)
-      do k = 1, n, block
-         call reduce_block(stiffness, slopes, counts, k, min(n, k + block - 1), reduced)
+      do k = 1, n, equations_together
+         call reduce_block(stiffness, slopes, counts, k, min(n, k + equations_together - 1), &
+                           reduced)
       end do
       !$omp end taskloop
    end subroutine reduce_blocks

@@ -4,7 +4,7 @@
 !! load, and L f the nodal contact forces on side +, with nodal lengths L > 0. The contact law at
 !! every pair closes the system.
 module contact_pairs
-   use algebra_links, only: links_t, new_links
+   use algebra_links, only: equations_together, links_t, new_links
    use base_kinds, only: ik, rk
    use contact_dense, only: solve_by_parts, solve_full
    use contact_newton, only: contact_system_t, step_quality_t
@@ -87,8 +87,7 @@ contains
       type(links_t) :: links
       integer(ik), allocatable :: kept(:)
       real(rk), allocatable :: factor(:), matrix(:, :), rest(:), solution(:)
-      integer(ik), parameter :: block = 64  ! equations reduced together
-      real(rk) :: slopes(block, 2*self%n)
+      real(rk) :: slopes(equations_together, 2*self%n)
       integer(ik) :: i, k, m
       logical :: is_solved
 
@@ -102,8 +101,8 @@ contains
       allocate (matrix(size(kept), size(kept)), solution(size(kept)))
       rest = self%residual(kept)
       factor = [(factor_of(self, kept(k)), k=1, size(kept))]
-      do k = 1, size(kept, kind=ik), block
-         m = min(block, size(kept, kind=ik) - k + 1)
+      do k = 1, size(kept, kind=ik), equations_together
+         m = min(equations_together, size(kept, kind=ik) - k + 1)
          do i = 1, m
             call fill_row(self, kept(k + i - 1), slopes(i, :))
          end do

@@ -5,14 +5,14 @@ module scene_exchange
    use base_kinds, only: ik, radians, rk
    use base_plane, only: nearest_place, norm2
    use base_tolerances, only: round_off
-   use scene_exchange_values, only: exchange, exchange_material, exchange_part, &
+   use scene_exchange_values, only: exchange, exchange_domain, exchange_material, exchange_part, &
                                     exchange_point_load, exchange_region, exchange_restraint, &
                                     exchange_side, exchange_temperature, exchange_word, &
                                     set_names, set_text, to_degrees
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, groups, side_names
    use scene_sheet, only: add_record, empty_record, record_t, sheet_t
-   use scene_types, only: discretization_t, domain_t, fluid_t, fracture_t, growth_t, injection_t, &
+   use scene_types, only: discretization_t, fluid_t, fracture_t, growth_t, injection_t, &
                           name_length, scene_t
    use scene_values, only: value_t
    implicit none(type, external)
@@ -327,36 +327,6 @@ contains
       call exchange(record, "table_temperature", fluid%table_temperature)
       call exchange(record, "viscosity_at", fluid%viscosity_at)
    end subroutine exchange_fluid
-
-   !> Group &domain; the rectangle x_min to y_max bounds every shape.
-   pure subroutine exchange_domain(record, domain)
-      type(record_t), intent(inout) :: record
-      type(domain_t), intent(inout) :: domain
-
-      call exchange(record, "shape", domain%shape)
-      select case (domain%shape)
-      case ("disc")
-         call exchange(record, "x_centre", domain%x_centre)
-         call exchange(record, "y_centre", domain%y_centre)
-         call exchange(record, "radius", domain%radius)
-         domain%x_min = domain%x_centre - domain%radius
-         domain%x_max = domain%x_centre + domain%radius
-         domain%y_min = domain%y_centre - domain%radius
-         domain%y_max = domain%y_centre + domain%radius
-      case ("polygon")
-         call exchange(record, "x", domain%x)
-         call exchange(record, "y", domain%y)
-         domain%x_min = minval(domain%x)
-         domain%x_max = maxval(domain%x)
-         domain%y_min = minval(domain%y)
-         domain%y_max = maxval(domain%y)
-      case default
-         call exchange(record, "x_min", domain%x_min)
-         call exchange(record, "x_max", domain%x_max)
-         call exchange(record, "y_min", domain%y_min)
-         call exchange(record, "y_max", domain%y_max)
-      end select
-   end subroutine exchange_domain
 
    !> Group &fracture.
    pure subroutine exchange_fracture(record, fracture)

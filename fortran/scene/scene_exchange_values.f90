@@ -1,5 +1,5 @@
-!> Transfers single values, the rock, and the supports and loads of the body between the groups of a
-!! sheet and the components of a scene, in both directions.
+!> Transfers single values, the body, its rock, supports and loads between the groups of a sheet and
+!! the components of a scene, in both directions.
 module scene_exchange_values
    use base_kinds, only: ik, lk, radians, rk
    use scene_heat, only: temperature_t
@@ -7,15 +7,15 @@ module scene_exchange_values
    use scene_sides, only: boundary_side_t, of_inflow, of_normal_traction, of_pressure, &
                           of_shear_traction, of_x_displacement, of_x_traction, of_y_displacement, &
                           of_y_traction, side_course_t, side_quantities
-   use scene_types, only: boundary_part_t, material_t, name_length, point_load_t, region_t, &
-                          restraint_t
+   use scene_types, only: boundary_part_t, domain_t, material_t, name_length, point_load_t, &
+                          region_t, restraint_t
    use scene_values, only: value_t
    implicit none(type, external)
    private
 
-   public :: exchange, exchange_material, exchange_part, exchange_point_load, exchange_region
-   public :: exchange_restraint, exchange_side, exchange_temperature, exchange_word, not_given
-   public :: set_names, set_text, to_degrees
+   public :: exchange, exchange_domain, exchange_material, exchange_part, exchange_point_load
+   public :: exchange_region, exchange_restraint, exchange_side, exchange_temperature, exchange_word
+   public :: not_given, set_names, set_text, to_degrees
 
    !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's
    !! component; else from the component into the sheet. A component that equals `nothing`, or a
@@ -191,6 +191,36 @@ contains
 
       same_bits = transfer(a, 0_lk) == transfer(b, 0_lk)
    end function same_bits
+
+   !> Group &domain; the rectangle x_min to y_max bounds every shape.
+   pure subroutine exchange_domain(record, domain)
+      type(record_t), intent(inout) :: record
+      type(domain_t), intent(inout) :: domain
+
+      call exchange(record, "shape", domain%shape)
+      select case (domain%shape)
+      case ("disc")
+         call exchange(record, "x_centre", domain%x_centre)
+         call exchange(record, "y_centre", domain%y_centre)
+         call exchange(record, "radius", domain%radius)
+         domain%x_min = domain%x_centre - domain%radius
+         domain%x_max = domain%x_centre + domain%radius
+         domain%y_min = domain%y_centre - domain%radius
+         domain%y_max = domain%y_centre + domain%radius
+      case ("polygon")
+         call exchange(record, "x", domain%x)
+         call exchange(record, "y", domain%y)
+         domain%x_min = minval(domain%x)
+         domain%x_max = maxval(domain%x)
+         domain%y_min = minval(domain%y)
+         domain%y_max = maxval(domain%y)
+      case default
+         call exchange(record, "x_min", domain%x_min)
+         call exchange(record, "x_max", domain%x_max)
+         call exchange(record, "y_min", domain%y_min)
+         call exchange(record, "y_max", domain%y_max)
+      end select
+   end subroutine exchange_domain
 
    !> Group &material.
    pure subroutine exchange_material(record, material)

@@ -37,12 +37,11 @@ module scene_plausible
                          of_traction = 12, of_start = 13, of_window = 14, of_interval = 15, &
                          of_stiff_fluid = 16, of_region = 17, of_width = 18, of_gap = 19, &
                          of_stub = 20, of_anisotropy = 21, of_fluid_density = 22, &
-                         of_weightless = 23, of_uniform = 24, of_tension = 25, &
-                         of_dry = 26, of_overpressure = 27, of_viscous = 28, &
-                         of_surplus = 29, of_friction_there = 30, of_wide = 31, &
-                         of_sealed = 32, of_would_grow = 33, of_thickness = 34, &
-                         of_no_growth = 35, of_moved = 36, of_next = 37, &
-                         of_front = 38
+                         of_weightless = 23, of_uniform = 24, of_tension = 25, of_dry = 26, &
+                         of_overpressure = 27, of_viscous = 28, of_surplus = 29, &
+                         of_friction_there = 30, of_wide = 31, of_sealed = 32, &
+                         of_would_grow = 33, of_thickness = 34, of_no_growth = 35, of_moved = 36, &
+                         of_next = 37, of_front = 38
 
    ! The table keeps its own layout.
    !&<

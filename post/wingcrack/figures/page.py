@@ -139,9 +139,9 @@ def _parts(facts: Facts, costs: Sequence[str]) -> Iterable[str]:
         ("Results", facts.results, ""),
         ("Errors", [line.removeprefix("- ") for line in facts.errors if line != "errors:"], ""),
         ("Warnings", facts.warnings or ["none"], "warning" if facts.warnings else ""),
-        ("What it used", facts.used, ""),
-        ("What it did without", facts.left_out, ""),
-        ("What it took", costs, ""),
+        ("Included", facts.used, ""),
+        ("Left out", facts.left_out, ""),
+        ("Cost", costs, ""),
     ):
         if lines:
             items = "".join(f"<li>{html.escape(_plain(line))}</li>" for line in lines)

@@ -41,8 +41,8 @@ def summary(run: Run) -> Figure:
     facts = gather_facts(run)
     marks = [] if has_load(run) else find_marks(run)
     texts: list[Cell] = [
-        partial(_draw_text, facts.left(), "what came of it"),
-        partial(_draw_text, facts.right(_words(run, marks)), "what to know"),
+        partial(_draw_text, facts.left(), "results"),
+        partial(_draw_text, facts.right(_words(run, marks)), "warnings and notes"),
     ]
     maps: list[Cell] = [_geometry, *([_network] if _has_network(run) else [])]
     curves = [_draw_drive, _draw_length] if run.history.rows > 1 else []
