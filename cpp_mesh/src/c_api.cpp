@@ -5,6 +5,7 @@
 #include "judge.hpp"
 #include "locate.hpp"
 #include "mesh.hpp"
+#include "narrow_places.hpp"
 #include "planned_sizes.hpp"
 #include "store.hpp"
 
@@ -134,8 +135,11 @@ Specification specification_from(const cm_spec* given, int n_fractures) {
     spec.fixed_points = points_from(given->n_fixed, given->fixed);
     spec.guides = guides_from(*given);
     spec.joint_size = given->joint_size;
-    spec.refined = points_from(given->n_refined, given->refined);
-    spec.refined_size = given->refined_size;
+    for (int32_t i = 0; i < given->n_refined; ++i) {
+        const double* place = given->refined + 4 * i;
+        spec.refined.push_back(corner_disc({place[0], place[1]}, place[2]));
+        spec.refined.back().radius = place[3];
+    }
     if (given->n_foci > 0)
         spec.foci = {points_from(given->n_foci, given->foci), given->size_fracture,
                      given->focus_slope, given->focus_size};

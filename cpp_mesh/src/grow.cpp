@@ -37,8 +37,8 @@ void set_sizes(const std::vector<Segment>& grown, PatchTask& task) {
     if (spec.rosette_sectors > 0)
         task.plans = plan_rosettes(task.graph, spec.domain, spec.rosette_radii);
     size.set_discs(rosette_discs(task.graph, task.plans, spec.rosette_sectors, spec.ring_slope));
-    for (const Vec2& place : spec.refined)
-        size.add(corner_disc(place, spec.refined_size));
+    for (const SizeDisc& disc : spec.refined)
+        size.add(disc);
     limit_sizes_in_narrow_places(task.graph, spec.domain, size);
 }
 

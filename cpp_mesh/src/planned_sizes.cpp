@@ -88,9 +88,10 @@ SizeField planned_sizes(const Specification& specification, const Graph& graph,
         for (const Joint& joint : joints_of(graph))
             size.add(corner_disc(joint.xy,
                                  specification.foci.at_corner(specification.joint_size, joint.xy)));
-    for (const Vec2& place : specification.refined)
-        size.add(
-            corner_disc(place, specification.foci.at_corner(specification.refined_size, place)));
+    for (SizeDisc disc : specification.refined) {
+        disc.size = specification.foci.at_corner(disc.size, disc.centre);
+        size.add(disc);
+    }
     // Cells between fractures that meet, or almost do, must not be much longer than the gap
     // between the fractures.
     if (size.is_scale_free() || (!specification.is_window &&

@@ -99,7 +99,7 @@ private:
     void visit(Specification& spec) {
         (*this)(spec.domain, spec.size_fracture, spec.size_boundary, spec.is_window,
                 spec.rosette_sectors, spec.rosette_radii, spec.fixed_points, spec.guides,
-                spec.joint_size, spec.refined, spec.refined_size, spec.foci, spec.is_rough,
+                spec.joint_size, spec.refined, spec.foci, spec.is_rough,
                 spec.ring_slope, spec.own_size);
     }
 

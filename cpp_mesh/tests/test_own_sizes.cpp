@@ -116,7 +116,7 @@ double shortest_at(const ApiMesh& mesh, const Point& place) {
 // Cells at a refined place, here a kink, are as small as asked for, and stay so when an end grows.
 void refined_places(Checks& checks) {
     TestNetwork network({{{4.0, 5.0}, {5.0, 5.0}, {5.5, 5.5}}});
-    const std::vector<double> kink = {5.0, 5.0};
+    const std::vector<double> kink = {5.0, 5.0, 0.003, 0.0};
     cm_spec spec = rectangle_spec(10.0, 10.0, 0.1, 1.0);
     spec.rosette_sectors = 12;
     spec.rosette_radius = 0.1;
@@ -125,7 +125,6 @@ void refined_places(Checks& checks) {
     checks.is_true(shortest_at(usual, {5.0, 5.0}) > 0.05, "usual cells at a kink");
     spec.n_refined = 1;
     spec.refined = kink.data();
-    spec.refined_size = 0.003;
     checks.is_true(mesh.create(spec, network), mesh.error);
     checks.is_true(shortest_at(mesh, {5.0, 5.0}) < 1.5 * 0.003, "small cells at a kink");
     checks.is_true(lengths_of(mesh, 0).longest > 0.08, "usual ones farther away");

@@ -8,6 +8,9 @@
 !! flow has not left the cell, and in the steady state, where the difference is q mu/(2 pi K)
 !! ln(r_c/r_w). The difference does not depend on what lies farther away.
 !!
+!! Where other rock is near, annuli have means: in the first chain of the rock, in the second of the
+!! cells of the mesh.
+!!
 !! Around a line that fluid leaves, the displacement is free of rotation: the content of the rock is
 !! S* p, S* = S + alpha^2/(lambda + 2 G) (Rudnicki 1986). Both chains take several implicit steps in
 !! each step, so that their errors in time are small, and far from the well the same. The rock takes
@@ -18,7 +21,7 @@ module coarse_well_rings
    implicit none(type, external)
    private
 
-   public :: new_well_rings, ring_count, well_rings_t
+   public :: annuli_t, new_well_rings, ring_count, rock_differs_to, well_rings_t
 
    integer(ik), parameter :: n_near = 56, n_cell = 26  !< nodes of the two chains
    integer(ik), parameter :: ring_count = n_near + 2*n_cell
@@ -26,10 +29,22 @@ module coarse_well_rings
    integer(ik), parameter :: around = 6  !< node at four radii of the cell
    !> The last rings end at so many radii of the cell, where the pressure is that before.
    real(rk), parameter :: outermost = 1.0e4_rk
+   !> Beyond so many of them the rock and the mesh have the same annuli.
+   real(rk), parameter :: rock_differs_to = 4.0_rk
    real(rk), parameter :: first_ring = 1.0e-3_rk  !< thickness over the radius of the well [-]
    !> Radius at which the pressure is that of a triangle, over the root of its area: the mean of 40
    !! places in five meshes, all within 0.002 (verification/wells_in_rock) [-].
    real(rk), parameter :: radius_of_cell = 0.151_rk
+
+   !> Rock around a well, uniform in each of some annuli.
+   type :: annuli_t
+      real(rk), allocatable :: edge(:)  !< (n - 1) radii between them, increasing [m]
+      real(rk), allocatable :: mobility(:)  !< (n) K/mu [m2/(Pa s)]
+      real(rk), allocatable :: storage(:)  !< (n) S* [1/Pa]
+   contains
+      procedure :: loss
+      procedure :: content
+   end type annuli_t
 
    !> Rings, from the well outwards.
    type :: rings_t
@@ -41,6 +56,9 @@ module coarse_well_rings
    type :: well_rings_t
       type(rings_t) :: near  !< with rings from the wall of the well on
       type(rings_t) :: cell  !< with the cell as the first volume
+      !> Resistance around the cell that the mesh does not have, over that from the well on, or the
+      !! error that follows from it [-].
+      real(rk) :: missing = 0.0_rk
    contains
       procedure :: resistance
       procedure :: left_over
@@ -50,46 +68,69 @@ module coarse_well_rings
 
 contains
 
+   !> Pressure lost per steady flow from one radius to a larger one [Pa s/m2].
+   pure real(rk) function loss(self, from, to)
+      class(annuli_t), intent(in) :: self
+      real(rk), intent(in) :: from, to  !< [m]
+      real(rk) :: ends(0:size(self%mobility))
+
+      ends = min(to, max(from, [from, self%edge, to]))
+      loss = sum(log(ends(1:)/ends(:size(self%mobility) - 1))/self%mobility)/(2.0_rk*pi)
+   end function loss
+
+   !> Content per pressure between two radii [m2/Pa].
+   pure real(rk) function content(self, from, to)
+      class(annuli_t), intent(in) :: self
+      real(rk), intent(in) :: from, to  !< [m]
+      real(rk) :: ends(0:size(self%storage))
+
+      ends = min(to, max(from, [from, self%edge, to]))
+      associate (inner => ends(:size(self%storage) - 1), outer => ends(1:))
+         content = pi*sum(self%storage*(outer - inner)*(outer + inner))
+      end associate
+   end function content
+
    !> The rings of a well.
-   pure function new_well_rings(radius, area, mobility, storage) result(rings)
+   pure function new_well_rings(radius, area, rock, meshed) result(rings)
       real(rk), intent(in) :: radius  !< of the well [m]
       real(rk), intent(in) :: area  !< of the cell [m2]
-      real(rk), intent(in) :: mobility  !< K/mu [m2/(Pa s)]
-      real(rk), intent(in) :: storage  !< S* [1/Pa]
+      type(annuli_t), intent(in) :: rock, meshed  !< around the well, and as the cells have it
       type(well_rings_t) :: rings
       real(rk) :: edge(0:n_near), end, node(n_near), ratio
       integer(ik) :: i
 
       associate (cell_radius => sqrt(area/pi))
+         end = max(cell_radius, radius)*rock_differs_to
+         rings%missing = abs(rock%loss(cell_radius, end) - meshed%loss(cell_radius, end)) &
+                         /rock%loss(radius, end)
          end = outermost*max(cell_radius, radius)
          ratio = ((end - radius)/(first_ring*radius))**(1.0_rk/(n_near - 1))
          edge = [radius, (radius + first_ring*radius*ratio**(i - 1), i=1, n_near)]
          node(1) = radius + 0.5_rk*first_ring*radius
          node(2:) = radius + sqrt((edge(1:n_near - 1) - radius)*(edge(2:) - radius))
-         rings%near = chain_of(node, edge)
-         rings%near%inlet = log(node(1)/radius)/(2.0_rk*pi*mobility)
+         rings%near = chain_of(rock, node, edge)
+         rings%near%inlet = rock%loss(radius, node(1))
          ratio = (end/cell_radius)**(1.0_rk/(n_cell - 1))
          edge(:n_cell) = [0.0_rk, (cell_radius*ratio**(i - 1), i=1, n_cell)]
          node(1) = radius_of_cell*sqrt(area)
          node(2:n_cell) = sqrt(edge(1:n_cell - 1)*edge(2:n_cell))
-         rings%cell = chain_of(node(:n_cell), edge(:n_cell))
+         rings%cell = chain_of(meshed, node(:n_cell), edge(:n_cell))
       end associate
-
-   contains
-
-      !> A chain with these nodes and edges.
-      pure function chain_of(nodes, edges) result(chain)
-         real(rk), intent(in) :: nodes(:)  !< (n) [m]
-         real(rk), intent(in) :: edges(0:)  !< (0:n) [m]
-         type(rings_t) :: chain
-         integer :: n
-
-         n = size(nodes)
-         chain%held = storage*pi*(edges(1:) - edges(:n - 1))*(edges(1:) + edges(:n - 1))
-         chain%conductance = 2.0_rk*pi*mobility/log([nodes(2:), edges(n)]/nodes)
-      end function chain_of
-
    end function new_well_rings
+
+   !> A chain with these nodes and edges.
+   pure function chain_of(rock, nodes, edges) result(chain)
+      type(annuli_t), intent(in) :: rock
+      real(rk), intent(in) :: nodes(:)  !< (n) [m]
+      real(rk), intent(in) :: edges(0:)  !< (0:n) [m]
+      type(rings_t) :: chain
+      integer :: i, n
+
+      n = size(nodes)
+      chain%held = [(rock%content(edges(i - 1), edges(i)), i=1, n)]
+      chain%conductance = [(1.0_rk/rock%loss(nodes(i), nodes(i + 1)), i=1, n - 1), &
+                           1.0_rk/rock%loss(nodes(n), edges(n))]
+   end function chain_of
 
    !> Pressures of the rings after a step with a flow out of the well.
    pure subroutine advance(self, m, dt, flow, pressure)

@@ -323,10 +323,8 @@ contains
       spec%size_fracture = scene%discretization%size_fracture
       if (.not. spec%size_fracture > 0.0_rk) spec%size_fracture = spec%size_boundary
       call set_own_sizes(scene, spec)
-      associate (kinks => kinks_of_scene(scene), joints => joints_of_scene(scene))
-         spec%refined = reshape([kinks, joints], [2, size(kinks, 2) + size(joints, 2)])
-      end associate
-      spec%refined_size = corner_share*spec%size_fracture
+      call spec%refine(kinks_of_scene(scene), corner_share*spec%size_fracture)
+      call spec%refine(joints_of_scene(scene), corner_share*spec%size_fracture)
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = scene%discretization%rosette_radius
       spec%end_radius = end_radii(scene, network)

@@ -49,8 +49,10 @@ module mesh_c_arrays
       real(rk) :: ring_slope = 0.0_rk  !< growth of sizes around rosettes [-]; 0: usual
       !> (n_fractures) size along each fracture [m]; 0: size_fracture, which is the smallest of all
       real(rk), allocatable :: own_size(:)
-      real(rk), allocatable :: refined(:, :)  !< (2, n) places with smaller cells [m]
-      real(rk) :: refined_size = 0.0_rk  !< cells there [m]
+      !> (4, n) places with smaller cells: x, y, their size, and how far around they have it [m]
+      real(rk), allocatable :: refined(:, :)
+   contains
+      procedure :: refine
    end type mesh_spec_t
 
    !> What a network of C points to; it must outlive the call and be a target.
@@ -61,6 +63,23 @@ module mesh_c_arrays
    end type c_network_arrays_t
 
 contains
+
+   !> Add places with smaller cells, which grow from there, or from a radius around each.
+   pure subroutine refine(self, places, size, radius)
+      class(mesh_spec_t), intent(inout) :: self
+      real(rk), intent(in) :: places(:, :)  !< (2, n) [m]
+      real(rk), intent(in) :: size  !< of the cells [m]
+      real(rk), intent(in), optional :: radius  !< [m]
+      real(rk) :: around
+      integer :: i
+
+      around = 0.0_rk
+      if (present(radius)) around = radius
+      if (.not. allocated(self%refined)) allocate (self%refined(4, 0))
+      self%refined = reshape([self%refined, [(places(:, i), size, around, &
+                                              i=1, ubound(places, 2))]], &
+                             [4, ubound(self%refined, 2) + ubound(places, 2)])
+   end subroutine refine
 
    !> The specification as C sees it; the structure points to its arrays.
    subroutine prepare_spec(spec, n_fractures, c_spec, error)
@@ -83,7 +102,6 @@ contains
       if (allocated(spec%refined)) then
          c_spec%n_refined = ubound(spec%refined, 2)
          if (c_spec%n_refined > 0) c_spec%refined = c_loc(spec%refined)
-         c_spec%refined_size = spec%refined_size
       end if
       c_spec%is_rough = merge(1_ik, 0_ik, spec%is_rough)
       if (allocated(spec%foci)) then

@@ -47,7 +47,6 @@ module mesh_c_binding
       type(c_ptr) :: own_size = c_null_ptr
       integer(c_int32_t) :: n_refined = 0
       type(c_ptr) :: refined = c_null_ptr
-      real(c_double) :: refined_size = 0.0_c_double
    end type cm_spec_t
 
    !> Sizes of the arrays below.

@@ -34,10 +34,10 @@ module twolevel_pressure_errors
    implicit none(type, external)
    private
 
-   public :: fracture_means, have_given_pressure, held_at_first, largest_of, leaking_share, least, &
-             mean_in_rock, mean_pressure, of_first_pressure, of_layers, of_steps, &
-             of_well_in_rock, round_tips, share_round_tips, skempton, stress_means, &
-             undrained_share, unresolved_depth
+   public :: fracture_means, has_one_free, have_given_pressure, held_at_first, largest_of, &
+             leaking_share, least, mean_in_rock, mean_pressure, of_connected, &
+             of_first_pressure, of_layers, of_steps, of_well_in_rock, round_tips, &
+             share_round_tips, skempton, stress_means, undrained_share, unresolved_depth
 
    real(rk), parameter :: of_chain = 0.03_rk  !< relative error of layers of growing fractures [-]
    real(rk), parameter :: of_rest = 0.04_rk  !< of what the cells beyond a chain take up [-]
@@ -149,8 +149,10 @@ contains
             area = cell_area(problem%mesh, cell)
             filled = max(1.0_rk, problem%model%rock%diffusivity_at(cell)*time/area)
             associate (radius => scene%injections(w)%radius)
-               error = max(error, of_rings/filled, of_radius/log(1.5_rk*sqrt(area)/radius) &
-                           + by_side*area/distance_of_side(problem, cell)**2)
+               error = max(error, of_rings/filled, by_side*area/distance_of_side(problem, cell)**2 &
+                           + of_radius/log(max(2.0_rk, 1.5_rk*sqrt(area)/radius)) &
+                           + problem%model%rock_wells%rings(count(problem%rock_cell(:w) &
+                                                                         > 0))%missing)
             end associate
          end associate
       end do
@@ -358,6 +360,37 @@ contains
       end do
    end function undrained_at_faces
 
+   !> Errors of pressures with those of fractures that joints connect, which have the mean.
+   pure function of_connected(problem, own) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: own(:)  !< (fractures) [Pa]
+      real(rk) :: error(size(own))
+      real(rk) :: length(size(own))
+      integer(ik) :: b, c, f, group(size(own))
+
+      error = own
+      associate (joints => problem%model%joints, fracture => problem%mesh%fracture)
+         if (joints%branch_count() == 0) return
+         length = [(sum(fracture%cell_s(2, :) - fracture%cell_s(1, :), &
+                        mask=fracture%cell_fracture == f), f=1, size(own, kind=ik))]
+         group = [(f, f=1, size(own, kind=ik))]
+         do b = 1, joints%branch_count()
+            do c = 1, b - 1
+               if (joints%joint(c) /= joints%joint(b) .or. joints%is_outlet(joints%joint(b))) cycle
+               if (joints%is_shut(b) .or. joints%is_shut(c)) cycle
+               associate (first => group(fracture%cell_fracture(joints%cell(b))), &
+                          second => group(fracture%cell_fracture(joints%cell(c))))
+                  group = merge(min(first, second), group, group == max(first, second))
+               end associate
+            end do
+         end do
+         do f = 1, size(own, kind=ik)
+            error(f) = max(own(f), sum(own*length, mask=group == group(f)) &
+                           /max(sum(length, mask=group == group(f)), tiny(1.0_rk)))
+         end do
+      end associate
+   end function of_connected
+
    !> What closed fractures and joints hold by these errors [m2].
    function held_at_first(scene, problem, state, of_first) result(held)
       type(scene_t), intent(in) :: scene
@@ -413,6 +446,15 @@ contains
          share(:, i) = fracture_means(scene, problem, left(:, i))
       end do
    end function undrained_share
+
+   !> Whether all flows of wells are given but that of one in a fracture.
+   pure logical function has_one_free(scene)
+      type(scene_t), intent(in) :: scene
+
+      associate (wells => scene%injections)
+         has_one_free = count(.not. wells%has_given_flow()) == 1 .and. all(wells%fracture > 0)
+      end associate
+   end function has_one_free
 
    !> Whether a well keeps a pressure in each fracture.
    pure function have_given_pressure(scene) result(have)

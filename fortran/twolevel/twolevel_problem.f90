@@ -10,8 +10,7 @@ module twolevel_problem
    use coarse_model, only: coarse_model_t
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
-   use coarse_rock, only: solid_t
-   use coarse_well_rings, only: new_well_rings, ring_count
+   use coarse_well_rings, only: ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
    use mesh_builder, only: locate, mesher_t
@@ -22,6 +21,7 @@ module twolevel_problem
    use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
+   use twolevel_rock_around, only: place_rings
    use twolevel_well_ways, only: find_way
    use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, &
                              places_of_cells, rate, &
@@ -117,7 +117,9 @@ contains
             if (allocated(error)) return
             self%rock_cell(w) = cell(1)
          end do
-         call place_rings(self, scene)
+         call place_rings(scene, self%mesher, self%mesh, self%rock_cell, self%model%rock, &
+                          self%model%rock_wells, error)
+         if (allocated(error)) return
          if (self%model%wells%n_all > self%model%wells%n) call place_rock_wells(self, scene, error)
       end associate
    end subroutine feed_wells
@@ -155,31 +157,6 @@ contains
             & /size(s, 2)
       end associate
    end subroutine part_twins
-
-   !> Rings of all wells in the rock.
-   pure subroutine place_rings(self, scene)
-      class(coarse_problem_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(solid_t) :: solid
-      integer(ik) :: k, w
-
-      associate (rock => self%model%rock_wells)
-         rock%ring_number = pack([(w, w=1, size(scene%injections, kind=ik))], self%rock_cell > 0)
-         rock%ring_flow = spread(0.0_rk, 1, size(rock%ring_number))
-         if (allocated(rock%rings)) deallocate (rock%rings)
-         allocate (rock%rings(size(rock%ring_number)))
-         do k = 1, size(rock%rings, kind=ik)
-            w = rock%ring_number(k)
-            associate (cell => self%rock_cell(w))
-               solid = self%model%rock%solid_at(cell)
-               rock%rings(k) = new_well_rings(scene%injections(w)%radius, &
-                                              cell_area(self%mesh, cell), &
-                                              self%model%rock%mobility_at(cell), &
-                                              solid%uniaxial_storage())
-            end associate
-         end do
-      end associate
-   end subroutine place_rings
 
    !> Cells and well indices of the wells in the rock whose rate depends on pressures.
    pure subroutine place_rock_wells(self, scene, error)

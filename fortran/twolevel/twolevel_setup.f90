@@ -10,6 +10,7 @@ module twolevel_setup
    use report_scene, only: follow_outlines, law_of_fracture, set_own_sizes, shape_body
    use scene_outline, only: outline_of_scene, outline_t
    use scene_types, only: scene_t
+   use twolevel_rock_around, only: refine_at_wells
    use twolevel_schedule, only: shortest_stage
    use twolevel_stepping, only: first_step, step_scale
    implicit none(type, external)
@@ -152,13 +153,15 @@ contains
       if (size(scene%fractures) == 0) spec%size_fracture = spec%size_boundary
       call set_own_sizes(scene, spec)
       call shape_body(scene, spec)
-      if (allocated(scene%regions)) call follow_outlines(scene%regions, scene%domain, spec)
+      if (allocated(scene%regions)) then
+         call follow_outlines(scene%regions, scene%domain, spec)
+         call refine_at_wells(scene, spec)
+      end if
       if (.not. allocated(scene%heat)) return
       if (.not. scene%heat%source_cell_size > 0.0_rk) return
       associate (heat => scene%heat)
-         spec%refined = transpose(reshape([heat%source_x, heat%source_y], &
-                                          [size(heat%source_x), 2]))
-         spec%refined_size = heat%source_cell_size
+         call spec%refine(transpose(reshape([heat%source_x, heat%source_y], &
+                                            [size(heat%source_x), 2])), heat%source_cell_size)
       end associate
    end function coarse_spec
 

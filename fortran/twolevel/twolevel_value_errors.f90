@@ -21,14 +21,15 @@ module twolevel_value_errors
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t, followed_t
    use twolevel_jump_errors, only: jump_facts_t, jumps_in_space_t
-   use twolevel_pressure_errors, only: fracture_means, have_given_pressure, held_at_first, &
-                                       largest_of, leaking_share, least, mean_in_rock, &
-                                       mean_pressure, of_first_pressure, of_layers, of_steps, &
-                                       of_well_in_rock, share_round_tips, stress_means, &
+   use twolevel_pressure_errors, only: fracture_means, has_one_free, have_given_pressure, &
+                                       held_at_first, largest_of, leaking_share, least, &
+                                       mean_in_rock, mean_pressure, of_connected, &
+                                       of_first_pressure, of_layers, of_steps, of_well_in_rock, &
+                                       share_round_tips, stress_means, &
                                        undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
-   use twolevel_well_losses, only: unresolved_at
+   use twolevel_well_losses, only: by_wells_in_cells, unresolved_at
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
@@ -196,7 +197,9 @@ contains
       end if
       self%of_place = (layers + share_round_tips(problem, row%time - self%start)) &
                       *(largest_of(scene, problem, state%pressure) &
-                        + largest_of(scene, problem, -state%pressure))
+                        + largest_of(scene, problem, -state%pressure)) &
+                      + merge(0.0_rk, by_wells_in_cells(problem, state, size(scene%fractures)), &
+                              have_given_pressure(scene))
       call note_fluid(self, scene, problem, state, row, facts, layers)
       call note_rest(self, problem, row, stated, facts)
    end subroutine note_state
@@ -298,15 +301,6 @@ contains
       end associate
    end subroutine note_fluid
 
-   !> Whether all flows of wells are given but that of one in a fracture.
-   pure logical function has_one_free(scene)
-      type(scene_t), intent(in) :: scene
-
-      associate (wells => scene%injections)
-         has_one_free = count(.not. wells%has_given_flow()) == 1 .and. all(wells%fracture > 0)
-      end associate
-   end function has_one_free
-
    !> Errors of rates and lengths.
    subroutine note_rest(self, problem, row, stated, facts)
       class(value_errors_t), intent(inout) :: self
@@ -345,8 +339,9 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       real(rk) :: error(size(scene%fractures))
 
-      error = sum(self%of_first*undrained_share(scene, problem, self%quantities%time &
-                                                - self%start, self%held), dim=2)
+      error = of_connected(problem, sum(self%of_first &
+                                        *undrained_share(scene, problem, self%quantities%time &
+                                                         - self%start, self%held), dim=2))
    end function undrained
 
    !> Remaining error of the first pressure in each fracture cell; none at a given pressure [Pa].
@@ -409,8 +404,9 @@ contains
       type(well_row_t), intent(inout) :: rows(:)
       type(stated_errors_t), intent(in) :: stated
       type(step_facts_t), intent(in) :: facts
-      real(rk) :: by_length, changes(3*size(rows)), first(size(scene%fractures)), flow, missing
-      real(rk) :: drop, part, share, taken(2)
+      type(jumps_in_space_t) :: jumps
+      real(rk), dimension(size(scene%fractures)) :: first, net
+      real(rk) :: by_length, changes(3*size(rows)), drop, flow, missing, part, share, taken(2)
       integer(ik) :: w
       logical :: keeps(size(rows))
 
@@ -420,6 +416,12 @@ contains
       by_length = merge(abs(stated%slope)*max(0.0_rk, stated%length), 0.0_rk, facts%has_estimate)
       changes = self%wells%changes()
       first = self%undrained(scene, problem)
+      net = 0.0_rk
+      if (problem%mesh%fracture%n_cells > 0) then
+         call self%jumps_of(scene, problem, state, jumps)
+         net = merge(0.0_rk, fracture_means(scene, problem, jumps%net_error), &
+                     have_given_pressure(scene))
+      end if
       self%of_given = 0.0_rk*first
       do w = 1, size(rows, kind=ik)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
@@ -427,9 +429,11 @@ contains
             share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
             missing = unresolved_at(problem, state, findloc(problem%well_of, w, dim=1, kind=ik), &
                                     rows%flow)
-            error%pressure = time(w) + share*changes(w)
+            error%pressure = share*changes(w)
+            if (well%fracture > 0) error%pressure = max(error%pressure + first(well%fracture), &
+                                                        net(well%fracture))
+            error%pressure = error%pressure + time(w)
             if (well%fracture > 0) then
-               error%pressure = error%pressure + first(well%fracture)
                ! Where another well keeps its pressure, errors are those of the difference.
                drop = minval(abs(row%pressure - rows%pressure), &
                              mask=keeps .and. scene%injections%fracture == well%fracture)

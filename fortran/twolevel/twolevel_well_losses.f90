@@ -7,7 +7,7 @@ module twolevel_well_losses
    implicit none(type, external)
    private
 
-   public :: entry_flows, unresolved_at, unresolved_in_cells, uptake
+   public :: by_wells_in_cells, entry_flows, unresolved_at, unresolved_in_cells, uptake
 
 contains
 
@@ -88,6 +88,35 @@ contains
             & abs(problem%entry_pressure(state, e, flow(e)) - problem%fracture_pressure(state))))
       end do
    end function unresolved_in_cells
+
+   !> Error of the mean pressure of each fracture by wells at points: between the middle of a cell
+   !! and its end the flow of a well at the distance x from the end makes the mean of the cell
+   !! differ from its middle by 12 mu q x^2/(2 l a^3), l the cell's length, at most by the
+   !! difference between well and cell [Pa].
+   pure function by_wells_in_cells(problem, state, n_fractures) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      integer, intent(in) :: n_fractures
+      real(rk) :: error(n_fractures)
+      real(rk), dimension(size(state%pressure)) :: differs, length, loss
+      real(rk) :: flow(size(problem%entries))
+      integer(ik) :: e, f
+
+      error = 0.0_rk
+      if (size(loss) == 0) return
+      length = problem%mesh%fracture%cell_s(2, :) - problem%mesh%fracture%cell_s(1, :)
+      loss = half_cells(problem, state)
+      flow = entry_flows(problem, state)
+      do e = 1, size(flow, kind=ik)
+         f = problem%entries(e)%fracture
+         if (f == 0 .or. .not. problem%entries(e)%at_point) cycle
+         differs = abs(problem%entry_pressure(state, e, flow(e)) - problem%fracture_pressure(state))
+         differs = min(differs, 0.25_rk*loss*abs(flow(e)) &
+                       *max(0.0_rk, 2.0_rk*problem%share(:, e) - 1.0_rk)**2)
+         error(f) = error(f) + sum(differs*length)/sum(length, &
+                                          & mask=problem%mesh%fracture%cell_fracture == f)
+      end do
+   end function by_wells_in_cells
 
    !> What may be missing in the pressure of an entry at a point: a tenth of what the leak-off of
    !! its flow on the way changes, as coarse_well_ways has it; what other uptake changes, with

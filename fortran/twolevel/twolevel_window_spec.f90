@@ -47,8 +47,7 @@ contains
       spec%rosette_sectors = scene%discretization%rosette_sectors
       spec%rosette_radius = element_size
       spec%joint_size = corner_share*element_size
-      spec%refined = kinks_of_scene(scene)
-      spec%refined_size = spec%joint_size
+      call spec%refine(kinks_of_scene(scene), spec%joint_size)
    end function window_spec
 
    !> Let elements grow around the rosettes.

@@ -26,20 +26,32 @@ def log_sine(z: complex) -> float:
     return math.log(abs(cmath.sin(w)))
 
 
-def pressure(x: float, y: float, radius: float) -> float:
-    """Pressure at the wall of a well at (x, y) [Pa]."""
+def pressure(x: float, y: float, radius: float, well: tuple[float, float] | None = None) -> float:
+    """Pressure at (x, y) by a well there, at its wall, or elsewhere [Pa]."""
+    x_well, y_well = well or (x, y)
     total = 0.0
     for j in range(-8, 9):
         for mirror_y in (1, -1):
-            above = mirror_y * y + 2 * HALF * (2 * j + (0 if mirror_y == 1 else 1)) - y
+            above = mirror_y * y_well + 2 * HALF * (2 * j + (0 if mirror_y == 1 else 1)) - y
             for mirror_x in (1, -1):
-                aside = mirror_x * x + (0 if mirror_x == 1 else 2 * HALF) - x
+                aside = mirror_x * x_well + (0 if mirror_x == 1 else 2 * HALF) - x
                 sign = mirror_x * mirror_y
                 if abs(aside) + abs(above) < 1e-12:
                     total -= sign * math.log(math.pi * radius / (4 * HALF))
                 else:
                     total -= sign * log_sine(complex(aside, above))
     return UNIT * total
+
+
+def next_to_rock(distance: float, ratio: float) -> float:
+    """Pressure of a well in rock of `ratio` times the permeability beyond the line x = 0 [Pa].
+
+    The pressure by the well plus (ratio - 1)/(ratio + 1) times that by a well mirrored there, over
+    ratio: both fulfil the conditions at the sides, and together those at the line.
+    """
+    own = pressure(-distance, 0.0, 0.004)
+    mirrored = pressure(-distance, 0.0, 0.004, (distance, 0.0))
+    return (own + (ratio - 1.0) / (ratio + 1.0) * mirrored) / ratio
 
 
 def in_line(s: float) -> float:
@@ -78,4 +90,6 @@ if __name__ == "__main__":
     print("in the middle", pressure(0.0, 0.0, 0.004), UNIT * math.log(1.0787052 / 0.004))
     print("at (0.3, 0.2)", pressure(0.3, 0.2, 0.004))
     print("at (-0.55, 0.7)", pressure(-0.55, 0.7, 0.004))
+    print("in a disc", UNIT * (math.log(0.1 / 0.004) / 0.1 + math.log(1.0787052 / 0.1)))
+    print("next to other rock", next_to_rock(0.05, 0.1))
     print("narrow fracture, 100 and 1000 s", rise(100.0), rise(1000.0))

@@ -63,9 +63,8 @@ typedef struct {
                                or with foci the largest one that these lead to; 0: size_fracture
                                and focus_size; NULL: so have all. Tolerances follow from
                                size_fracture, which is then the smallest of all */
-    int32_t n_refined;      /* places with cells of refined_size, which grow from there */
-    const double* refined;  /* [n_refined][2] */
-    double refined_size;
+    int32_t n_refined;      /* places with smaller cells, which grow from there */
+    const double* refined;  /* [n_refined][4] x, y, size, radius within which cells have it */
 } cm_spec;
 
 typedef struct {

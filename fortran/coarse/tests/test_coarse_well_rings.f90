@@ -3,7 +3,7 @@
 !! cell; the steady difference; a pulse; superposition by resistance and left-over.
 program test_coarse_well_rings
    use base_kinds, only: pi, rk
-   use coarse_well_rings, only: new_well_rings, ring_count, well_rings_t
+   use coarse_well_rings, only: annuli_t, new_well_rings, ring_count, well_rings_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -13,12 +13,15 @@ program test_coarse_well_rings
    real(rk), parameter :: diffusivity = mobility/storage
    real(rk), parameter :: flow = 1.0e-9_rk  !< [m2/s]
    type(checks_t) :: checks
+   type(annuli_t) :: uniform
    type(well_rings_t) :: rings
 
-   rings = new_well_rings(radius, area, mobility, storage)
+   uniform = annuli_t(spread(0.0_rk, 1, 0), [mobility], [storage])
+   rings = new_well_rings(radius, area, uniform, uniform)
    call test_constant_flow()
    call test_steady()
    call test_superposition()
+   call test_other_rock()
    call checks%finish()
 
 contains
@@ -102,5 +105,26 @@ contains
          call checks%is_true(rings%resistance(dt) > 0.0_rk, "positive resistance")
       end do
    end subroutine test_superposition
+
+   !> Around the well a disc smaller than the cell, of other rock, which the cell does not have:
+   !! resistances in series; in all, what the cell has lies beyond.
+   subroutine test_other_rock()
+      real(rk), parameter :: edge = 0.05_rk, ratio = 0.1_rk
+      type(annuli_t) :: disc
+      type(well_rings_t) :: around
+      real(rk) :: exact
+
+      disc = annuli_t([edge], mobility*[ratio, 1.0_rk], storage*[2.0_rk, 1.0_rk])
+      call checks%is_close(disc%loss(radius, 1.0_rk), (log(edge/radius)/ratio - log(edge)) &
+                           /(2.0_rk*pi*mobility), 1.0e-9_rk/mobility, "resistances in series")
+      call checks%is_close(disc%content(radius, 1.0_rk)/(pi*storage), 1.0_rk + edge**2 &
+                           - 2.0_rk*radius**2, 1.0e-12_rk, "content")
+      around = new_well_rings(radius, area, disc, uniform)
+      exact = (log(edge/radius)/ratio + log(0.151_rk*sqrt(area)/edge))/(2.0_rk*pi*mobility)
+      call checks%is_close(around%resistance(1.0e25_rk)/exact, 1.0_rk, 1.0e-6_rk, &
+                           "steady difference with other rock at the well")
+      call checks%is_close(around%missing, 0.0_rk, 1.0e-9_rk, &
+                           "the mesh has the rock around the cell")
+   end subroutine test_other_rock
 
 end program test_coarse_well_rings
