@@ -24,9 +24,9 @@ struct Specification {
     std::vector<Vec2> fixed_points;        // become nodes
     std::vector<std::vector<Vec2>> guides; // lines that cells follow where there is room
     double joint_size = 0.0;               // where fractures meet; 0: as along them
-    std::vector<SizeDisc> refined; // places with smaller cells, which grow from there
-    SizeFoci foci;                // away from which sizes grow along fractures
-    bool is_rough = false;        // triangles are smoothed here, not by gmsh
+    std::vector<SizeDisc> refined;         // places with smaller cells, which grow from there
+    SizeFoci foci;                         // away from which sizes grow along fractures
+    bool is_rough = false;                 // triangles are smoothed here, not by gmsh
     double ring_slope = 0.3;      // growth of sizes per distance beyond three radii of rosettes
     std::vector<double> own_size; // along each fracture, 0: the usual one; empty: of all
 

@@ -99,8 +99,8 @@ private:
     void visit(Specification& spec) {
         (*this)(spec.domain, spec.size_fracture, spec.size_boundary, spec.is_window,
                 spec.rosette_sectors, spec.rosette_radii, spec.fixed_points, spec.guides,
-                spec.joint_size, spec.refined, spec.foci, spec.is_rough,
-                spec.ring_slope, spec.own_size);
+                spec.joint_size, spec.refined, spec.foci, spec.is_rough, spec.ring_slope,
+                spec.own_size);
     }
 
     void visit(PlaneMesh& plane) {

@@ -83,6 +83,8 @@ contains
       solid = rock%solid_at(cell)
       around = annuli_t(spread(0.0_rk, 1, 0), [rock%mobility_at(cell)], [solid%uniaxial_storage()])
       meshed = around
+      by_outline = 0.0_rk
+      if (size(places%outline) == 0) return
       end = rock_differs_to*max(radius, well%radius)
       distance = places%distance([well%x, well%y], spread(.true., 1, size(places%outline)))
       allocate (constants(2, 0:size(places%outline)))
@@ -144,7 +146,7 @@ contains
       real(rk), intent(in), dimension(:, :) :: outwards, along, storage
       type(annuli_t) :: annuli
       real(rk), parameter :: angle = 2.0_rk*pi/n_sectors
-      real(rk), dimension(n_sectors, n_sectors) :: matrix, passed(n_sectors, n_sectors, n_circles)
+      real(rk) :: matrix(n_sectors, n_sectors), passed(n_sectors, n_sectors, n_circles)
       real(rk) :: flow, from(n_sectors), means(0:n_circles + 1), p(n_sectors), step, to(n_sectors)
       integer :: i, info, k, next, pivots(n_sectors)
 
@@ -234,6 +236,7 @@ contains
       integer :: w
 
       call places%set(scene)
+      if (size(places%outline) == 0) return
       do w = 1, size(scene%injections)
          associate (well => scene%injections(w))
             if (well%fracture > 0) cycle
