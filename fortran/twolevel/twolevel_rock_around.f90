@@ -236,7 +236,7 @@ contains
       integer :: w
 
       call places%set(scene)
-      if (size(places%outline) == 0) return
+      if (size(places%outline) == 0 .or. .not. scene%has_wells()) return
       do w = 1, size(scene%injections)
          associate (well => scene%injections(w))
             if (well%fracture > 0) cycle
