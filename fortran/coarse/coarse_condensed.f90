@@ -273,7 +273,6 @@ contains
       real(rk), intent(out) :: slope(:)  !< [m2/Pa]
       type(error_t), allocatable, intent(out) :: error
       integer(ik), allocatable :: missing(:)
-      integer(ik) :: i
 
       if (self%is_full) then
          slope = self%stiffness%diagonal(at)

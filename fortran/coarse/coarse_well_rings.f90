@@ -31,6 +31,8 @@ module coarse_well_rings
    real(rk), parameter :: outermost = 1.0e4_rk
    !> Beyond so many of them the rock and the mesh have the same annuli.
    real(rk), parameter :: rock_differs_to = 4.0_rk
+   !> Error over the resistance around the cell that the mesh does not have [-].
+   real(rk), parameter :: share_of_missing = 0.5_rk
    real(rk), parameter :: first_ring = 1.0e-3_rk  !< thickness over the radius of the well [-]
    !> Radius at which the pressure is that of a triangle, over the root of its area: the mean of 40
    !! places in five meshes, all within 0.002 (verification/wells_in_rock) [-].
@@ -56,9 +58,7 @@ module coarse_well_rings
    type :: well_rings_t
       type(rings_t) :: near  !< with rings from the wall of the well on
       type(rings_t) :: cell  !< with the cell as the first volume
-      !> Resistance around the cell that the mesh does not have, over that from the well on, or the
-      !! error that follows from it [-].
-      real(rk) :: missing = 0.0_rk
+      real(rk) :: error = 0.0_rk  !< of the resistance from the well on, relative [-]
    contains
       procedure :: resistance
       procedure :: left_over
@@ -101,8 +101,8 @@ contains
 
       associate (cell_radius => sqrt(area/pi))
          end = max(cell_radius, radius)*rock_differs_to
-         rings%missing = abs(rock%loss(cell_radius, end) - meshed%loss(cell_radius, end)) &
-                         /rock%loss(radius, end)
+         rings%error = share_of_missing*abs(rock%loss(cell_radius, end) &
+                                            - meshed%loss(cell_radius, end))/rock%loss(radius, end)
          end = outermost*max(cell_radius, radius)
          ratio = ((end - radius)/(first_ring*radius))**(1.0_rk/(n_near - 1))
          edge = [radius, (radius + first_ring*radius*ratio**(i - 1), i=1, n_near)]

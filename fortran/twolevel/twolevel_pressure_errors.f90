@@ -152,7 +152,7 @@ contains
                error = max(error, of_rings/filled, by_side*area/distance_of_side(problem, cell)**2 &
                            + of_radius/log(max(2.0_rk, 1.5_rk*sqrt(area)/radius)) &
                            + problem%model%rock_wells%rings(count(problem%rock_cell(:w) &
-                                                                  > 0))%missing)
+                                                                  > 0))%error)
             end associate
          end associate
       end do

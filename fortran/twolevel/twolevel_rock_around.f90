@@ -34,7 +34,6 @@ contains
       type(rock_t), intent(in) :: rock
       type(rock_wells_t), intent(inout) :: rock_wells
       type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: share = 0.5_rk  ! of what the cells do not have
       type(annuli_t) :: around, meshed
       real(rk) :: area, by_outline
       integer(ik) :: k, w
@@ -51,7 +50,7 @@ contains
                           by_outline, error)
          if (allocated(error)) return
          rock_wells%rings(k) = new_well_rings(scene%injections(w)%radius, area, around, meshed)
-         rock_wells%rings(k)%missing = share*rock_wells%rings(k)%missing + by_outline
+         rock_wells%rings(k)%error = rock_wells%rings(k)%error + by_outline
       end do
    end subroutine place_rings
 

@@ -123,7 +123,7 @@ contains
       exact = (log(edge/radius)/ratio + log(0.151_rk*sqrt(area)/edge))/(2.0_rk*pi*mobility)
       call checks%is_close(around%resistance(1.0e25_rk)/exact, 1.0_rk, 1.0e-6_rk, &
                            "steady difference with other rock at the well")
-      call checks%is_close(around%missing, 0.0_rk, 1.0e-9_rk, &
+      call checks%is_close(around%error, 0.0_rk, 1.0e-9_rk, &
                            "the mesh has the rock around the cell")
    end subroutine test_other_rock
 
