@@ -132,7 +132,7 @@ MADE_AGAIN = {
     | dict.fromkeys(["heat_after", "heat_span", "heat_flows"], "of the tries of a step"),
     "coarse_model_t": _each("rock sides in_situ regions matrix layers drained may_hold", _RULE)
     | {"rock_resistance": _RULE, "weight": _RULE},
-    "condensed_t": _each("is_full stiffness coupling body normal length n", _RULE)
+    "condensed_t": _each("is_full stiffness coupling normal length n", _RULE)
     | {"layout": _RULE, "analysed": _RULE},
     "rock_wells_t": _each("n cell rings ring_number ring_of", _RULE),
     "wells_t": _each("entry n n_all number share joint_share path storage", _RULE)
