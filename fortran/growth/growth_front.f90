@@ -246,14 +246,16 @@ contains
       logical, intent(out) :: any_turned
       logical :: has_turned
       real(rk) :: to(2)
+      integer :: halvings
       integer(ik) :: i
 
       any_turned = .false.
       do i = 1, size(self%tip, kind=ik)
          associate (tip => self%tip(i))
             if (tip%arrested) cycle
-            if (self%rules%is_too_long(tip)) then
-               call tip%shorten()
+            halvings = self%rules%halvings(tip)
+            if (halvings > 0) then
+               call tip%shorten(halvings)
                advance(i) = tip%advance
                call move_end(self%network, tip%fracture, tip%end, tip%xy)
                any_turned = .true.

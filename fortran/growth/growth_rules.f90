@@ -36,7 +36,7 @@ module growth_rules
       procedure :: increment_of
       procedure :: near_of
       procedure :: look_ahead
-      procedure :: is_too_long
+      procedure :: halvings
    end type growth_rules_t
 
    !> Distance to which targets ahead of a tip are found, in lengths of a new segment: the last path
@@ -63,28 +63,42 @@ contains
       if (allocated(self%own_near)) near = self%own_near(fracture)
    end function near_of
 
-   !> Whether a new segment is too long where the path turns: K_eq at its end is far below the
-   !! toughness, so that the tip will reach this end under other loads, or the end is shut, and any
-   !! direction satisfies the criterion there. So is the first segment of a fracture's end, whose
-   !! direction is not corrected, if it should turn farther at its end.
-   pure logical function is_too_long(self, tip)
+   !> How often a new segment is to be halved where the path turns; 0: it is not too long. It is too
+   !! long where K_eq at its end is far below the toughness, so that the tip will reach this end
+   !! under other loads, or the end is shut, and any direction satisfies the criterion there. So is
+   !! the first segment of a fracture's end, whose direction is not corrected, if it should turn
+   !! farther at its end. K_eq is taken to fall with the root of the length, as that of a wing which
+   !! sliding opens. A shut end says nothing of that: two at most.
+   pure integer function halvings(self, tip)
       class(growth_rules_t), intent(in) :: self
       type(tip_t), intent(in) :: tip
       real(rk), parameter :: turns = 0.1_rk  ! first kink [rad]
       real(rk), parameter :: turns_farther = 0.8_rk  ! kink angle of the criterion [rad]
       real(rk), parameter :: far = 0.5_rk  ! K_eq at the end, over that of growth [-]
+      integer, parameter :: most_shut = 2
+      logical :: is_too_long
+      real(rk) :: least, length, wanted
 
-      is_too_long = tip%drive%intensity <= far*min(self%toughness, tip%drive_before%intensity)
+      wanted = far*min(self%toughness, tip%drive_before%intensity)
+      is_too_long = tip%drive%intensity <= wanted
       if (tip%has_wing) then
          is_too_long = is_too_long .and. abs(tip%drive_before%angle) > turns_farther
       else
          is_too_long = abs(tip%kink) > turns .and. &
                        (is_too_long .or. abs(tip%drive%angle) > turns_farther)
       end if
-      is_too_long = is_too_long .and. tip%advance > 0.0_rk .and. &
-                    0.5_rk*tip%advance > (1.0_rk - same_value) &
-                    *max(self%shortest_length, self%shortest*self%increment_of(tip%fracture))
-   end function is_too_long
+      halvings = 0
+      if (.not. (is_too_long .and. tip%advance > 0.0_rk)) return
+      least = (1.0_rk - same_value)*max(self%shortest_length, &
+                                        self%shortest*self%increment_of(tip%fracture))
+      length = tip%advance
+      do while (0.5_rk*length > least)
+         length = 0.5_rk*length
+         halvings = halvings + 1
+         if (.not. tip%drive%intensity > 0.0_rk .and. halvings == most_shut) exit
+         if (tip%drive%intensity**2*tip%advance > wanted**2*0.5_rk*length) exit
+      end do
+   end function halvings
 
    !> Target straight ahead of a tip.
    pure subroutine look_ahead(self, network, fracture, from, direction, target, at, stride)

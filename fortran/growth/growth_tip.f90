@@ -276,11 +276,12 @@ contains
       self%is_bracketed = .false.
    end subroutine move
 
-   !> Take back half of the last advance, in the same direction.
-   pure subroutine shorten(self)
+   !> Halve the last advance, in the same direction.
+   pure subroutine shorten(self, times)
       class(path_t), intent(inout) :: self
+      integer, intent(in) :: times
 
-      self%advance = 0.5_rk*self%advance
+      self%advance = 0.5_rk**times*self%advance
       self%xy = self%origin + self%advance*self%direction
       self%tries = 0
       self%is_bracketed = .false.

@@ -99,17 +99,17 @@ contains
       call checks%is_true(.not. has_turned, "the first kink is the criterion's")
    end subroutine keeps_the_first_kink
 
-   !> Half of an advance is taken back in its direction; the kink stays.
+   !> Three quarters of an advance are taken back in its direction; the kink stays.
    subroutine is_shortened()
       type(path_t) :: path
 
       call start(path, 30.0_rk*degree, .true.)
-      call path%shorten()
-      call checks%is_close(path%advance, 0.05_rk, 1.0e-15_rk, "half of the advance")
-      call checks%is_close(path%xy(2) - path%origin(2), 0.05_rk*cos(30.0_rk*degree), 1.0e-14_rk, &
+      call path%shorten(2)
+      call checks%is_close(path%advance, 0.025_rk, 1.0e-15_rk, "a quarter of the advance")
+      call checks%is_close(path%xy(2) - path%origin(2), 0.025_rk*cos(30.0_rk*degree), 1.0e-14_rk, &
                            "in the same direction")
-      call path%commit(0.0_rk, 0.05_rk)
-      call checks%is_close(path%stride, 0.05_rk, 0.0_rk, "length of the segment")
+      call path%commit(0.0_rk, 0.025_rk)
+      call checks%is_close(path%stride, 0.025_rk, 0.0_rk, "length of the segment")
    end subroutine is_shortened
 
    !> -K_II at the new end is slope*(kink - right) for a K_I of 1, so the criterion's angle
