@@ -89,6 +89,8 @@ module growth_tip
       procedure :: predict_path
       procedure :: has_state
       procedure :: is_loaded
+      procedure :: is_viscous
+      procedure :: has_viscous_layer
       procedure :: shut
       procedure :: carry
    end type tip_t
@@ -161,6 +163,22 @@ contains
       relative_error = max(self%intensity%k1_error, self%intensity%k2_error) &
                        /(self%scale_of(toughness)*self%drive%resistance)
    end function relative_error
+
+   !> Whether viscosity decides on the growth of a tip.
+   elemental logical function is_viscous(self)
+      class(tip_t), intent(in) :: self
+      real(rk), parameter :: considerable = 1.2_rk
+
+      is_viscous = self%viscous_rise > considerable
+   end function is_viscous
+
+   !> Whether viscosity matters for the growth of a tip.
+   elemental logical function has_viscous_layer(self)
+      class(tip_t), intent(in) :: self
+      real(rk), parameter :: noticeable = 1.03_rk
+
+      has_viscous_layer = self%viscous_rise > noticeable
+   end function has_viscous_layer
 
    !> Weight of what K_I and K_II demand: 1 where they are known to half of their values; 0 where
    !! they do not exceed their errors, as at closed wings: the path goes straight ahead, and in rock

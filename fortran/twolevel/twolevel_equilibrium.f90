@@ -26,7 +26,7 @@ module twolevel_equilibrium
    use twolevel_levels_state, only: levels_state_t
    use twolevel_search, only: begin_early, begin_wanted, join, search_t, see_overshoot, stop_gained
    use twolevel_segments, only: are_at_ligaments, can_join, shared_excesses
-   use twolevel_places, only: advances, place_tips
+   use twolevel_places, only: advances, place_tips, tip_cell_lengths
    use twolevel_probe, only: evaluated, measure_interaction, previous_try_t
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
@@ -326,11 +326,8 @@ contains
          return
       end if
       search%is_over = .true.
-      associate (length => self%now%segment%length, increment => self%increments())
-         trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, &
-                                                  self%now%segment, increment) &
-                                 /merge(min(length, increment), increment, length > 0.0_rk)])
-      end associate
+      trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
+                                               self%increments())/paces(self)])
       call self%pace%see_end(self%tape, self%tip%excess(self%rules%toughness), &
                              self%last%front%tip%excess(self%rules%toughness), &
                              self%tip%drive%angle, &
@@ -347,6 +344,20 @@ contains
       if (self%step%refined == again_max) return
       call find_refinements(self, self%before%time, trial%refinements)
    end subroutine conclude
+
+   !> The advance of each tip that counts as one in a step: its segment, or where viscosity matters
+   !! a part of its cell (docs/theory.md) [m].
+   pure function paces(self)
+      class(two_levels_t), intent(in) :: self
+      real(rk) :: paces(size(self%tip))
+      real(rk), parameter :: part = 0.35_rk
+
+      associate (length => self%now%segment%length, increment => self%increments())
+         paces = merge(min(length, increment), increment, length > 0.0_rk)
+      end associate
+      where (self%tip%has_viscous_layer() .and. self%tip%is_free) &
+         paces = min(paces, part*tip_cell_lengths(self%tip, self%problem))
+   end function paces
 
    !> Tips that may grow in a step, according to its first try: tips that have been placed ahead of
    !! their last accepted position, tips that are near their toughness within the error of their

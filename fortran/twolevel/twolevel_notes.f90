@@ -14,7 +14,7 @@ module twolevel_notes
    use growth_tip, only: tip_t
    use report_rows, only: chronicle_t, event_bifurcation, event_growth_onset, event_unstable
    use scene_types, only: fracture_t, growth_t, scene_t
-   use twolevel_errors, only: tip_excess_t
+   use twolevel_errors, only: by_flow, tip_excess_t
    use twolevel_jumps, only: jumps_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_moves, only: tolerance
@@ -230,6 +230,8 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
+         where (tip%has_viscous_layer() .and. tips%grows .and. tips%cell > 0.0_rk) &
+            tips%by_flow = by_flow(tip%advance, tips%cell)
          position_error = 0.0_rk
          if (allocated(now%stated_errors%tip)) position_error = now%stated_errors%tip
          call notes%jumps%follow(tip, toughness, position_error, dt, now%coarse%time, tips%jump, &

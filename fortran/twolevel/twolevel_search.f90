@@ -14,7 +14,6 @@ module twolevel_search
    use twolevel_segments, only: begin_segments, join_targets
    use twolevel_state, only: two_levels_t
    use twolevel_stepping, only: trial_t
-   use twolevel_tip_layers, only: is_viscous
    implicit none(type, external)
    private
 
@@ -65,7 +64,7 @@ contains
       logical :: is_on_way(size(self%tip))
 
       is_on_way = self%tip%path_target == target_none .and. &
-                  .not. (self%now%segment%stays() .or. self%has_gained() .or. is_viscous(self%tip))
+                  .not. (self%now%segment%stays() .or. self%has_gained() .or. self%tip%is_viscous())
    end function is_on_way
 
    !> Whether each tip exceeds its toughness by so much that the step goes too far.
@@ -211,7 +210,7 @@ contains
          ! A tip that stays at the end of its segment for a part of the step is slower than it will
          ! be: where viscosity decides, its excess says little.
          if (any(wants .and. (search%begun >= segments_max .or. &
-                              (far .and. .not. is_viscous(self%tip))))) then
+                              (far .and. .not. self%tip%is_viscous())))) then
             trial%jumps = .true.
             trial%time_error = 0.0_rk  ! jumps have no rates
             search%may_jump = search%may_jump .or. search%dt <= search%moment
@@ -232,7 +231,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(wants)
          if (.not. wants(i)) cycle
-         if (is_viscous(self%tip(i)) .and. .not. search%may_jump) then
+         if (self%tip(i)%is_viscous() .and. .not. search%may_jump) then
             call self%now%segment(i)%set_out_to(beyond(i))
          else
             call set_out(self%now%segment(i), excess(i), search%may_jump, &

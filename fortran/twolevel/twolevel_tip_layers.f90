@@ -18,7 +18,7 @@ module twolevel_tip_layers
    implicit none(type, external)
    private
 
-   public :: close_tips, find_tip_layers, is_viscous
+   public :: close_tips, find_tip_layers
 
    !> b sqrt(d), with d the length of the tip's coarse cell, below which viscosity is neglected [-].
    !! The opening there is then 3 % larger than without it.
@@ -53,7 +53,7 @@ contains
          cell = end_cell(self%problem%mesh%fracture, self%tip(i))
          self%tip(i)%layer_age = min(self%tip(i)%layer_age, &
                                      swept*diffusivity_at(self%problem, cell)*(dt/gain(i))**2)
-         if (may_jump .and. .not. is_viscous(self%last%front%tip(i))) cycle
+         if (may_jump .and. .not. self%last%front%tip(i)%is_viscous()) cycle
          length = abs(self%problem%mesh%fracture%cell_s(2, cell) &
                       - self%problem%mesh%fracture%cell_s(1, cell))
          solid = beside(self%problem%model%rock, self%problem%mesh, cell)
@@ -95,18 +95,10 @@ contains
             was_open = before%intensity%k1 > abs(before%intensity%k2)
             was_closed = .not. before%drive%intensity > 0.0_rk .and. &
                          abs(before%intensity%k2) > 0.0_rk
-            if (was_closed .or. (was_open .and. is_viscous(tip))) tip%drive%intensity = 0.0_rk
+            if (was_closed .or. (was_open .and. tip%is_viscous())) tip%drive%intensity = 0.0_rk
          end associate
       end do
    end subroutine close_tips
-
-   !> Whether viscosity decides on the growth of a tip.
-   elemental logical function is_viscous(tip)
-      type(tip_t), intent(in) :: tip
-      real(rk), parameter :: considerable = 1.2_rk
-
-      is_viscous = tip%viscous_rise > considerable
-   end function is_viscous
 
    !> The rock on both sides of a fracture cell.
    pure function beside(rock, mesh, cell) result(solid)

@@ -3,13 +3,14 @@
 program test_twolevel_errors
    use base_kinds, only: rk
    use testing_checks, only: checks_t
-   use twolevel_errors, only: stated_errors_t, tip_excess_t
+   use twolevel_errors, only: by_flow, stated_errors_t, tip_excess_t
    implicit none(type, external)
 
    type(checks_t) :: checks
 
    call test_growth()
    call test_bent()
+   call test_viscous()
    call test_onset()
    call test_steps()
    call checks%finish()
@@ -61,6 +62,18 @@ contains
       call checks%is_close(stated_errors%tip(2), 1.0e-3_rk + 5.0e-3_rk*2.0_rk/4.0_rk, 1.0e-12_rk, &
                            "longer wing")
    end subroutine test_bent
+
+   !> Where viscosity matters, steps of half a cell count by the square, short ones as usual.
+   subroutine test_viscous()
+      type(stated_errors_t) :: stated_errors
+
+      call checks%is_close(by_flow(0.5_rk, 1.0_rk), 1.5_rk, 1.0e-12_rk, "half a cell")
+      call checks%is_close(by_flow(0.01_rk, 2.0_rk), 0.75_rk, 1.0e-12_rk, "a short step")
+      call stated_errors%accept(1.0_rk, 3.0e6_rk, [tip_excess_t(grows=.true., cell=0.01_rk, &
+                                                                by_flow=0.02_rk)], 1.0_rk, 0.0_rk, &
+                                0.0_rk, 1.0_rk)
+      call checks%is_close(stated_errors%tip(1), 1.0e-3_rk + 0.02_rk, 1.0e-12_rk, "is added")
+   end subroutine test_viscous
 
    !> A fracture of 20 m takes up 2 of 8 units of fluid after K_eq has first been equal to K_IC
    !! within its error, so a quarter of its length may be new. After growth it is not counted.
