@@ -86,24 +86,27 @@ contains
    end function size_of
 
    !> Eliminate all fronts. What they leave for the kept unknowns stays in the workspace.
-   subroutine eliminate_fronts(self, matrices, work, wrong)
+   recursive subroutine eliminate_fronts(self, matrices, work, wrong)
       class(factors_t), intent(inout) :: self  !< `factor` has its size
       class(element_matrices_t), intent(in) :: matrices
       type(workspace_t), intent(out) :: work
       integer(ik), intent(out) :: wrong  !< place of a pivot of the wrong sign in its front; 0: none
-      type(workspace_t), allocatable :: part(:)
-      integer(ik), allocatable :: wrong_in(:)
+      type(workspace_t) :: part(size(self%parts%first))
+      integer(ik) :: k, wrong_in(size(self%parts%first))
 
-      allocate (part(size(self%parts%first)), wrong_in(size(self%parts%first)))
-      if (is_in_team()) then
-         call eliminate_parts(self, matrices, part, wrong_in)
-      else
+      if (.not. is_in_team()) then
          !$omp parallel if(size(part) > 1)
          !$omp single
-         call eliminate_parts(self, matrices, part, wrong_in)
+         call eliminate_fronts(self, matrices, work, wrong)
          !$omp end single
          !$omp end parallel
+         return
       end if
+      !$omp taskloop grainsize(1) default(shared)
+      do k = 1, size(part, kind=ik)
+         call eliminate_part(self, matrices, k, part(k), wrong_in(k))
+      end do
+      !$omp end taskloop
       wrong = maxval([0_ik, wrong_in])
       if (wrong == 0) call eliminate_rest(self, matrices, self%parts, part, work, wrong)
    end subroutine eliminate_fronts
@@ -123,21 +126,6 @@ contains
       end do
       call eliminate_rest(self, matrices, self%lasting, part, work, wrong)
    end subroutine eliminate_again
-
-   !> Eliminate the fronts of all parts, each as a task of its own for the team of threads.
-   subroutine eliminate_parts(self, matrices, part, wrong)
-      class(factors_t), intent(inout) :: self
-      class(element_matrices_t), intent(in) :: matrices
-      type(workspace_t), intent(inout) :: part(:)
-      integer(ik), intent(inout) :: wrong(:)  !< (parts) place of a pivot of the wrong sign; 0: none
-      integer(ik) :: k
-
-      !$omp taskloop grainsize(1) default(shared)
-      do k = 1, size(part, kind=ik)
-         call eliminate_part(self, matrices, k, part(k), wrong(k))
-      end do
-      !$omp end taskloop
-   end subroutine eliminate_parts
 
    !> Eliminate the fronts of a part: only what its root leaves stays in the workspace.
    subroutine eliminate_part(self, matrices, k, work, wrong)

@@ -173,7 +173,7 @@ contains
    end subroutine eliminate
 
    !> The same for pivots of given signs. The diagonal of the factor is positive.
-   subroutine eliminate_signed(matrix, n, signs, place)
+   recursive subroutine eliminate_signed(matrix, n, signs, place)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: matrix(n, n)
       real(rk), intent(in) :: signs(:)  !< (pivots) 1 or -1
@@ -183,6 +183,13 @@ contains
       n_pivots = size(signs, kind=ik)
       if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
          call eliminate_in_panels(matrix, n, n, signs, place)
+         return
+      else if (.not. is_in_team()) then
+         !$omp parallel if(n > rows_for_threads)
+         !$omp single
+         call eliminate_signed(matrix, n, signs, place)
+         !$omp end single
+         !$omp end parallel
          return
       end if
       do first = 1, n_pivots, columns_together
@@ -199,15 +206,7 @@ contains
             do k = 1, m
                if (own(k) < 0.0_rk) matrix(after:, first + k - 1) = -matrix(after:, first + k - 1)
             end do
-            if (is_in_team()) then
-               call subtract_signed(matrix, n, own, first)
-            else
-               !$omp parallel if(n - after > rows_for_threads)
-               !$omp single
-               call subtract_signed(matrix, n, own, first)
-               !$omp end single
-               !$omp end parallel
-            end if
+            call subtract_signed(matrix, n, own, first)
          end associate
       end do
    end subroutine eliminate_signed
