@@ -19,14 +19,7 @@ submodule(coarse_model) coarse_steps
 
 contains
 
-   module subroutine equilibrate(self, mesh, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt  !< a time in which no fluid moves noticeably [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
+   module procedure equilibrate
       type(flow_paths_t) :: none
       real(rk) :: time
 
@@ -39,16 +32,9 @@ contains
       call solve_step(self, mesh, none, dt, state, timers, report, error)
       state%time = time
       if (report%converged) call rest_fluid(self, state)
-   end subroutine equilibrate
+   end procedure equilibrate
 
-   module subroutine advance(self, mesh, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt  !< [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
+   module procedure advance
       type(flow_paths_t) :: paths
 
       call timers%heed(error)
@@ -68,7 +54,7 @@ contains
       else
          call self%rock_wells%update_rings(dt, [real(rk) ::], state%rings)
       end if
-   end subroutine advance
+   end procedure advance
 
    !> A step with pressure-controlled wells in the rock, repeated until the results agree with the
    !! controls that have been tried.

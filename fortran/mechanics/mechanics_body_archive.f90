@@ -9,13 +9,7 @@ submodule(mechanics_body) mechanics_body_archive
 
 contains
 
-   module subroutine visit(self, archive, scene, start, network, timers, error)
-      class(body_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: start, network
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure visit
       logical :: has_probes
 
       call archive%enter("body")
@@ -52,7 +46,7 @@ contains
       call archive%leave()
       if (allocated(archive%fault)) return
       if (archive%is_loading .and. has_probes) call self%find_probes(scene, error)
-   end subroutine visit
+   end procedure visit
 
    subroutine visit_intensities(archive, intensity)
       type(archive_t), intent(inout) :: archive

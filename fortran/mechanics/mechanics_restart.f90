@@ -8,21 +8,15 @@ submodule(mechanics_simulation) mechanics_restart
 
 contains
 
-   module subroutine prepare(self, scene)
-      class(mechanics_simulation_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
+   module procedure prepare
 
       self%end_time = scene%load%to
       call self%programme%begin(scene%load)
       call self%take_scene(scene)
       call self%chronicle%clear()
-   end subroutine prepare
+   end procedure prepare
 
-   module subroutine visit(self, archive, timers, error)
-      class(mechanics_simulation_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure visit
       integer(lk) :: n
 
       call visit_simulation(archive, self)
@@ -51,6 +45,6 @@ contains
       call archive%count("good", n)
       if (archive%is_loading .and. n > 0_lk) allocate (self%good)
       if (n > 0_lk) call visit_snapshot(archive, "good", self%good)
-   end subroutine visit
+   end procedure visit
 
 end submodule mechanics_restart

@@ -51,10 +51,10 @@ module report_column
       character(len=28) :: name = ""
       character(len=8) :: unit = "-"
       character(len=40) :: runs = always  !< runs in which it is written
-      character(len=160) :: meaning = ""
+      character(len=160) :: meaning = ""  !< empty: `Estimated error of` the name without `_error`
       !> where its error is: a column, key or field of this file, or "X of FILE"; or "none: " and
       !! the reason
-      character(len=128) :: error = ""
+      character(len=128) :: error = an_error
    end type column_t
 
 contains

@@ -4,6 +4,7 @@
 module report_rows
    use base_kinds, only: ik, lk, rk
    use base_texts, only: add_once, add_text, text_t
+   use fine_tip_types, only: intensity_t
    implicit none(type, external)
    private
 
@@ -180,19 +181,11 @@ module report_rows
       integer(ik) :: tip = 0
       integer(ik) :: fracture = 0
       real(rk) :: xy(2) = 0.0_rk  !< [m]
-      real(rk) :: k1 = 0.0_rk  !< K_I by the interaction integral [Pa m^1/2]
-      real(rk) :: k2 = 0.0_rk  !< K_II by the interaction integral [Pa m^1/2]
-      real(rk) :: k1_dc = 0.0_rk  !< K_I by displacement correlation [Pa m^1/2]
-      real(rk) :: k2_dc = 0.0_rk  !< K_II by displacement correlation [Pa m^1/2]
+      type(intensity_t) :: intensity
       real(rk) :: keq = 0.0_rk  !< equivalent intensity K_eq [Pa m^1/2]
       real(rk) :: g = 0.0_rk  !< energy release rate [J/m2]
       real(rk) :: angle = 0.0_rk  !< kink from the old direction, counter-clockwise [rad]
       real(rk) :: advance = 0.0_rk  !< length grown [m]
-      real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
-      real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
-      real(rk) :: g_error = 0.0_rk  !< estimated error of g_domain [J/m2]
-      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< errors of k1_dc, k2_dc [Pa m^1/2]
-      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< k1, k2 less mesh error [Pa m^1/2]
       real(rk) :: apparent_toughness = 0.0_rk  !< with the viscosity of the fluid [Pa m^1/2]
       type(tip_errors_t) :: error
    end type tip_row_t

@@ -1,14 +1,12 @@
 !> Slip events in an archive (base_archive).
 submodule(report_slip) report_slip_archive
    use, intrinsic :: iso_c_binding, only: c_loc
-   use base_kinds, only: ik, lk
+   use base_kinds, only: lk
    implicit none(type, external)
 
 contains
 
-   module subroutine visit(self, archive)
-      class(slip_catalogue_t), intent(inout), target :: self
-      type(archive_t), intent(inout) :: archive
+   module procedure visit
       integer(lk) :: i, n
 
       call archive%item("breadth", self%breadth)
@@ -45,7 +43,7 @@ contains
       call archive%agree("news", [allocated(self%news), allocated(self%live), &
                                   allocated(self%patch)])
       call visit_shear(archive, self%last)
-   end subroutine visit
+   end procedure visit
 
    subroutine visit_shear(archive, shear)
       type(archive_t), intent(inout) :: archive

@@ -90,12 +90,13 @@ contains
       allocate (self%fields(16))
    end subroutine begin
 
-   !> A number in each cell.
+   !> A number in each cell; no field without values.
    subroutine add_scalar(self, name, values)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: values(:)  !< (n_cells) [SI]
+      real(rk), intent(in), optional :: values(:)  !< (n_cells) [SI]
 
+      if (.not. present(values)) return
       call new_field(self, name)
       self%fields(self%n_fields)%reals = values
    end subroutine add_scalar

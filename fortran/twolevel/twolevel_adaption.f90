@@ -22,12 +22,7 @@ submodule(twolevel_state) twolevel_adaption
 
 contains
 
-   module subroutine judge_mesh(self, may_coarsen, sizes, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      logical, intent(in) :: may_coarsen
-      real(rk), allocatable, intent(out) :: sizes(:)
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure judge_mesh
       real(rk), parameter :: aim = 0.7_rk  ! error that is aimed at, over the tolerance [-]
       real(rk), parameter :: worth = 0.6_rk  ! cells after coarsening, at most, over those before
       type(levels_state_t) :: start
@@ -67,7 +62,7 @@ contains
             deallocate (sizes)
          end if
       end associate
-   end subroutine judge_mesh
+   end procedure judge_mesh
 
    !> Cells on fractures grow to at most a fifth of the fracture's length, where they are smaller.
    pure subroutine limit_change(scene, mesh, sizes, change)

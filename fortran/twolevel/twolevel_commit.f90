@@ -1,7 +1,6 @@
 !> Make a step the accepted state: what the run keeps of it. `commit_step` is the one place where
 !! this happens.
 submodule(twolevel_state:twolevel_steps) twolevel_commit
-use base_errors, only: error_t
 use base_kinds, only: rk
 use coarse_rock, only: shear_beside
 use mesh_types, only: fracture_mesh_t
@@ -28,9 +27,7 @@ contains
 
 !> Make the state that was found the accepted one: sums over the run, limits, and the event log.
    !! An error if a limit stops the run.
-module subroutine commit_step(self, error)
-   class(two_levels_t), intent(inout) :: self
-   type(error_t), allocatable, intent(out) :: error
+module procedure commit_step
    type(history_row_t) :: row
    real(rk), allocatable :: pressure(:), of_load(:, :)
 
@@ -70,7 +67,7 @@ module subroutine commit_step(self, error)
       call warn_of_heat(self%now%heat, self%summary)
    end if
    call note_state(self, row%mass_error_relative)
-end subroutine commit_step
+end procedure commit_step
 
 !> What the errors of the last step need to know.
 pure type(step_facts_t) function facts_of(self) result(facts)

@@ -22,11 +22,7 @@ submodule(twolevel_state) twolevel_remeshing
 
 contains
 
-   module subroutine grow_coarse(self, grew, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      logical, intent(out) :: grew
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure grow_coarse
       real(rk), allocatable :: centres(:, :)
       logical :: is_straightened
       real(rk) :: threshold
@@ -43,13 +39,9 @@ contains
       end if
       call self%remesh_coarse(centres, timers, error)
       call discard(self%kept_problem)
-   end subroutine grow_coarse
+   end procedure grow_coarse
 
-   module subroutine remesh_coarse(self, centres, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: centres(:, :)
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure remesh_coarse
       type(coarse_problem_t), allocatable :: of_try, problem
       type(mesh_map_t) :: map
       type(profiles_t) :: profiles
@@ -119,7 +111,7 @@ contains
                           self%problem%model%connections, layout, layout_of(self%problem), guess)
       self%now%coarse%guess = guess
       self%now%has_new_mesh = .true.
-   end subroutine remesh_coarse
+   end procedure remesh_coarse
 
    !> Numbering of the unknowns on the fractures.
    pure type(fracture_layout_t) function layout_of(problem) result(layout)

@@ -7,9 +7,7 @@ implicit none(type, external)
 
 contains
 
-module subroutine keep_try(self, is_last, may_jump)
-   class(two_levels_t), intent(inout) :: self
-   logical, intent(inout) :: is_last, may_jump
+module procedure keep_try
    type(refinement_t), allocatable :: none(:)
    integer(ik) :: cells(3), recorded_cells(3)
    real(rk) :: recorded(3), times(3)
@@ -31,13 +29,9 @@ module subroutine keep_try(self, is_last, may_jump)
    self%pace%recorded_end = recorded(1) + recorded(3)
    call self%tape%keep("is_last", is_last)
    call self%tape%keep("may_jump", may_jump)
-end subroutine keep_try
+end procedure keep_try
 
-module subroutine replay_step(self, trial, timers, error)
-   class(two_levels_t), intent(inout) :: self
-   type(trial_t), intent(out) :: trial
-   type(timers_t), intent(inout) :: timers
-   type(error_t), allocatable, intent(out) :: error
+module procedure replay_step
    logical :: ends_at_switch, is_found, is_last, may_jump
    real(rk) :: left
 
@@ -84,7 +78,7 @@ module subroutine replay_step(self, trial, timers, error)
       call self%put_back()
    end do
    if (allocated(self%pace%why_not)) call leave_record(self, self%pace%why_not)
-end subroutine replay_step
+end procedure replay_step
 
 !> Refine windows as in the record.
 subroutine replay_refinements(self, timers, error)

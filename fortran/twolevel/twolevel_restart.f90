@@ -23,9 +23,7 @@ submodule(twolevel_state) twolevel_restart
 
 contains
 
-   module subroutine prepare(self, scene)
-      class(two_levels_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
+   module procedure prepare
 
       self%end_time = scene%time%end
       self%tape%is_recording = .true.
@@ -36,13 +34,9 @@ contains
       self%rules = rules_of_scene(self%scene)
       self%load_pressure = pressure_scale(self%scene)
       allocate (self%problem)
-   end subroutine prepare
+   end procedure prepare
 
-   module subroutine visit(self, archive, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure visit
 
       ! As the next step does at its beginning.
       if (.not. archive%is_loading) then
@@ -86,7 +80,7 @@ contains
       call visit_control(archive, self)
       if (allocated(self%problem%heat)) self%summary%heat = heat_row(self%now%heat)
       if (archive%is_loading) call go_beyond_end(self)
-   end subroutine visit
+   end procedure visit
 
    !> The tips are at the ends of the network, and where their segments say, which end in the last
    !! coarse cells.

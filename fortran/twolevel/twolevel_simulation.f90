@@ -2,15 +2,13 @@
 submodule(twolevel_state) twolevel_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use base_texts, only: text_t
    use base_timers, only: phase_mesh, phase_remesh, timers_t
    use base_tolerances, only: same_time
    use coarse_model, only: new_state
    use growth_network, only: fracture_length, network_of_scene
    use mesh_builder, only: build_mesh, build_mesh_sized
    use scene_sizes, only: sizes_text
-   use scene_plausible, only: doubts_of_scene
-   use scene_types, only: growth_t, scene_t
+   use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_field_errors, only: load_errors
    use twolevel_heat, only: set_heat
@@ -31,11 +29,7 @@ submodule(twolevel_state) twolevel_simulation
 
 contains
 
-   module subroutine begin(self, scene, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure begin
 
       self%end_time = scene%time%end
       self%tape%is_recording = .true.
@@ -48,7 +42,7 @@ contains
       if (self%scene%growth%enabled) self%summary%growth_jumps = 0
       call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
       if (.not. allocated(error)) call note_features(self)
-   end subroutine begin
+   end procedure begin
 
    !> Mesh, discretize and set the state before the load.
    subroutine mesh_levels(self, scene, timers, error)
@@ -199,10 +193,7 @@ contains
       end associate
    end subroutine note_features
 
-   module subroutine grow(self, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure grow
       logical :: may_grow
 
       may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
@@ -242,7 +233,7 @@ contains
          if (.not. allocated(self%ending)) self%ending = at_end
          self%owes_state = .false.
       end if
-   end subroutine grow
+   end procedure grow
 
    !> Evaluate the intensities in a state without growth, with refined windows where growth after it
    !! requires this.

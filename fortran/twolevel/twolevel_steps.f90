@@ -50,10 +50,7 @@ submodule(twolevel_state) twolevel_steps
 
 contains
 
-   module subroutine next_state(self, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure next_state
       type(trial_t) :: trial
       real(rk) :: wanted
       logical :: is_first
@@ -80,7 +77,7 @@ contains
       end if
       if (.not. allocated(error)) call commit_step(self, error)
       if (allocated(error)) call self%put_back()
-   end subroutine next_state
+   end procedure next_state
 
    !> Find a step from the stored state, from a record or freely.
    subroutine find_step(self, trial, wanted, timers, error)

@@ -1,8 +1,11 @@
 !> Growth or wells that a scene has from a restart on. The state has been loaded as that of a scene
 !! with the wells and the growth of the checkpoint; mesh and fields stay.
 submodule(twolevel_state:twolevel_simulation) twolevel_switch
+use base_texts, only: text_t
 use coarse_wells, only: control_rate, rock_wells_t
 use report_rows, only: entry_row_t
+use scene_plausible, only: doubts_of_scene
+use scene_types, only: growth_t
 use twolevel_places, only: place_tips
 use twolevel_schedule, only: next_switch
 use twolevel_well_rows, only: entry_rows, well_pressures
@@ -10,10 +13,7 @@ implicit none(type, external)
 
 contains
 
-module subroutine take_over(self, scene, error)
-   class(two_levels_t), intent(inout) :: self
-   type(scene_t), intent(in) :: scene  !< the wells of the state are its first ones
-   type(error_t), allocatable, intent(out) :: error
+module procedure take_over
    type(growth_t) :: growth
    type(timers_t) :: timers
    real(rk), allocatable :: share(:, :)
@@ -62,7 +62,7 @@ module subroutine take_over(self, scene, error)
    call begin_windows(self)
    call self%evaluate(timers, error)
    if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
-end subroutine take_over
+end procedure take_over
 
 !> Add wells at rest after those of the state.
 subroutine add_wells(self, n_old, n_controlled, n_rock)

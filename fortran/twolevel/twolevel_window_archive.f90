@@ -7,15 +7,7 @@ submodule(twolevel_window) twolevel_window_archive
 
 contains
 
-   module subroutine visit(self, archive, scene, mesher, coarse, values, tips, error)
-      class(window_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      type(scene_t), intent(in) :: scene
-      type(mesher_t), intent(in) :: mesher
-      type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
-      type(window_tip_t), intent(in) :: tips(:)
-      type(error_t), allocatable, intent(out) :: error
+   module procedure visit
 
       call archive%enter("window")
       call archive%set_extent("serves", -1_ik)
@@ -47,7 +39,7 @@ contains
       call self%project(mesher, coarse, values%is_grown, error)
       if (allocated(error)) return
       if (any(self%faces%coarse_cell < 1)) call archive%set_fault("cell_fracture")
-   end subroutine visit
+   end procedure visit
 
    subroutine visit_made(self, archive)
       type(window_t), intent(inout) :: self

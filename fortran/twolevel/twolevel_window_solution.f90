@@ -13,15 +13,7 @@ submodule(twolevel_window) twolevel_window_solution
 
 contains
 
-   module subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
-      class(window_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
-      type(state_t), intent(in) :: state
-      type(window_tip_t), intent(inout) :: tips(:)
-      type(window_history_t), intent(inout) :: history
-      type(error_t), allocatable, intent(out) :: error
+   module procedure find_intensities
       integer(ik) :: i
       logical :: again
 
@@ -77,13 +69,9 @@ contains
             end if
          end associate
       end do
-   end subroutine find_intensities
+   end procedure find_intensities
 
-   module subroutine prepare_matrix(self, scene, law, error)
-      class(window_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(contact_law_t), intent(in) :: law(:)
-      type(error_t), allocatable, intent(out) :: error
+   module procedure prepare_matrix
       type(face_conditions_t) :: conditions
 
       conditions = self%faces%conditions(self%model%mesh, scene%discretization%face_condition, law)
@@ -92,7 +80,7 @@ contains
       end if
       if (same_conditions(self%model, conditions)) return
       call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
-   end subroutine prepare_matrix
+   end procedure prepare_matrix
 
    !> Update the time-dependent values of the sides.
    pure subroutine follow_sides(self, scene)
@@ -120,24 +108,13 @@ contains
       end do
    end subroutine find_probes
 
-   pure module function curved_edge(self, coarse, displacement, gradient) result(edge)
-      class(window_t), intent(in) :: self
-      type(mesh_t), intent(in) :: coarse
-      real(rk), intent(in) :: displacement(:, :)
-      real(rk), intent(in) :: gradient(:, :, :)
-      real(rk), allocatable :: edge(:, :)
+   module procedure curved_edge
 
       edge = self%map%curved_edge(self%model%mesh, coarse, displacement, gradient)
       call self%sides%take_given(self%model%mesh, edge)
-   end function curved_edge
+   end procedure curved_edge
 
-   module subroutine intensities_with(self, history, k, error, edge, pressure)
-      class(window_t), intent(inout) :: self
-      type(window_history_t), intent(in) :: history
-      real(rk), intent(inout) :: k(:, :)
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), intent(in), optional :: edge(:, :)
-      real(rk), intent(in), optional :: pressure(:)
+   module procedure intensities_with
       type(fine_loads_t) :: loads
       type(contact_t) :: contact
       type(intensity_t) :: result
@@ -162,7 +139,7 @@ contains
             k(:, tip) = [result%k1, result%k2]
          end associate
       end do
-   end subroutine intensities_with
+   end procedure intensities_with
 
    !> Set the contact on a new mesh: that of the previous mesh, and outside of it that of the coarse
    !! level.
