@@ -50,7 +50,7 @@ module algebra_elimination
       integer(ik) :: n = 0  !< unknowns
       integer(int64), allocatable :: first_entry(:)  !< (fronts + 1) in `factor`
       real(rk), allocatable :: factor(:)  !< the columns of the fronts' pivots
-      real(rk), allocatable :: schur(:, :)  !< what is left for the kept unknowns
+      real(rk), allocatable :: schur(:, :)  !< Schur complement of the kept unknowns
       !> (n) signs of the pivots in the order of elimination; not allocated: all are positive
       real(rk), allocatable :: signs(:)
    end type factors_t
@@ -238,7 +238,7 @@ contains
       triangle_of = (n*(n + 1))/2
    end function triangle_of
 
-   !> Add up a front, eliminate its pivots, and put what is left on the stack.
+   !> Add up a front, eliminate its pivots, and put its Schur complement on the stack.
    subroutine eliminate_front(self, matrices, i, work, place)
       class(factors_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices
@@ -288,8 +288,8 @@ contains
       class(element_matrices_t), intent(in) :: matrices
       integer(ik), intent(in) :: i
       integer(ik), intent(in) :: place(:)  !< (unknowns) in the front
-      integer(ik), intent(inout) :: places(:)  !< room for the places of an element
-      real(rk), intent(inout) :: matrix(:)  !< room for its matrix
+      integer(ik), intent(inout) :: places(:)  !< workspace: places of an element
+      real(rk), intent(inout) :: matrix(:)  !< workspace: its matrix
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: front(n, n)
       integer(ik) :: e, j, k, m
@@ -322,7 +322,7 @@ contains
       end do
    end subroutine pop
 
-   !> What is left at the end: the Schur complement.
+   !> The Schur complement of the kept unknowns.
    pure subroutine sum_up_kept(self, matrices, work)
       class(factors_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices

@@ -63,7 +63,7 @@ contains
       end do
    end subroutine add_triangle
 
-   !> Put what is left of a front on the stack.
+   !> Put the Schur complement of a front on the stack.
    pure subroutine push(front, n, n_pivots, stack, top)
       integer(ik), intent(in) :: n, n_pivots
       real(rk), intent(in) :: front(n, n)
@@ -95,7 +95,7 @@ contains
       integer(ik), intent(in) :: rows(n - n_pivots)
       integer(ik), intent(in) :: first  !< pivot
       real(rk), intent(inout) :: y(:)
-      real(rk), intent(out) :: part(n)  !< room
+      real(rk), intent(out) :: part(n)  !< workspace
       integer(ik) :: j, k
 
       part(:n_pivots) = y(first:first + n_pivots - 1)
@@ -119,7 +119,7 @@ contains
       integer(ik), intent(in) :: rows(n - n_pivots)
       integer(ik), intent(in) :: first  !< pivot
       real(rk), intent(inout) :: y(:)
-      real(rk), intent(out) :: part(n)  !< room
+      real(rk), intent(out) :: part(n)  !< workspace
       integer(ik) :: j
 
       part(:n_pivots) = y(first:first + n_pivots - 1)
@@ -150,9 +150,8 @@ contains
       end do
    end function product_of
 
-   !> Replace the first columns of the lower triangle by those of the factor, and the rest by what
-   !! is left of the matrix without these unknowns (its Schur complement). The upper triangle is
-   !! lost.
+   !> Replace the first columns of the lower triangle by those of the factor, and the rest by the
+   !! Schur complement. The upper triangle is lost.
    subroutine eliminate(matrix, n, n_pivots, place)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: matrix(n, n)

@@ -9,14 +9,12 @@ module report_rows
    private
 
    public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
-   public :: event_growth_jump, event_growth_uncertain
-   public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
-   public :: event_replay, event_step_cut, event_unstable, event_well, event_window
-   public :: fracture_fields_t
-   public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
-   public :: heat_row_t, matrix_fields_t
-   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
-   public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t, window_fields_t
+   public :: event_growth_jump, event_growth_uncertain, event_growth_onset, event_joint
+   public :: event_opening, event_remesh, event_slip_onset, event_replay, event_step_cut
+   public :: event_unstable, event_well, event_window, fracture_fields_t, fracture_errors_t
+   public :: history_errors_t, history_row_t, intersection_fields_t, heat_row_t, matrix_fields_t
+   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t, entry_errors_t
+   public :: entry_row_t, well_errors_t, well_row_t, window_fields_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
    type :: fluid_totals_t
@@ -330,7 +328,6 @@ module report_rows
    contains
       procedure :: clear
       procedure :: add_event
-      procedure :: add_tip
       procedure :: add_remark
    end type chronicle_t
 
@@ -457,14 +454,6 @@ contains
       longer(size(longer)) = event
       call move_alloc(longer, self%events)
    end subroutine add_event
-
-   !> Add a row of tips.csv.
-   pure subroutine add_tip(self, row)
-      class(chronicle_t), intent(inout) :: self
-      type(tip_row_t), intent(in) :: row
-
-      self%tips = [self%tips, row]
-   end subroutine add_tip
 
    !> Add a line for the log.
    pure subroutine add_remark(self, line)

@@ -6,7 +6,7 @@
 module report_run
    use base_archive, only: archive_t
    use base_errors, only: error_t, keep_first
-   use base_kinds, only: ik, lk, rk
+   use base_kinds, only: lk, rk
    use base_texts, only: add_text, text_t
    use base_timers, only: timers_t
    use report_files, only: place_t, remove_file, reserve_file, write_text_file

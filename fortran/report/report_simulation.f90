@@ -255,7 +255,7 @@ contains
                                   *self%rules%toughness
          row%error%position = -1.0_rk
          if (allocated(self%position_error)) row%error%position = self%position_error(i)
-         call self%chronicle%add_tip(row)
+         self%chronicle%tips = [self%chronicle%tips, row]
          associate (summary => self%summary, resistance => resistance_of(self%tip(i), any_grew))
             if (over_toughness(self%scene, row%keq/resistance) > summary%keq_over_kic) then
                summary%keq_over_kic = over_toughness(self%scene, row%keq/resistance)

@@ -174,7 +174,7 @@ contains
 
       listed = time
       if (self%counts) listed = real(history_row, rk)
-      call grid%set_history_row(history_row)
+      grid%history_row = history_row
       file = file_name(i, self%n_written)
       call grid%write(self%directory//"/"//file, error)
       if (.not. allocated(error)) call self%collections(i)%add(listed, file)

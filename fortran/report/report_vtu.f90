@@ -42,7 +42,7 @@ module report_vtu
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
       real(rk) :: time = 0.0_rk  !< [s]
-      integer(ik) :: history_row = 0  !< row of history.csv of the same state, from 1; 0: none
+      integer(ik), public :: history_row = 0  !< row of history.csv of the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
    contains
@@ -52,7 +52,6 @@ module report_vtu
       procedure, private :: add_integer
       generic :: add => add_scalar, add_vector, add_integer
       procedure :: add_at_points
-      procedure :: set_history_row
       procedure :: set_units
       procedure :: write => write_grid
    end type vtu_grid_t
@@ -140,14 +139,6 @@ contains
       call new_field(self, name)
       self%fields(self%n_fields)%integers = values
    end subroutine add_integer
-
-   !> Set the row of history.csv of the same state.
-   pure subroutine set_history_row(self, row)
-      class(vtu_grid_t), intent(inout) :: self
-      integer(ik), intent(in) :: row  !< from 1
-
-      self%history_row = row
-   end subroutine set_history_row
 
    !> Set the units of the fields added so far, VTK's key UNITS_LABEL.
    pure subroutine set_units(self, names, units)

@@ -31,17 +31,17 @@ contains
 
    module procedure begin
 
-      self%end_time = scene%time%end
-      self%tape%is_recording = .true.
-      call self%stepper%begin(scene%time)
-      call mesh_levels(self, scene, timers, error)
-      if (allocated(error)) return
-      call self%catalogue%begin(scene%output%out_of_plane_length, &
-                                scene%output%stimulated_jump, scene%output%seismic_slip_rate)
-      call self%notes%begin(size(self%tip))
-      if (self%scene%growth%enabled) self%summary%growth_jumps = 0
-      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
-      if (.not. allocated(error)) call note_features(self)
+   self%end_time = scene%time%end
+   self%tape%is_recording = .true.
+   call self%stepper%begin(scene%time)
+   call mesh_levels(self, scene, timers, error)
+   if (allocated(error)) return
+   call self%catalogue%begin(scene%output%out_of_plane_length, &
+                             scene%output%stimulated_jump, scene%output%seismic_slip_rate)
+   call self%notes%begin(size(self%tip))
+   if (self%scene%growth%enabled) self%summary%growth_jumps = 0
+   call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
+   if (.not. allocated(error)) call note_features(self)
    end procedure begin
 
    !> Mesh, discretize and set the state before the load.
@@ -194,45 +194,45 @@ contains
    end subroutine note_features
 
    module procedure grow
-      logical :: may_grow
+   logical :: may_grow
 
-      may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
-      self%owes_state = .false.
-      if (self%scene%growth%intensities) then
-         if (may_grow .and. self%scene%growth%in_equilibrium()) then
-            call note_equilibrium(self, error)
-         else
-            call evaluate_tips(self, timers, error)
-            if (allocated(error)) return
-            if (may_grow) then
-               call follow_tips(self, timers, error)
-            else
-               self%tip%advance = 0.0_rk
-               call self%note_tips(load_errors=load_errors_of(self))
-            end if
-         end if
-         if (allocated(error)) return
-         associate (toughness => self%rules%toughness, time => self%now%coarse%time)
-            if (self%scene%growth%in_equilibrium()) then
-               call note_uncertain_tips(self, self%notes%is_uncertain)
-               call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
-                                           self%chronicle)
-               if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
-            end if
-            call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
-         end associate
-         call self%count_unknowns()
-         call self%heed_limits(error)
-         if (allocated(error)) return
-      end if
+   may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
+   self%owes_state = .false.
+   if (self%scene%growth%intensities) then
       if (may_grow .and. self%scene%growth%in_equilibrium()) then
-         call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
-                                         self%increments(), self%chronicle)
+         call note_equilibrium(self, error)
+      else
+         call evaluate_tips(self, timers, error)
+         if (allocated(error)) return
+         if (may_grow) then
+            call follow_tips(self, timers, error)
+         else
+            self%tip%advance = 0.0_rk
+            call self%note_tips(load_errors=load_errors_of(self))
+         end if
       end if
-      if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
-         if (.not. allocated(self%ending)) self%ending = at_end
-         self%owes_state = .false.
-      end if
+      if (allocated(error)) return
+      associate (toughness => self%rules%toughness, time => self%now%coarse%time)
+         if (self%scene%growth%in_equilibrium()) then
+            call note_uncertain_tips(self, self%notes%is_uncertain)
+            call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
+                                        self%chronicle)
+            if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
+         end if
+         call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+      end associate
+      call self%count_unknowns()
+      call self%heed_limits(error)
+      if (allocated(error)) return
+   end if
+   if (may_grow .and. self%scene%growth%in_equilibrium()) then
+      call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
+                                      self%increments(), self%chronicle)
+   end if
+   if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
+      if (.not. allocated(self%ending)) self%ending = at_end
+      self%owes_state = .false.
+   end if
    end procedure grow
 
    !> Evaluate the intensities in a state without growth, with refined windows where growth after it

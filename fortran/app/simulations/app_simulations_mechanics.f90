@@ -7,21 +7,21 @@ submodule(app_simulations) app_simulations_mechanics
 contains
 
    module procedure simulates_fluids
-      simulates_fluids = .false.
+   simulates_fluids = .false.
    end procedure simulates_fluids
 
    module procedure first_mesh
 
-      spec = body_spec(scene, network)
+   spec = body_spec(scene, network)
    end procedure first_mesh
 
    module procedure allocate_simulation
 
-      type(mechanics_simulation_t), allocatable :: body
+   type(mechanics_simulation_t), allocatable :: body
 
-      if (scene%has_fluid()) return
-      allocate (body)
-      call move_alloc(body, simulation)
+   if (scene%has_fluid()) return
+   allocate (body)
+   call move_alloc(body, simulation)
    end procedure allocate_simulation
 
 end submodule app_simulations_mechanics
