@@ -42,7 +42,7 @@ module report_vtu
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
       real(rk) :: time = 0.0_rk  !< [s]
-      integer(ik), public :: history_row = 0  !< row of history.csv of the same state, from 1; 0: none
+      integer(ik), public :: history_row = 0  !< of history.csv, for the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
    contains
