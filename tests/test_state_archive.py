@@ -74,11 +74,11 @@ STORED = {
     "rock_wells_t": ("coarse_archive:visit_step_values",),
     "wells_t": ("coarse_archive:visit_step_values",),
     "joints_t": ("coarse_archive:visit_step_values",),
-    "mechanics_simulation_t": ("mechanics_restart:visit",),
-    "loaded_body_t": ("mechanics_restart:visit",),
-    "body_t": ("mechanics_body_archive:visit",),
-    "before_t": ("mechanics_body_archive:visit",),
-    "energy_error_t": ("mechanics_body_archive:visit",),
+    "mechanics_simulation_t": ("mechanics_simulation:visit",),
+    "loaded_body_t": ("mechanics_simulation:visit",),
+    "body_t": ("mechanics_body:visit",),
+    "before_t": ("mechanics_body:visit",),
+    "energy_error_t": ("mechanics_body:visit",),
     "increment_t": ("mechanics_equilibrium:visit",),
     "tries_t": ("mechanics_tries:visit",),
     "programme_t": ("mechanics_programme:visit",),
@@ -202,7 +202,7 @@ def _procedure(place: str) -> str:
     module, _, name = place.partition(":")
     (path,) = FORTRAN.glob(f"*/{module}.f90")
     match = re.search(
-        rf"^ +(?:module )?subroutine {name}\(.*?end subroutine {name}\b",
+        rf"^ +(?:module )?(subroutine|procedure) {name}\b.*?end \1 {name}\b",
         _source(path).split("\ncontains", 1)[1],
         re.MULTILINE | re.DOTALL,
     )

@@ -38,7 +38,7 @@ def is_named(procedure: str, module: str, caller: str) -> bool:
 
 def defines(procedure: str, text: str) -> bool:
     """Whether a procedure of this name stands in a module."""
-    return re.search(rf"\b(?:subroutine|function)\s+{procedure}\b", text) is not None
+    return bool(re.search(rf"\b(?:subroutine|function|module procedure)\s+{procedure}\b", text))
 
 
 def rank(module: str, components: list[str]) -> int:

@@ -50,7 +50,7 @@ module algebra_elimination
       integer(ik) :: n = 0  !< unknowns
       integer(int64), allocatable :: first_entry(:)  !< (fronts + 1) in `factor`
       real(rk), allocatable :: factor(:)  !< the columns of the fronts' pivots
-      real(rk), allocatable :: schur(:, :)  !< what is left for the kept unknowns
+      real(rk), allocatable :: schur(:, :)  !< Schur complement of the kept unknowns
       !> (n) signs of the pivots in the order of elimination; not allocated: all are positive
       real(rk), allocatable :: signs(:)
    end type factors_t
@@ -86,24 +86,27 @@ contains
    end function size_of
 
    !> Eliminate all fronts. What they leave for the kept unknowns stays in the workspace.
-   subroutine eliminate_fronts(self, matrices, work, wrong)
+   recursive subroutine eliminate_fronts(self, matrices, work, wrong)
       class(factors_t), intent(inout) :: self  !< `factor` has its size
       class(element_matrices_t), intent(in) :: matrices
       type(workspace_t), intent(out) :: work
       integer(ik), intent(out) :: wrong  !< place of a pivot of the wrong sign in its front; 0: none
-      type(workspace_t), allocatable :: part(:)
-      integer(ik), allocatable :: wrong_in(:)
+      type(workspace_t) :: part(size(self%parts%first))
+      integer(ik) :: k, wrong_in(size(self%parts%first))
 
-      allocate (part(size(self%parts%first)), wrong_in(size(self%parts%first)))
-      if (is_in_team()) then
-         call eliminate_parts(self, matrices, part, wrong_in)
-      else
+      if (.not. is_in_team()) then
          !$omp parallel if(size(part) > 1)
          !$omp single
-         call eliminate_parts(self, matrices, part, wrong_in)
+         call eliminate_fronts(self, matrices, work, wrong)
          !$omp end single
          !$omp end parallel
+         return
       end if
+      !$omp taskloop grainsize(1) default(shared)
+      do k = 1, size(part, kind=ik)
+         call eliminate_part(self, matrices, k, part(k), wrong_in(k))
+      end do
+      !$omp end taskloop
       wrong = maxval([0_ik, wrong_in])
       if (wrong == 0) call eliminate_rest(self, matrices, self%parts, part, work, wrong)
    end subroutine eliminate_fronts
@@ -123,21 +126,6 @@ contains
       end do
       call eliminate_rest(self, matrices, self%lasting, part, work, wrong)
    end subroutine eliminate_again
-
-   !> Eliminate the fronts of all parts, each as a task of its own for the team of threads.
-   subroutine eliminate_parts(self, matrices, part, wrong)
-      class(factors_t), intent(inout) :: self
-      class(element_matrices_t), intent(in) :: matrices
-      type(workspace_t), intent(inout) :: part(:)
-      integer(ik), intent(inout) :: wrong(:)  !< (parts) place of a pivot of the wrong sign; 0: none
-      integer(ik) :: k
-
-      !$omp taskloop grainsize(1) default(shared)
-      do k = 1, size(part, kind=ik)
-         call eliminate_part(self, matrices, k, part(k), wrong(k))
-      end do
-      !$omp end taskloop
-   end subroutine eliminate_parts
 
    !> Eliminate the fronts of a part: only what its root leaves stays in the workspace.
    subroutine eliminate_part(self, matrices, k, work, wrong)
@@ -250,7 +238,7 @@ contains
       triangle_of = (n*(n + 1))/2
    end function triangle_of
 
-   !> Add up a front, eliminate its pivots, and put what is left on the stack.
+   !> Add up a front, eliminate its pivots, and put its Schur complement on the stack.
    subroutine eliminate_front(self, matrices, i, work, place)
       class(factors_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices
@@ -300,8 +288,8 @@ contains
       class(element_matrices_t), intent(in) :: matrices
       integer(ik), intent(in) :: i
       integer(ik), intent(in) :: place(:)  !< (unknowns) in the front
-      integer(ik), intent(inout) :: places(:)  !< room for the places of an element
-      real(rk), intent(inout) :: matrix(:)  !< room for its matrix
+      integer(ik), intent(inout) :: places(:)  !< workspace: places of an element
+      real(rk), intent(inout) :: matrix(:)  !< workspace: its matrix
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: front(n, n)
       integer(ik) :: e, j, k, m
@@ -334,7 +322,7 @@ contains
       end do
    end subroutine pop
 
-   !> What is left at the end: the Schur complement.
+   !> The Schur complement of the kept unknowns.
    pure subroutine sum_up_kept(self, matrices, work)
       class(factors_t), intent(inout) :: self
       class(element_matrices_t), intent(in) :: matrices

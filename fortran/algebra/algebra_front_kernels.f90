@@ -63,7 +63,7 @@ contains
       end do
    end subroutine add_triangle
 
-   !> Put what is left of a front on the stack.
+   !> Put the Schur complement of a front on the stack.
    pure subroutine push(front, n, n_pivots, stack, top)
       integer(ik), intent(in) :: n, n_pivots
       real(rk), intent(in) :: front(n, n)
@@ -95,7 +95,7 @@ contains
       integer(ik), intent(in) :: rows(n - n_pivots)
       integer(ik), intent(in) :: first  !< pivot
       real(rk), intent(inout) :: y(:)
-      real(rk), intent(out) :: part(n)  !< room
+      real(rk), intent(out) :: part(n)  !< workspace
       integer(ik) :: j, k
 
       part(:n_pivots) = y(first:first + n_pivots - 1)
@@ -119,7 +119,7 @@ contains
       integer(ik), intent(in) :: rows(n - n_pivots)
       integer(ik), intent(in) :: first  !< pivot
       real(rk), intent(inout) :: y(:)
-      real(rk), intent(out) :: part(n)  !< room
+      real(rk), intent(out) :: part(n)  !< workspace
       integer(ik) :: j
 
       part(:n_pivots) = y(first:first + n_pivots - 1)
@@ -150,9 +150,8 @@ contains
       end do
    end function product_of
 
-   !> Replace the first columns of the lower triangle by those of the factor, and the rest by what
-   !! is left of the matrix without these unknowns (its Schur complement). The upper triangle is
-   !! lost.
+   !> Replace the first columns of the lower triangle by those of the factor, and the rest by the
+   !! Schur complement. The upper triangle is lost.
    subroutine eliminate(matrix, n, n_pivots, place)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: matrix(n, n)
@@ -173,7 +172,7 @@ contains
    end subroutine eliminate
 
    !> The same for pivots of given signs. The diagonal of the factor is positive.
-   subroutine eliminate_signed(matrix, n, signs, place)
+   recursive subroutine eliminate_signed(matrix, n, signs, place)
       integer(ik), intent(in) :: n
       real(rk), intent(inout) :: matrix(n, n)
       real(rk), intent(in) :: signs(:)  !< (pivots) 1 or -1
@@ -183,6 +182,13 @@ contains
       n_pivots = size(signs, kind=ik)
       if (n_pivots < pivots_for_blas .or. n < rows_for_blas) then
          call eliminate_in_panels(matrix, n, n, signs, place)
+         return
+      else if (.not. is_in_team()) then
+         !$omp parallel if(n > rows_for_threads)
+         !$omp single
+         call eliminate_signed(matrix, n, signs, place)
+         !$omp end single
+         !$omp end parallel
          return
       end if
       do first = 1, n_pivots, columns_together
@@ -199,15 +205,7 @@ contains
             do k = 1, m
                if (own(k) < 0.0_rk) matrix(after:, first + k - 1) = -matrix(after:, first + k - 1)
             end do
-            if (is_in_team()) then
-               call subtract_signed(matrix, n, own, first)
-            else
-               !$omp parallel if(n - after > rows_for_threads)
-               !$omp single
-               call subtract_signed(matrix, n, own, first)
-               !$omp end single
-               !$omp end parallel
-            end if
+            call subtract_signed(matrix, n, own, first)
          end associate
       end do
    end subroutine eliminate_signed

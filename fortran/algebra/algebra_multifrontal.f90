@@ -230,7 +230,7 @@ contains
                        " unknowns")
    end subroutine check_factors
 
-   !> y := L^-1 y; at the kept unknowns what is left of the right-hand side.
+   !> y := L^-1 y; at the kept unknowns the condensed right-hand side.
    pure subroutine substitute_forwards(self, y)
       class(multifrontal_t), intent(in) :: self
       real(rk), intent(inout) :: y(:)  !< (n) in the order of elimination

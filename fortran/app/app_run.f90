@@ -355,7 +355,7 @@ contains
       type(mesh_t) :: mesh
 
       call simulation%present_network(network, mesh)
-      call self%files%network_step(simulation%time(), network, mesh)
+      call self%files%network%step(simulation%time(), network, mesh%fracture)
    end subroutine write_network
 
    !> Write an accepted state: history, probes, fields if they are due, the progress line.

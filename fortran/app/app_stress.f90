@@ -12,7 +12,7 @@ module app_stress
    implicit none(type, external)
    private
 
-   public :: grows_at, stress_description
+   public :: stress_description
 
 contains
 

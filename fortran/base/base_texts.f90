@@ -1,4 +1,4 @@
-!> Lists of strings, each of its own length.
+!> Lists of strings of different lengths.
 !!
 !! Text in UTF-8, byte by byte.
 module base_texts
@@ -7,7 +7,7 @@ module base_texts
 
    public :: add_once, add_text, is_printable, text_t, utf8_length
 
-   !> A string of its own length.
+   !> A string of any length.
    type :: text_t
       character(len=:), allocatable :: text
    end type text_t

@@ -43,7 +43,7 @@ contains
       end do
    end subroutine add_fluid_law
 
-   !> What cell i holds beside its volume, in the equation of p_F.
+   !> What cell i holds in addition to its volume, in the equation of p_F.
    pure subroutine add_storage(i, x, law, eq)
       integer(ik), intent(in) :: i
       real(rk), intent(in) :: x(:)  !< [Pa]

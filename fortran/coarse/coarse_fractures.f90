@@ -10,7 +10,7 @@ module coarse_fractures
    use coarse_joints, only: joints_t
    use coarse_layout, only: fracture_layout_t
    use coarse_slopes, only: slopes_t
-   use coarse_state, only: fracture_cells_t, guess_t, state_t
+   use coarse_state, only: fracture_cells_t, state_t
    use coarse_wells, only: wells_t
    use contact_newton, only: contact_system_t
    use scene_fluid_law, only: fluid_law_t

@@ -103,50 +103,41 @@ contains
          allocate (reduced%factors(n, n), reduced%scale(n), reduced%pivots(n))
          reduced%rest = residual(reduced%equations)
       end associate
-      if (is_in_team()) then
-         call reduce_blocks(stiffness, slopes, reduced)
-      else
-         !$omp parallel
-         !$omp single
-         call reduce_blocks(stiffness, slopes, reduced)
-         !$omp end single
-         !$omp end parallel
-      end if
+      call reduce_blocks(stiffness, slopes, reduced)
       call factorize_full(reduced%factors, with_condition, reduced%scale, reduced%pivots, quality, &
                           kinds%is_flow(reduced%unknowns))
    end subroutine reduce
 
    !> Eliminate the links from the remaining equations.
-   subroutine reduce_blocks(stiffness, slopes, reduced)
+   recursive subroutine reduce_blocks(stiffness, slopes, reduced)
       type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(in) :: slopes
       type(reduced_t), intent(inout) :: reduced
+      real(rk), allocatable :: rows(:, :)
       logical :: counts(slopes%n)
-      integer(ik) :: k, n
+      integer(ik) :: first, last, n
 
+      if (.not. is_in_team()) then
+         !$omp parallel
+         !$omp single
+         call reduce_blocks(stiffness, slopes, reduced)
+         !$omp end single
+         !$omp end parallel
+         return
+      end if
       counts = reduced%links%that_count()
       n = size(reduced%unknowns, kind=ik)
-      !$omp taskloop grainsize(1) default(shared)
-      do k = 1, n, equations_together
-         call reduce_block(stiffness, slopes, counts, k, min(n, k + equations_together - 1), &
-                           reduced)
+      !$omp taskloop grainsize(1) default(shared) private(last, rows)
+      do first = 1, n, equations_together
+         last = min(n, first + equations_together - 1)
+         allocate (rows(last - first + 1, slopes%n))
+         call fill_rows(stiffness, slopes, reduced%equations(first:last), counts, rows)
+         call reduced%links%reduce(rows, reduced%rest(first:last))
+         reduced%factors(:, first:last) = transpose(rows(:, reduced%unknowns))
+         deallocate (rows)
       end do
       !$omp end taskloop
    end subroutine reduce_blocks
-
-   !> Eliminate the links from some of the remaining equations.
-   pure subroutine reduce_block(stiffness, slopes, counts, first, last, reduced)
-      type(stiffness_t), intent(in) :: stiffness
-      type(slopes_t), intent(in) :: slopes
-      logical, intent(in) :: counts(:)  !< (n) unknowns that are left, or have a value, or partners
-      integer(ik), intent(in) :: first, last
-      type(reduced_t), intent(inout) :: reduced
-      real(rk) :: rows(last - first + 1, slopes%n)
-
-      call fill_rows(stiffness, slopes, reduced%equations(first:last), counts, rows)
-      call reduced%links%reduce(rows, reduced%rest(first:last))
-      reduced%factors(:, first:last) = transpose(rows(:, reduced%unknowns))
-   end subroutine reduce_block
 
    !> The step from the remaining equations and the links.
    subroutine solve_reduced(reduced, step)

@@ -4,7 +4,6 @@ module coarse_layer_profiles
    use base_lists, only: lists_t
    use base_plane, only: norm2, turned_left
    use coarse_layers, only: layers_t
-   use coarse_layout, only: layer_block
    use mesh_geometry, only: cell_centre
    use mesh_types, only: mesh_t
    implicit none(type, external)

@@ -18,9 +18,8 @@ module coarse_layout
    implicit none(type, external)
    private
 
-   public :: at_component, block_count, bulk_count, end_block, end_of_block, fracture_cell_of_block
-   public :: layer_block
-   public :: condensed_layout_t, fracture_layout_t
+   public :: at_component, block_count, bulk_count, end_block, end_of_block
+   public :: fracture_cell_of_block, layer_block, condensed_layout_t, fracture_layout_t
 
    !> Numbers in q.
    type :: condensed_layout_t

@@ -11,7 +11,7 @@ module coarse_model
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
    use coarse_layers, only: layers_t
    use coarse_layer_places, only: add_tip_flow, place_layers
-   use coarse_joints, only: find_joints, joints_t, renew_outlets
+   use coarse_joints, only: find_joints, renew_outlets
    use coarse_matrix, only: matrix_t
    use coarse_newton, only: fracture_problem_t
    use coarse_loads, only: add_point_forces, find_weight, hold_points

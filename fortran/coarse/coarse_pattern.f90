@@ -19,7 +19,7 @@ contains
       type(regions_t), intent(in) :: regions
       type(matrix_t), intent(inout) :: matrix
       integer(ik), allocatable :: last_row(:), found(:)
-      integer(ik) :: block, i, k, n, r, side
+      integer(ik) :: i, k, n, r, side
       type(lists_t) :: coupled  ! blocks that layers couple
 
       matrix%n_blocks = regions%n_blocks
@@ -36,23 +36,12 @@ contains
             r = regions%regions_of_block(side, i)
             if (r == 0) cycle
             do k = regions%blocks%first(r), regions%blocks%last(r)
-               block = regions%blocks%item(k)
-               if (block > i) cycle
-               if (last_row(block) == i) cycle
-               last_row(block) = i
-               n = n + 1
-               if (n + 1 > size(found)) found = [found, found]
-               found(n) = block
+               call note(regions%blocks%item(k))
             end do
          end do
          if (mesh%n_layers > 0) then
             do k = coupled%first(i), coupled%last(i)
-               block = coupled%item(k)
-               if (last_row(block) == i) cycle
-               last_row(block) = i
-               n = n + 1
-               if (n + 1 > size(found)) found = [found, found]
-               found(n) = block
+               call note(coupled%item(k))
             end do
          end if
          n = n + 1
@@ -64,6 +53,21 @@ contains
       allocate (matrix%elastic(3, 3, n), matrix%flow(n), source=0.0_rk)
       allocate (matrix%elastic_known(3, matrix%n_blocks), source=0.0_rk)
       allocate (matrix%flow_known(matrix%n_blocks), matrix%storage(mesh%n_cells), source=0.0_rk)
+
+   contains
+
+      !> Note a block of row i, unless it stands above the diagonal or is known.
+      subroutine note(block)
+         integer(ik), intent(in) :: block
+
+         if (block > i) return
+         if (last_row(block) == i) return
+         last_row(block) = i
+         n = n + 1
+         if (n + 1 > size(found)) found = [found, found]
+         found(n) = block
+      end subroutine note
+
    end subroutine find_pattern
 
    !> Blocks of smaller number, or the same, that layers couple with each block: those of one cell

@@ -1,6 +1,6 @@
 !> The permeability of cells in a body with regions.
 !!
-!! The mesh follows the outlines of regions where there is room (mesh_spec_t%guides), not near
+!! The mesh follows the outlines of regions where it can (mesh_spec_t%guides), not near
 !! fractures and what has grown. A cell within one region has its permeability; a cell that outlines
 !! cut has that of layers as thick as the parts of the cell, which lie as the
 !! outline does there: the pressure gradient along the layers and the flux across them are the same

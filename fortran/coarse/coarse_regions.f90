@@ -62,7 +62,7 @@ module coarse_regions
 
 contains
 
-   !> Nodes, faces and blocks around all vertices; room for the responses.
+   !> Nodes, faces and blocks around all vertices; the responses are allocated.
    subroutine find_regions(mesh, regions, stiffness)
       type(mesh_t), intent(in) :: mesh
       type(regions_t), intent(out) :: regions

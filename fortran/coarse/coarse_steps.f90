@@ -19,56 +19,42 @@ submodule(coarse_model) coarse_steps
 
 contains
 
-   module subroutine equilibrate(self, mesh, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt  !< a time in which no fluid moves noticeably [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-      type(flow_paths_t) :: none
-      real(rk) :: time
+   module procedure equilibrate
+   type(flow_paths_t) :: none
+   real(rk) :: time
 
-      call timers%heed(error)
-      if (allocated(error)) return
-      time = state%time
-      none%settings = self%settings
-      none%settings%equilibrate = .true.
-      allocate (none%connections(2, 0))
-      call solve_step(self, mesh, none, dt, state, timers, report, error)
-      state%time = time
-      if (report%converged) call rest_fluid(self, state)
-   end subroutine equilibrate
+   call timers%heed(error)
+   if (allocated(error)) return
+   time = state%time
+   none%settings = self%settings
+   none%settings%equilibrate = .true.
+   allocate (none%connections(2, 0))
+   call solve_step(self, mesh, none, dt, state, timers, report, error)
+   state%time = time
+   if (report%converged) call rest_fluid(self, state)
+   end procedure equilibrate
 
-   module subroutine advance(self, mesh, dt, state, timers, report, error)
-      class(coarse_model_t), intent(inout) :: self
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: dt  !< [s]
-      type(state_t), intent(inout) :: state
-      type(timers_t), intent(inout) :: timers
-      type(step_report_t), intent(out) :: report
-      type(error_t), allocatable, intent(out) :: error
-      type(flow_paths_t) :: paths
+   module procedure advance
+   type(flow_paths_t) :: paths
 
-      call timers%heed(error)
-      if (allocated(error)) return
-      paths = self%flow_paths_t
-      if (self%rock_wells%n > 0) then
-         call self%rock_wells%find_indices(self%wells, dt, state%rings)
-         call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
-      else
-         call solve_step(self, mesh, paths, dt, state, timers, report, error)
-      end if
-      if (allocated(error) .or. .not. report%converged) return
-      if (.not. allocated(state%rings)) return
-      if (self%rock_wells%n > 0) then
-         call self%rock_wells%update_rings(dt, state%well_flow(self%wells%n + 1: &
-                                                               self%wells%n_all), state%rings)
-      else
-         call self%rock_wells%update_rings(dt, [real(rk) ::], state%rings)
-      end if
-   end subroutine advance
+   call timers%heed(error)
+   if (allocated(error)) return
+   paths = self%flow_paths_t
+   if (self%rock_wells%n > 0) then
+      call self%rock_wells%find_indices(self%wells, dt, state%rings)
+      call advance_with_wells(self, mesh, paths, dt, state, timers, report, error)
+   else
+      call solve_step(self, mesh, paths, dt, state, timers, report, error)
+   end if
+   if (allocated(error) .or. .not. report%converged) return
+   if (.not. allocated(state%rings)) return
+   if (self%rock_wells%n > 0) then
+      call self%rock_wells%update_rings(dt, state%well_flow(self%wells%n + 1: &
+                                                            self%wells%n_all), state%rings)
+   else
+      call self%rock_wells%update_rings(dt, [real(rk) ::], state%rings)
+   end if
+   end procedure advance
 
    !> A step with pressure-controlled wells in the rock, repeated until the results agree with the
    !! controls that have been tried.

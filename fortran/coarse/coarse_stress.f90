@@ -127,7 +127,7 @@ contains
    pure subroutine leave_out_repeated(n_tractions, local)
       integer(ik), intent(in) :: n_tractions
       type(local_system_t), intent(inout) :: local
-      real(rk), parameter :: nothing = 1.0e-10_rk  !< what is left of a repeated row
+      real(rk), parameter :: nothing = 1.0e-10_rk  !< largest remainder of a repeated row
       real(rk) :: rows(n_tractions, local%n - n_tractions), left(n_tractions)
       real(rk) :: whole
       integer(ik) :: i, k

@@ -32,9 +32,8 @@ module contact_newton
    implicit none(type, external)
    private
 
-   public :: contact_system_t, iterate, iterate_from, iteration_report_t, iteration_settings_t, &
-             step_quality_t
-   public :: outcome_converged, outcome_not_a_number, outcome_singular
+   public :: contact_system_t, iterate, iterate_from, iteration_report_t, iteration_settings_t
+   public :: step_quality_t, outcome_converged, outcome_not_a_number, outcome_singular
 
    integer(ik), parameter :: outcome_converged = 0
    integer(ik), parameter :: outcome_stuck = 1  !< cycled, or took too many iterations
@@ -62,7 +61,7 @@ module contact_newton
       real(rk), allocatable :: traction(:, :)  !< (2, points) f_n, f_tau where last evaluated [Pa]
       integer(ik), allocatable :: slip_sign(:)  !< (points) of the last iteration: -1, 0, 1
       integer(ik), allocatable :: state(:)  !< (points) of contact_law
-      !> (points) at the start of the step, and with the strength that is left
+      !> (points) at the start of the step, and with the remaining strength
       type(contact_law_t), allocatable, private :: law_before(:), law_held(:)
    contains
       procedure(evaluate_system), deferred :: evaluate
@@ -186,16 +185,6 @@ contains
       at_point = 2*point - 1
    end function at_point
 
-   !> Replace the laws by laws of constant strength: that at the start of the step.
-   subroutine hold_strength(system)
-      class(contact_system_t), intent(inout) :: system
-
-      system%law_before = system%law
-      system%law_held = system%law
-      system%law_held%wears = .false.
-      system%law = system%law_held
-   end subroutine hold_strength
-
    !> Reduce the constant strength to that at x, where the system was last evaluated.
    subroutine reduce_strength(system, x, tolerance, is_weaker)
       class(contact_system_t), intent(inout) :: system
@@ -278,7 +267,10 @@ contains
 
       briefly = settings
       briefly%iterations_max = min(settings%iterations_max, iterations_of_trial)
-      call hold_strength(system)
+      ! Constant strength, that at the start of the step.
+      system%law_before = system%law
+      system%law%wears = .false.
+      system%law_held = system%law
       do k = 1, rounds
          call iterate_held(system, x, settings, report)
          if (report%outcome /= outcome_converged) exit

@@ -22,9 +22,8 @@ module fine_faces
    implicit none(type, external)
    private
 
-   public :: build_constraints, check_conditions, constraints_t, face_conditions_t
-   public :: columns_max, face_contact, face_jump, face_law_t, face_loaded, face_slip
-   public :: faces_at_joints
+   public :: build_constraints, check_conditions, constraints_t, face_conditions_t, columns_max
+   public :: face_contact, face_jump, face_law_t, face_loaded, face_slip, faces_at_joints
    public :: loaded_everywhere, prescribe_jumps
 
    integer(ik), parameter :: columns_max = 8  !< unknowns that may move one node

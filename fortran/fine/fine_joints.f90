@@ -196,7 +196,7 @@ contains
       if (links%nodes(2, link) == node) opposite = links%nodes(1, link)
    end function opposite
 
-   !> Tie the nodes of one joint, breadth first, as long as there is room for their unknowns.
+   !> Tie the nodes of one joint, breadth first, as long as their unknowns fit.
    pure subroutine grow_tree(fine, links, root, reached, constraints)
       type(fine_mesh_t), intent(in) :: fine
       type(links_t), intent(in) :: links

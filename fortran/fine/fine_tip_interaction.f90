@@ -120,7 +120,8 @@ contains
          call set_face(self, model, i, q)
       end do
       do i = 1, size(self%joint, kind=ik)
-         call set_joint(self, model, i, q)
+         call weigh_points(self%frame, model, self%face(self%joint(i)), q, self%place(:, i), &
+                           self%by_deviation(:, :, :, :, i))
       end do
    end function interaction_integrals
 
@@ -235,17 +236,6 @@ contains
          self%by_traction(:, :, :, i) = self%by_traction(:, :, :, i) + by_point(:, :, :, point)
       end do
    end subroutine set_face
-
-   !> The same at each point of a joint.
-   pure subroutine set_joint(self, model, i, q)
-      type(interactions_t), intent(inout) :: self
-      type(fine_model_t), intent(in) :: model
-      integer(ik), intent(in) :: i  !< among the joints
-      real(rk), intent(in) :: q(:, :)  !< (domains, n_nodes) [-]
-
-      call weigh_points(self%frame, model, self%face(self%joint(i)), q, self%place(:, i), &
-                        self%by_deviation(:, :, :, :, i))
-   end subroutine set_joint
 
    !> Coefficients of the tractions at Gauss points of a fracture cell.
    pure subroutine weigh_points(frame, model, cell, q, place, by_point)

@@ -5,7 +5,7 @@ module heat_field
    use base_plane, only: barycentric, triangle_area
    use coarse_diffusion, only: corner_gradient, region_fluxes
    use coarse_layer_profiles, only: profile_t
-   use coarse_layout, only: at_component, layer_block
+   use coarse_layout, only: layer_block
    use heat_model, only: heat_model_t
    use mesh_geometry, only: cell_area
    implicit none(type, external)

@@ -11,7 +11,7 @@ module heat_model
    use algebra_mumps, only: mumps_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, rk
-   use base_plane, only: barycentric, norm2
+   use base_plane, only: barycentric
    use coarse_diffusion, only: set_flux_equations
    use coarse_elimination, only: eliminate, local_system_t, share_t
    use coarse_joints, only: joints_t
@@ -33,7 +33,7 @@ module heat_model
    implicit none(type, external)
    private
 
-   public :: heat_model_t, thermal_rock
+   public :: heat_model_t
 
    !> Nodes of layers compared with those of the pressure, for temperatures at points and not only
    !! flows through faces.

@@ -31,7 +31,7 @@ module heat_steps
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: boundary_outflow
-   use heat_links, only: coefficients, external_t, limited, link_t
+   use heat_links, only: coefficients, limited, link_t
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    implicit none(type, external)

@@ -1,11 +1,13 @@
 !> The whole body as one mesh of finite elements: its supports, its loads, and its response.
 module mechanics_body
+   use, intrinsic :: iso_c_binding, only: c_loc
    use base_archive, only: archive_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, lk, rk
    use base_plane, only: norm2
    use base_timers, only: phase_assemble, phase_factorize, phase_mesh, phase_remesh, phase_solve, &
                           phase_tips, phase_transfer, timers_t
+   use fine_archive, only: set_fine_extents, visit_contact, visit_fine_mesh, visit_loads
    use fine_boundary, only: add_side_springs
    use fine_contact, only: contact_t, new_contact, transfer_contact
    use fine_elasticity, only: elasticity_t
@@ -19,6 +21,7 @@ module mechanics_body
    use fine_tip_types, only: intensity_t
    use growth_network, only: end_pieces
    use mechanics_faces, only: body_loads, face_conditions, held_boundary, prescribe_slip
+   use mesh_archive, only: visit_mesher, visit_mesher_and_mesh
    use mesh_builder, only: build_mesh, build_mesh_sized, corner_share, grow_mesh, mesh_quality, &
                            mesh_spec_t, mesher_t, transfer_mesher
    use mesh_types, only: mesh_t, network_t
@@ -69,19 +72,6 @@ module mechanics_body
       procedure :: correct_intensities
       procedure :: visit
    end type body_t
-
-   interface
-      !> Store or load a body; its model is made again from its mesh.
-      module subroutine visit(self, archive, scene, start, network, timers, error)
-         implicit none(type, external)
-         class(body_t), intent(inout) :: self
-         type(archive_t), intent(inout) :: archive
-         type(scene_t), intent(in) :: scene
-         type(network_t), intent(in) :: start, network
-         type(timers_t), intent(inout) :: timers
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine visit
-   end interface
 
 contains
 
@@ -430,5 +420,65 @@ contains
       end do
       call timers%stop(phase_tips)
    end subroutine correct_intensities
+
+   !> Store or load a body; its model is made again from its mesh.
+   subroutine visit(self, archive, scene, start, network, timers, error)
+      class(body_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: start, network
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      logical :: has_probes
+
+      call archive%enter("body")
+      call visit_mesher_and_mesh(archive, "mesh", self%mesher, self%mesh)
+      if (archive%is_loading .and. .not. allocated(archive%fault)) then
+         if (self%mesh%n_cells == 0) then
+            call archive%set_fault("mesh")
+         else
+            call archive%compare_range("mesh", self%mesh%face_side, "; 0:sides")
+         end if
+         if (allocated(archive%fault)) return
+         call self%set_up(scene, start, network, timers, error)
+         if (allocated(error)) return
+      end if
+      call set_fine_extents(archive, self%model%mesh)
+      call visit_loads(archive, "loads", self%loads)
+      call archive%list("displacement", self%displacement, "2, fine_nodes ?")
+      call visit_contact(archive, "contact", self%contact)
+      call archive%list("given_jump", self%given_jump, "2, 3, fine_faces ?")
+      call visit_intensities(archive, self%intensity)
+      has_probes = allocated(self%probe)
+      call archive%item("has_probes", has_probes)
+      call archive%list("error", self%estimate%element)
+      call archive%list("error_left_out", self%estimate%left_out)
+      call archive%item("error_total", self%estimate%total)
+      call archive%item("error_solution", self%estimate%solution)
+      call archive%item("error_relative", self%estimate%relative)
+      call archive%item("smallest_angle", self%smallest_angle)
+      call visit_mesher(archive, "mesher_before", self%before%mesher)
+      call visit_fine_mesh(archive, "fine_before", self%before%fine)
+      call visit_contact(archive, "contact_before", self%before%contact)
+      call archive%item("whole_meshes", self%whole_meshes)
+      call archive%item("patched_meshes", self%patched_meshes)
+      call archive%leave()
+      if (allocated(archive%fault)) return
+      if (archive%is_loading .and. has_probes) call self%find_probes(scene, error)
+   end subroutine visit
+
+   subroutine visit_intensities(archive, intensity)
+      type(archive_t), intent(inout) :: archive
+      type(intensity_t), allocatable, intent(inout), target :: intensity(:)
+      integer(lk) :: n
+
+      call archive%extent("intensity", intensity, n)
+      if (archive%is_loading) then
+         if (allocated(intensity)) deallocate (intensity)
+         if (n >= 0_lk) allocate (intensity(n))
+      end if
+      if (n > 0_lk) call archive%plain("intensity", c_loc(intensity), &
+                                       n*storage_size(intensity)/8_lk)
+   end subroutine visit_intensities
 
 end module mechanics_body

@@ -3,7 +3,7 @@
 !! by their differences between adjacent elements, displacements by those of the stresses; energy by
 !! that of the fractures, and with &adaptive by the estimate in the energy norm.
 module mechanics_errors
-   use base_kinds, only: ik, pi, rk
+   use base_kinds, only: ik, rk
    use contact_law, only: state_open, state_stick
    use mechanics_body, only: body_t
    use mechanics_fields, only: point_state

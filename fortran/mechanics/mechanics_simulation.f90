@@ -3,7 +3,7 @@
 module mechanics_simulation
    use base_archive, only: archive_t
    use base_errors, only: error_t
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, lk, rk
    use base_number, only: brief_text, integer_text
    use base_timers, only: timers_t
    use mechanics_dead_load, only: dead_load_t
@@ -12,7 +12,10 @@ module mechanics_simulation
    use mechanics_results, only: body_snapshot, history_of_body, probes_of_body, touches, watch_body
    use mechanics_rise, only: go_to_peak, rise
    use mechanics_state, only: loaded_body_t, together
+   use mesh_archive, only: visit_mesh, visit_network
    use mesh_types, only: mesh_t, network_t
+   use report_fields_archive, only: visit_snapshot
+   use report_restart, only: visit_simulation
    use report_rows, only: event_bifurcation, event_growth_uncertain, history_row_t, probe_row_t
    use report_simulation, only: snapshot_t
    use report_watch, only: doubtful, see_doubt, uncertainty
@@ -51,23 +54,6 @@ module mechanics_simulation
       procedure :: visit
    end type mechanics_simulation_t
 
-   ! In the submodule mechanics_restart
-   interface
-      module subroutine prepare(self, scene)
-         implicit none(type, external)
-         class(mechanics_simulation_t), intent(inout) :: self
-         type(scene_t), intent(in) :: scene
-      end subroutine prepare
-
-      module subroutine visit(self, archive, timers, error)
-         implicit none(type, external)
-         class(mechanics_simulation_t), intent(inout) :: self
-         type(archive_t), intent(inout) :: archive
-         type(timers_t), intent(inout) :: timers
-         type(error_t), allocatable, intent(out) :: error
-      end subroutine visit
-   end interface
-
 contains
 
    !> Mesh the body without load.
@@ -81,8 +67,12 @@ contains
       self%end_time = scene%load%to
       self%accepted_factor = scene%load%from
       call self%programme%begin(scene%load)
-      call self%mesh_body(scene, timers, error)
-      if (.not. allocated(error)) call note_features(self)
+      call self%take_scene(scene)
+      self%meshed_vertices = size(self%network%xy, 2)
+      call self%body%build(scene, self%start, self%network, timers, error)
+      if (allocated(error)) return
+      call self%find_tips(self%body%mesh%fracture)
+      call note_features(self)
    end subroutine begin
 
    !> Add the features that the scene uses, and those that it does not, to the summary.
@@ -397,5 +387,52 @@ contains
 
       words = "load factor "//brief_text(self%accepted_factor, 6)
    end function last_state
+
+   !> Set up for a scene, without meshes.
+   subroutine prepare(self, scene)
+      class(mechanics_simulation_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
+
+      self%end_time = scene%load%to
+      call self%programme%begin(scene%load)
+      call self%take_scene(scene)
+      call self%chronicle%clear()
+   end subroutine prepare
+
+   !> Store or load the complete state (docs/architecture.md).
+   subroutine visit(self, archive, timers, error)
+      class(mechanics_simulation_t), intent(inout) :: self
+      type(archive_t), intent(inout) :: archive
+      type(timers_t), intent(inout) :: timers
+      type(error_t), allocatable, intent(out) :: error
+      integer(lk) :: n
+
+      call visit_simulation(archive, self)
+      if (allocated(archive%fault)) return
+      call self%body%visit(archive, self%scene, self%start, self%network, timers, error)
+      if (allocated(error) .or. allocated(archive%fault)) return
+      call archive%enter("loaded_body")
+      call archive%item("is_cut", self%is_cut)
+      call archive%item("meshed_vertices", self%meshed_vertices)
+      call archive%item("is_trying", self%is_trying)
+      call archive%item("factor", self%factor)
+      call archive%item("bounds", self%bounds)
+      call archive%item("accepted_moment", self%accepted_moment)
+      call archive%leave()
+      call self%programme%visit(archive)
+      call archive%item("has_onset", self%has_onset)
+      call archive%item("accepted_factor", self%accepted_factor)
+      call archive%item("has_increment", self%has_increment)
+      call self%increment%visit(archive)
+      call self%dead_load%visit(archive)
+      call archive%item("was_bifurcation", self%was_bifurcation)
+      call archive%list("was_uncertain", self%was_uncertain, "tips ?")
+      call visit_network(archive, "shown_network", self%shown_network)
+      call visit_mesh(archive, "shown_mesh", self%shown_mesh)
+      n = merge(1_lk, -1_lk, allocated(self%good))
+      call archive%count("good", n)
+      if (archive%is_loading .and. n > 0_lk) allocate (self%good)
+      if (n > 0_lk) call visit_snapshot(archive, "good", self%good)
+   end subroutine visit
 
 end module mechanics_simulation

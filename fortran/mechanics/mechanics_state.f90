@@ -45,7 +45,6 @@ module mechanics_state
       logical :: turns = .false.  !< the load may change direction
       real(rk) :: accepted_moment = 0.0_rk  !< seismic moment before the present slip [N m]
    contains
-      procedure :: mesh_body
       procedure :: take_scene
       procedure :: respond
       procedure :: adapt
@@ -58,19 +57,6 @@ module mechanics_state
    end type loaded_body_t
 
 contains
-
-   !> Mesh the body without load.
-   subroutine mesh_body(self, scene, timers, error)
-      class(loaded_body_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-
-      call self%take_scene(scene)
-      self%meshed_vertices = size(self%network%xy, 2)
-      call self%body%build(scene, self%start, self%network, timers, error)
-      if (.not. allocated(error)) call self%find_tips(self%body%mesh%fracture)
-   end subroutine mesh_body
 
    !> Set the scene, its network, its first load and its rules of growth.
    subroutine take_scene(self, scene)

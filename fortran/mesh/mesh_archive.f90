@@ -14,8 +14,7 @@ module mesh_archive
    implicit none(type, external)
    private
 
-   public :: visit_fracture_mesh, visit_lists, visit_mesh, visit_mesher, visit_mesher_and_mesh
-   public :: visit_network
+   public :: visit_fracture_mesh, visit_mesh, visit_mesher, visit_mesher_and_mesh, visit_network
 
 contains
 

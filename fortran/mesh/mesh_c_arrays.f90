@@ -264,7 +264,7 @@ contains
       end if
    end subroutine point_to_fractures
 
-   !> Make room.
+   !> Allocate the arrays of a mesh.
    subroutine allocate_mesh(counts, mesh)
       type(cm_counts_t), intent(in) :: counts
       type(mesh_t), intent(inout) :: mesh

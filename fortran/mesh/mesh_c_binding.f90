@@ -6,12 +6,10 @@ module mesh_c_binding
    implicit none(type, external)
    private
 
-   public :: cm_arrays_t, cm_counts_t, cm_fault_t, cm_joint_t, cm_network_t, cm_spec_t
-   public :: cm_check, cm_last_fault
-   public :: cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow, cm_last_error, cm_locate
-   public :: cm_load, cm_move_tips, cm_store
-   public :: cm_map_copy, cm_map_sizes, cm_quality, cm_remesh, cm_sizes
-   public :: c_string_length
+   public :: cm_arrays_t, cm_counts_t, cm_fault_t, cm_joint_t, cm_network_t, cm_spec_t, cm_check
+   public :: cm_last_fault, cm_copy, cm_create, cm_create_sized, cm_destroy, cm_grow
+   public :: cm_last_error, cm_locate, cm_load, cm_move_tips, cm_store, cm_map_copy, cm_map_sizes
+   public :: cm_quality, cm_remesh, cm_sizes, c_string_length
 
    !> Fracture polylines.
    type, bind(C) :: cm_network_t

@@ -9,9 +9,8 @@ module mesh_faults
    implicit none(type, external)
    private
 
-   public :: culprit_t, fault_t
-   public :: culprit_corner, culprit_edge, culprit_fixed_point, culprit_fracture
-   public :: last_fault, raise_library_error, with_name
+   public :: culprit_t, fault_t, culprit_corner, culprit_edge, culprit_fixed_point
+   public :: culprit_fracture, last_fault, raise_library_error, with_name
 
    ! Kinds of culprits, as cm_culprit_kind of c_api.h.
    integer(ik), parameter :: culprit_fracture = 1

@@ -5,11 +5,10 @@ module report_column
    implicit none(type, external)
    private
 
-   public :: applies, column_t, well_count
-   public :: always, with_fluid, with_fractures, without_fluid, with_growth
-   public :: with_toughness, with_joints, with_wells, with_entries, with_fluid_and_growth
-   public :: with_wells_and_growth, with_one_well, at_most_one, with_several, with_error
-   public :: with_heat, with_heat_and_fractures, with_heat_and_wells
+   public :: applies, column_t, well_count, always, with_fluid, with_fractures, without_fluid
+   public :: with_growth, with_toughness, with_joints, with_wells, with_entries
+   public :: with_fluid_and_growth, with_wells_and_growth, with_one_well, at_most_one
+   public :: with_several, with_error, with_heat, with_heat_and_fractures, with_heat_and_wells
    public :: an_error, chosen, counted, label, measured, of_heat, of_step, placed, states
 
    ! Runs in which a column, key or field is written.
@@ -51,10 +50,10 @@ module report_column
       character(len=28) :: name = ""
       character(len=8) :: unit = "-"
       character(len=40) :: runs = always  !< runs in which it is written
-      character(len=160) :: meaning = ""
+      character(len=160) :: meaning = ""  !< empty: `Estimated error of` the name without `_error`
       !> where its error is: a column, key or field of this file, or "X of FILE"; or "none: " and
       !! the reason
-      character(len=128) :: error = ""
+      character(len=128) :: error = an_error
    end type column_t
 
 contains

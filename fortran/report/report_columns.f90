@@ -104,40 +104,27 @@ module report_columns
          "C_m, likewise, of the largest well pressure above the initial one: leak-off "// &
          "dominates where it is large", &
          "none: an order of magnitude; its relative error is about that of pressure and rate"), &
-      column_t("injected_error_m2", "m2", with_fluid, &
-         "Estimated error of injected_m2", an_error), &
-      column_t("produced_error_m2", "m2", with_wells, &
-         "Estimated error of produced_m2", an_error), &
-      column_t("leakoff_error_m2", "m2", with_fluid, "Estimated error of leakoff_m2", an_error), &
-      column_t("outflow_error_m2", "m2", with_fluid, "Estimated error of outflow_m2", an_error), &
-      column_t("fracture_fluid_error_m2", "m2", with_fractures, &
-         "Estimated error of fracture_fluid_m2", an_error), &
-      column_t("rock_fluid_error_m2", "m2", with_fluid, &
-         "Estimated error of rock_fluid_m2", an_error), &
-      column_t("rock_outflow_error_m2", "m2", with_fluid, &
-         "Estimated error of rock_outflow_m2", an_error), &
-      column_t("fracture_volume_error_m2", "m2", always, &
-         "Estimated error of fracture_volume_m2", an_error), &
-      column_t("max_slip_error_m", "m", always, "Estimated error of max_slip_m", an_error), &
-      column_t("max_opening_error_m", "m", always, &
-         "Estimated error of max_opening_m", an_error), &
-      column_t("seismic_moment_error_nm", "N m/m", always, &
-         "Estimated error of seismic_moment_nm", an_error), &
-      column_t("strain_energy_error_j", "J/m", without_fluid, &
-         "Estimated error of strain_energy_j", an_error), &
+      column_t("injected_error_m2", "m2", with_fluid), &
+      column_t("produced_error_m2", "m2", with_wells), &
+      column_t("leakoff_error_m2", "m2", with_fluid), &
+      column_t("outflow_error_m2", "m2", with_fluid), &
+      column_t("fracture_fluid_error_m2", "m2", with_fractures), &
+      column_t("rock_fluid_error_m2", "m2", with_fluid), &
+      column_t("rock_outflow_error_m2", "m2", with_fluid), &
+      column_t("fracture_volume_error_m2", "m2", always), &
+      column_t("max_slip_error_m", "m", always), &
+      column_t("max_opening_error_m", "m", always), &
+      column_t("seismic_moment_error_nm", "N m/m", always), &
+      column_t("strain_energy_error_j", "J/m", without_fluid), &
       column_t("injection_rate_error_m2_s", "m2/s", with_wells, &
          "Estimated error of injection_rate_m2_s; 0 where all rates are prescribed", an_error), &
-      column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_one_well, &
-         "Estimated error of injectivity_m2_s_pa", an_error), &
+      column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_one_well), &
       column_t("stimulated_length_error_m", "m", with_fractures, &
          "Estimated error of stimulated_length_m: a cell at each of its ends, and the "// &
          "error of the fractures' length", an_error), &
-      column_t("connected_length_error_m", "m", with_wells, &
-         "Estimated error of connected_length_m", an_error), &
-      column_t("connected_stimulated_error_m", "m", with_wells, &
-         "Estimated error of connected_stimulated_m", an_error), &
-      column_t("max_slip_rate_error_m_s", "m/s", with_fluid, &
-         "Estimated error of max_slip_rate_m_s", an_error), &
+      column_t("connected_length_error_m", "m", with_wells), &
+      column_t("connected_stimulated_error_m", "m", with_wells), &
+      column_t("max_slip_rate_error_m_s", "m/s", with_fluid), &
       column_t("unknowns", "-", always, &
          "Unknowns of the body, with a fluid of the coarse level: the sum of dofs in run.json "// &
          "without the windows, for the mesh of the step", counted), &
@@ -185,18 +172,13 @@ module report_columns
       column_t("advance_m", "m", always, &
          "Advance in this increment; 0: none", &
          "position_error_m; without a fluid none: growth by increments, the load is uncertain"), &
-      column_t("k1_error_pa_sqrtm", "Pa m^1/2", always, &
-         "Estimated error of k1_pa_sqrtm", an_error), &
-      column_t("k2_error_pa_sqrtm", "Pa m^1/2", always, &
-         "Estimated error of k2_pa_sqrtm", an_error), &
+      column_t("k1_error_pa_sqrtm", "Pa m^1/2", always), &
+      column_t("k2_error_pa_sqrtm", "Pa m^1/2", always), &
       column_t("g_ahead_j_m2", "J/m2", always, &
          "Energy release rate straight ahead, by the J-integral", "g_ahead_error_j_m2"), &
-      column_t("g_ahead_error_j_m2", "J/m2", always, &
-         "Estimated error of g_ahead_j_m2", an_error), &
-      column_t("k1_dc_error_pa_sqrtm", "Pa m^1/2", always, &
-         "Estimated error of k1_dc_pa_sqrtm", an_error), &
-      column_t("k2_dc_error_pa_sqrtm", "Pa m^1/2", always, &
-         "Estimated error of k2_dc_pa_sqrtm", an_error), &
+      column_t("g_ahead_error_j_m2", "J/m2", always), &
+      column_t("k1_dc_error_pa_sqrtm", "Pa m^1/2", always), &
+      column_t("k2_dc_error_pa_sqrtm", "Pa m^1/2", always), &
       column_t("k1_corrected_pa_sqrtm", "Pa m^1/2", always, &
          "k1_pa_sqrtm corrected for the error of the mesh, where that is known; else the "// &
          "same", "k1_error_pa_sqrtm"), &
@@ -247,15 +229,12 @@ module report_columns
       column_t("history_row", "-", always, "Number of the row of history.csv, from 1", label), &
       column_t("aperture_error_m", "m", always, &
          "Estimated error of aperture_m; empty without a fluid", an_error), &
-      column_t("jump_n_error_m", "m", always, "Estimated error of jump_n_m", an_error), &
-      column_t("jump_t_error_m", "m", always, "Estimated error of jump_t_m", an_error), &
-      column_t("traction_n_error_pa", "Pa", always, &
-         "Estimated error of traction_n_pa", an_error), &
-      column_t("traction_t_error_pa", "Pa", always, &
-         "Estimated error of traction_t_pa", an_error), &
-      column_t("pressure_error_pa", "Pa", with_fluid, &
-         "Estimated error of pressure_pa", an_error), &
-      column_t("flow_error_m2_s", "m2/s", with_fluid, "Estimated error of flow_m2_s", an_error), &
+      column_t("jump_n_error_m", "m", always), &
+      column_t("jump_t_error_m", "m", always), &
+      column_t("traction_n_error_pa", "Pa", always), &
+      column_t("traction_t_error_pa", "Pa", always), &
+      column_t("pressure_error_pa", "Pa", with_fluid), &
+      column_t("flow_error_m2_s", "m2/s", with_fluid), &
       column_t("temperature_k", "K", with_heat_and_fractures, &
          "Temperature of the fluid and of the faces, on the scale of the scene", of_heat)]
 
@@ -314,16 +293,14 @@ module report_columns
          "Prescribed rate of its stage; 0 without one", "none: of the scene"), &
       column_t("rate_error_m2_s", "m2/s", with_wells, &
          "Estimated error of rate_m2_s; 0 where it is prescribed", an_error), &
-      column_t("flow_error_m2_s", "m2/s", with_wells, "Estimated error of flow_m2_s", an_error), &
+      column_t("flow_error_m2_s", "m2/s", with_wells), &
       column_t("pressure_error_pa", "Pa", with_wells, &
          "Estimated error of pressure_pa in time and space, with that by the length of "// &
          "growing fractures", an_error), &
-      column_t("head_pressure_error_pa", "Pa", with_wells, &
-         "Estimated error of head_pressure_pa", an_error), &
+      column_t("head_pressure_error_pa", "Pa", with_wells), &
       column_t("injected_error_m2", "m2", with_wells, &
          "Estimated error of injected_m2; 0 where the rate is prescribed", an_error), &
-      column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_wells, &
-         "Estimated error of injectivity_m2_s_pa", an_error), &
+      column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_wells), &
       column_t("temperature_k", "K", with_heat_and_wells, &
          "Temperature of what the well takes out of the body, mean over the step; else of what "// &
          "it supplies", of_heat)]
@@ -341,8 +318,8 @@ module report_columns
       column_t("pressure_pa", "Pa", with_entries, &
          "Fluid pressure at the entry in the fracture, behind its loss; mean over the cells "// &
          "it supplies", "pressure_error_pa"), &
-      column_t("flow_error_m2_s", "m2/s", with_entries, "Estimated error of flow_m2_s", an_error), &
-      column_t("share_error", "-", with_entries, "Estimated error of share", an_error), &
+      column_t("flow_error_m2_s", "m2/s", with_entries), &
+      column_t("share_error", "-", with_entries), &
       column_t("pressure_error_pa", "Pa", with_entries, &
          "Estimated error of pressure_pa in time and space, with that by the length of "// &
          "growing fractures", an_error)]
@@ -403,14 +380,11 @@ module report_columns
          "Estimated error of its positions: the longest fracture cell of its patch", an_error), &
       column_t("area_error_m2", "m2", with_fluid, &
          "Estimated error of area_m2: such a cell at each end within its fracture", an_error), &
-      column_t("mean_slip_error_m", "m", with_fluid, &
-         "Estimated error of mean_slip_m", an_error), &
-      column_t("moment_error_nm", "N m", with_fluid, "Estimated error of moment_nm", an_error), &
-      column_t("magnitude_error", "-", with_fluid, "Estimated error of magnitude", an_error), &
-      column_t("mean_slip_rate_error_m_s", "m/s", with_fluid, &
-         "Estimated error of mean_slip_rate_m_s", an_error), &
-      column_t("stress_drop_error_pa", "Pa", with_fluid, &
-         "Estimated error of stress_drop_pa", an_error)]
+      column_t("mean_slip_error_m", "m", with_fluid), &
+      column_t("moment_error_nm", "N m", with_fluid), &
+      column_t("magnitude_error", "-", with_fluid), &
+      column_t("mean_slip_rate_error_m_s", "m/s", with_fluid), &
+      column_t("stress_drop_error_pa", "Pa", with_fluid)]
    !&>
 
 end module report_columns

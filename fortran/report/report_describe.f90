@@ -240,11 +240,23 @@ contains
          call begin_row(json, columns(i)%name, columns(i)%unit)
          call json%add("runs", trim(columns(i)%runs))
          call json%add("error", trim(columns(i)%error))
-         call end_row(json, columns(i)%meaning)
+         if (columns(i)%meaning == "") then
+            call end_row(json, "Estimated error of "//without(columns(i)%name, "_error"))
+         else
+            call end_row(json, columns(i)%meaning)
+         end if
       end do
       call json%end_array()
       call json%end_object()
    end subroutine put_file
+
+   !> A text without the first of these parts of it.
+   pure function without(text, part) result(rest)
+      character(len=*), intent(in) :: text, part
+      character(len=:), allocatable :: rest
+
+      rest = text(:index(text, part) - 1)//text(index(text, part) + len(part):)
+   end function without
 
    !> The possible words of a column or key of a file.
    subroutine put_words(json, file, name, words)

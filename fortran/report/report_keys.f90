@@ -61,12 +61,10 @@ module report_keys
          "Largest relative residual of the contact problem at an accepted state", an_error), &
       column_t("keq_over_kic", "-", with_toughness, &
          "Largest keq_pa_sqrtm of tips.csv over the toughness", "keq_over_kic_error"), &
-      column_t("keq_over_kic_error", "-", with_toughness, &
-         "Estimated error of keq_over_kic", an_error), &
+      column_t("keq_over_kic_error", "-", with_toughness), &
       column_t("lowest_pressure_pa", "Pa", with_fluid, &
          "Lowest fluid pressure of all cells and accepted states", "lowest_pressure_error_pa"), &
-      column_t("lowest_pressure_error_pa", "Pa", with_fluid, &
-         "Estimated error of lowest_pressure_pa", an_error), &
+      column_t("lowest_pressure_error_pa", "Pa", with_fluid), &
       column_t("condition_estimate", "-", with_fractures, &
          "Largest estimated condition number of the Newton matrices", an_error), &
       column_t("forward_error_bound", "-", with_fractures, &
@@ -155,7 +153,7 @@ module report_keys
          "Permeability: XX, YY, ZZ, XY, YZ, XZ", "none: of the scene"), &
       column_t("displacement_error", "m", always, &
          "Estimated error of each component of displacement", an_error), &
-      column_t("pressure_error", "Pa", with_fluid, "Estimated error of pressure", an_error), &
+      column_t("pressure_error", "Pa", with_fluid), &
       column_t("stress_error", "Pa", always, &
          "Estimated error of each component of stress", an_error), &
       column_t("temperature", "K", with_heat, "Mean temperature of the cell", of_heat)]
@@ -172,20 +170,20 @@ module report_keys
          "Fluid pressure in the fracture", "pressure_error"), &
       column_t("flow", "m2/s", with_fluid, "Flow along the fracture", "flow_error"), &
       column_t("state", "-", always, "Contact state: 0 stick, 1 slip, 2 open", states), &
-      column_t("aperture_error", "m", with_fluid, "Estimated error of aperture", an_error), &
+      column_t("aperture_error", "m", with_fluid), &
       column_t("jump_error", "m", always, &
          "Estimated error of jump: normal, tangential", an_error), &
       column_t("traction_error", "Pa", always, &
          "Estimated error of traction: normal, tangential", an_error), &
-      column_t("pressure_error", "Pa", with_fluid, "Estimated error of pressure", an_error), &
-      column_t("flow_error", "m2/s", with_fluid, "Estimated error of flow", an_error), &
+      column_t("pressure_error", "Pa", with_fluid), &
+      column_t("flow_error", "m2/s", with_fluid), &
       column_t("temperature", "K", with_heat, "Temperature of fluid and faces", of_heat)]
 
    type(column_t), parameter :: intersection_fields(*) = [ &
       column_t("pressure", "Pa", with_fluid, &
          "Fluid pressure at intersections and at fracture ends on sides with prescribed "// &
          "pressure", "pressure_error"), &
-      column_t("pressure_error", "Pa", with_fluid, "Estimated error of pressure", an_error)]
+      column_t("pressure_error", "Pa", with_fluid)]
 
    type(column_t), parameter :: window_fields(*) = [ &
       column_t("tip", "-", with_fluid, "Number of a tip that the window evaluates", label)]

@@ -6,13 +6,12 @@ module report_limits
    implicit none(type, external)
    private
 
-   public :: judge, limit_angle, limit_aperture, limit_contact
-   public :: limit_fluid_in_rock, limit_growth_error
-   public :: limit_forward_error, limit_jump, limit_k_error, limit_k_methods
+   public :: judge, limit_angle, limit_aperture, limit_contact, limit_fluid_in_rock
+   public :: limit_growth_error, limit_forward_error, limit_jump, limit_k_error, limit_k_methods
    public :: limit_k_to_grow, limit_keq, limit_layering, limit_loop_flow, limit_mass
    public :: limit_pressure_load, limit_pressure_stiffness, limit_strain, limit_t, limit_table
-   public :: limit_depth, limit_time_error, limit_well_error, limits, verdict_fine
-   public :: verdict_stop, verdict_warning
+   public :: limit_depth, limit_time_error, limit_well_error, limits, verdict_fine, verdict_stop
+   public :: verdict_warning
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 

@@ -42,16 +42,16 @@ contains
       type(json_t) :: json
 
       call json%begin_object("")
-      call add_optional_text(json, "scene", self%scene)
-      call add_optional_text(json, "version", self%version)
-      call add_optional_text(json, "status", self%status)
-      call add_optional_text(json, "reason", self%reason)
+      call json%add("scene", self%scene)
+      call json%add("version", self%version)
+      call json%add("status", self%status)
+      call json%add("reason", self%reason)
       call json%add("steps", self%steps)
       call json%add("cells", self%cells)
       call json%add("fracture_cells", self%fracture_cells)
       call add_dofs(json, self%dofs)
-      call add_list(json, "used", self%used)
-      call add_list(json, "left_out", self%left_out)
+      call json%add("used", self%used)
+      call json%add("left_out", self%left_out)
       call add_timers(json, timers)
       call json%add("cpu_s", timers%cpu_seconds())
       call json%add("wall_s", timers%wall_seconds())
@@ -96,7 +96,7 @@ contains
          call json%add("growth_jumps", self%growth_jumps)
          call json%add("longest_growth_jump_m", self%longest_jump)
       end if
-      call add_list(json, "warnings", self%warnings)
+      call json%add("warnings", self%warnings)
       call json%end_object()
       call write_text_file(path, json%text(), error)
    end subroutine write_record
@@ -151,32 +151,6 @@ contains
       end do
       close (unit)
    end function peak_memory_mb
-
-   !> A list of texts, which is empty if it was never set.
-   subroutine add_list(json, key, list)
-      type(json_t), intent(inout) :: json
-      character(len=*), intent(in) :: key
-      type(text_t), allocatable, intent(in) :: list(:)
-
-      if (allocated(list)) then
-         call json%add(key, list)
-      else
-         call json%add_raw(key, "[]")
-      end if
-   end subroutine add_list
-
-   !> A text that was never set is null.
-   subroutine add_optional_text(json, key, text)
-      type(json_t), intent(inout) :: json
-      character(len=*), intent(in) :: key
-      character(len=:), allocatable, intent(in) :: text
-
-      if (allocated(text)) then
-         call json%add(key, text)
-      else
-         call json%add_raw(key, "null")
-      end if
-   end subroutine add_optional_text
 
    !> The last lines on the terminal without warnings (app_warnings).
    function closing_lines(record, last_state, length, gain, seconds, directory) result(lines)

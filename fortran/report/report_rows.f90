@@ -4,18 +4,17 @@
 module report_rows
    use base_kinds, only: ik, lk, rk
    use base_texts, only: add_once, add_text, text_t
+   use fine_tip_types, only: intensity_t
    implicit none(type, external)
    private
 
    public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
-   public :: event_growth_jump, event_growth_uncertain
-   public :: event_growth_onset, event_joint, event_opening, event_remesh, event_slip_onset
-   public :: event_replay, event_step_cut, event_unstable, event_well, event_window
-   public :: fracture_fields_t
-   public :: fracture_errors_t, history_errors_t, history_row_t, intersection_fields_t
-   public :: heat_row_t, matrix_fields_t
-   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t
-   public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t, window_fields_t
+   public :: event_growth_jump, event_growth_uncertain, event_growth_onset, event_joint
+   public :: event_opening, event_remesh, event_slip_onset, event_replay, event_step_cut
+   public :: event_unstable, event_well, event_window, fracture_fields_t, fracture_errors_t
+   public :: history_errors_t, history_row_t, intersection_fields_t, heat_row_t, matrix_fields_t
+   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t, entry_errors_t
+   public :: entry_row_t, well_errors_t, well_row_t, window_fields_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
    type :: fluid_totals_t
@@ -180,19 +179,11 @@ module report_rows
       integer(ik) :: tip = 0
       integer(ik) :: fracture = 0
       real(rk) :: xy(2) = 0.0_rk  !< [m]
-      real(rk) :: k1 = 0.0_rk  !< K_I by the interaction integral [Pa m^1/2]
-      real(rk) :: k2 = 0.0_rk  !< K_II by the interaction integral [Pa m^1/2]
-      real(rk) :: k1_dc = 0.0_rk  !< K_I by displacement correlation [Pa m^1/2]
-      real(rk) :: k2_dc = 0.0_rk  !< K_II by displacement correlation [Pa m^1/2]
+      type(intensity_t) :: intensity
       real(rk) :: keq = 0.0_rk  !< equivalent intensity K_eq [Pa m^1/2]
       real(rk) :: g = 0.0_rk  !< energy release rate [J/m2]
       real(rk) :: angle = 0.0_rk  !< kink from the old direction, counter-clockwise [rad]
       real(rk) :: advance = 0.0_rk  !< length grown [m]
-      real(rk) :: k1_error = 0.0_rk, k2_error = 0.0_rk  !< estimated errors of k1, k2 [Pa m^1/2]
-      real(rk) :: g_domain = 0.0_rk  !< energy release rate straight ahead, J-integral [J/m2]
-      real(rk) :: g_error = 0.0_rk  !< estimated error of g_domain [J/m2]
-      real(rk) :: k1_dc_error = 0.0_rk, k2_dc_error = 0.0_rk  !< errors of k1_dc, k2_dc [Pa m^1/2]
-      real(rk) :: k1_corrected = 0.0_rk, k2_corrected = 0.0_rk  !< k1, k2 less mesh error [Pa m^1/2]
       real(rk) :: apparent_toughness = 0.0_rk  !< with the viscosity of the fluid [Pa m^1/2]
       type(tip_errors_t) :: error
    end type tip_row_t
@@ -337,7 +328,6 @@ module report_rows
    contains
       procedure :: clear
       procedure :: add_event
-      procedure :: add_tip
       procedure :: add_remark
    end type chronicle_t
 
@@ -464,14 +454,6 @@ contains
       longer(size(longer)) = event
       call move_alloc(longer, self%events)
    end subroutine add_event
-
-   !> Add a row of tips.csv.
-   pure subroutine add_tip(self, row)
-      class(chronicle_t), intent(inout) :: self
-      type(tip_row_t), intent(in) :: row
-
-      self%tips = [self%tips, row]
-   end subroutine add_tip
 
    !> Add a line for the log.
    pure subroutine add_remark(self, line)

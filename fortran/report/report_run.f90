@@ -6,10 +6,9 @@
 module report_run
    use base_archive, only: archive_t
    use base_errors, only: error_t, keep_first
-   use base_kinds, only: ik, lk, rk
+   use base_kinds, only: lk, rk
    use base_texts, only: add_text, text_t
    use base_timers, only: timers_t
-   use mesh_types, only: mesh_t, network_t
    use report_files, only: place_t, remove_file, reserve_file, write_text_file
    use report_network, only: network_record_t
    use report_record, only: run_record_t, status_failed
@@ -36,7 +35,7 @@ module report_run
       logical :: keeps_earlier_run = .false.  !< files of an earlier run exist, before `begin`
       type(tables_t) :: tables
       type(snapshots_t), private :: snapshots
-      type(network_record_t), private :: network
+      type(network_record_t) :: network
       type(text_buffer_t), private :: log_text
       type(text_buffer_t) :: record  !< decisions (report_replay)
       !> lengths of the log and of the record on disk
@@ -55,7 +54,6 @@ module report_run
       procedure :: take_over
       procedure :: visit
       procedure :: visit_text
-      procedure :: network_step
       procedure :: fields_due
       procedure :: write_fields
       procedure :: log
@@ -196,16 +194,6 @@ contains
          call add_text(names, trim(scene%fractures(i)%name))
       end do
    end function fracture_names
-
-   !> Add the network to network.json, if it has changed.
-   subroutine network_step(self, time, network, mesh)
-      class(run_output_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s]
-      type(network_t), intent(in) :: network
-      type(mesh_t), intent(in) :: mesh
-
-      call self%network%step(time, network, mesh%fracture)
-   end subroutine network_step
 
    !> Fields are due: the interval of the scene has passed.
    pure function fields_due(self, time)

@@ -144,6 +144,7 @@ contains
    subroutine visit(self, archive)
       class(series_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
+      character(len=:), allocatable :: head
       integer :: i
 
       if (.not. self%is_open()) return
@@ -151,10 +152,10 @@ contains
       call self%buffer%visit(archive)
       if (.not. archive%is_loading .or. allocated(archive%fault)) return
       self%written = -1_lk
-      associate (head => ","//first_line(self)//",")
-         call keep_columns(self, [(index(head, ","//self%names(i)%text//",") > 0, &
-                                   i=1, size(self%names))])
-      end associate
+      head = self%buffer%text()
+      head = ","//head(:max(1, index(head, newline)) - 1)//","
+      call keep_columns(self, [(index(head, ","//self%names(i)%text//",") > 0, &
+                                i=1, size(self%names))])
    end subroutine visit
 
    subroutine visit_text(self, archive)
@@ -172,15 +173,6 @@ contains
       self%is_past = is_written .and. .not. self%is_written
       self%is_written = is_written
    end subroutine keep_columns
-
-   !> The names of the columns that are written.
-   function first_line(self) result(line)
-      class(series_t), intent(in) :: self
-      character(len=:), allocatable :: line
-
-      line = self%buffer%text()
-      line = line(:max(1, index(line, newline)) - 1)
-   end function first_line
 
    !> Begin with the rows of another table. Its columns are kept, and in those that it lacks its
    !! rows have no values. Texts with commas are in tables that always have the same columns.

@@ -255,7 +255,7 @@ contains
                                   *self%rules%toughness
          row%error%position = -1.0_rk
          if (allocated(self%position_error)) row%error%position = self%position_error(i)
-         call self%chronicle%add_tip(row)
+         self%chronicle%tips = [self%chronicle%tips, row]
          associate (summary => self%summary, resistance => resistance_of(self%tip(i), any_grew))
             if (over_toughness(self%scene, row%keq/resistance) > summary%keq_over_kic) then
                summary%keq_over_kic = over_toughness(self%scene, row%keq/resistance)
@@ -307,18 +307,7 @@ contains
             intensity%k2_error = intensity%k2_error + added(2)
             call complete_errors(shown%drive%crack_modulus, intensity)
          end if
-         row%k1 = intensity%k1
-         row%k2 = intensity%k2
-         row%k1_dc = intensity%k1_dc
-         row%k2_dc = intensity%k2_dc
-         row%k1_error = intensity%k1_error
-         row%k2_error = intensity%k2_error
-         row%g_domain = intensity%g_domain
-         row%g_error = intensity%g_error
-         row%k1_dc_error = intensity%k1_dc_error
-         row%k2_dc_error = intensity%k2_dc_error
-         row%k1_corrected = intensity%k1_corrected
-         row%k2_corrected = intensity%k2_corrected
+         row%intensity = intensity
          associate (error => row%error, modulus => shown%drive%crack_modulus)
             call propagate(intensity%k1, intensity%k2, intensity%k1_error, intensity%k2_error, &
                            modulus, error%keq, error%g, error%angle)

@@ -174,7 +174,7 @@ contains
 
       listed = time
       if (self%counts) listed = real(history_row, rk)
-      call grid%set_history_row(history_row)
+      grid%history_row = history_row
       file = file_name(i, self%n_written)
       call grid%write(self%directory//"/"//file, error)
       if (.not. allocated(error)) call self%collections(i)%add(listed, file)
@@ -200,7 +200,7 @@ contains
       if (allocated(fields%displacement)) then
          call grid%add("displacement", displacement_3d(fields%displacement), ["X", "Y", "Z"])
       end if
-      if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
+      call grid%add("pressure", fields%pressure)
       if (allocated(fields%stress)) then
          call grid%add("stress", stress_tensor(fields, material), tensor_components)
       end if
@@ -208,14 +208,10 @@ contains
          call grid%add("permeability", permeability_tensor(fields, material, mesh), &
             & tensor_components)
       end if
-      if (allocated(fields%displacement_error)) then
-         call grid%add("displacement_error", fields%displacement_error)
-      end if
-      if (allocated(fields%pressure_error)) then
-         call grid%add("pressure_error", fields%pressure_error)
-      end if
-      if (allocated(fields%stress_error)) call grid%add("stress_error", fields%stress_error)
-      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
+      call grid%add("displacement_error", fields%displacement_error)
+      call grid%add("pressure_error", fields%pressure_error)
+      call grid%add("stress_error", fields%stress_error)
+      call grid%add("temperature", fields%temperature)
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
@@ -229,33 +225,22 @@ contains
       call grid%begin(mesh%point_xy, mesh%cell_points, vtk_line, time)
       call grid%add("fracture", mesh%cell_fracture)
       call grid%add("arc_length", 0.5_rk*(mesh%cell_s(1, :) + mesh%cell_s(2, :)))
-      if (allocated(fields%aperture)) call grid%add("aperture", fields%aperture)
-      if (allocated(fields%jump_n)) call add_pair(grid, "jump", fields%jump_n, fields%jump_t)
-      if (allocated(fields%traction_n)) then
-         call add_pair(grid, "traction", fields%traction_n, fields%traction_t)
-      end if
-      if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
-      if (allocated(fields%flow)) call grid%add("flow", fields%flow)
+      call grid%add("aperture", fields%aperture)
+      call add_pair(grid, "jump", fields%jump_n, fields%jump_t)
+      call add_pair(grid, "traction", fields%traction_n, fields%traction_t)
+      call grid%add("pressure", fields%pressure)
+      call grid%add("flow", fields%flow)
       if (allocated(fields%state)) call grid%add("state", fields%state)
-      call add_fracture_errors(grid, fields)
-      if (allocated(fields%temperature)) call grid%add("temperature", fields%temperature)
-      call grid%set_units(fracture_fields%name, fracture_fields%unit)
-   end subroutine fill_fractures
-
-   !> Estimated errors of the fields of the fractures.
-   subroutine add_fracture_errors(grid, fields)
-      type(vtu_grid_t), intent(inout) :: grid
-      type(fracture_fields_t), intent(in) :: fields
-
       associate (error => fields%error)
-         if (.not. allocated(error%jump_n)) return
          if (allocated(fields%aperture)) call grid%add("aperture_error", error%jump_n)
          call add_pair(grid, "jump_error", error%jump_n, error%jump_t)
          call add_pair(grid, "traction_error", error%traction_n, error%traction_t)
-         if (allocated(error%pressure)) call grid%add("pressure_error", error%pressure)
-         if (allocated(error%flow)) call grid%add("flow_error", error%flow)
+         call grid%add("pressure_error", error%pressure)
+         call grid%add("flow_error", error%flow)
       end associate
-   end subroutine add_fracture_errors
+      call grid%add("temperature", fields%temperature)
+      call grid%set_units(fracture_fields%name, fracture_fields%unit)
+   end subroutine fill_fractures
 
    !> The grid of the intersections.
    subroutine fill_intersections(grid, time, mesh, fields)
@@ -267,23 +252,20 @@ contains
 
       vertices(1, :) = [(i, i=1, size(fields%point, kind=ik))]
       call grid%begin(mesh%point_xy(:, fields%point), vertices, vtk_vertex, time)
-      if (allocated(fields%pressure)) call grid%add("pressure", fields%pressure)
-      if (allocated(fields%pressure_error)) then
-         call grid%add("pressure_error", fields%pressure_error)
-      end if
+      call grid%add("pressure", fields%pressure)
+      call grid%add("pressure_error", fields%pressure_error)
       call grid%set_units(intersection_fields%name, intersection_fields%unit)
    end subroutine fill_intersections
 
-   !> A normal and a tangential component as one field.
+   !> A normal and a tangential component as one field; none without values.
    subroutine add_pair(grid, name, normal, tangential)
       type(vtu_grid_t), intent(inout) :: grid
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: normal(:), tangential(:)  !< (n_cells) [m] or [Pa]
-      real(rk) :: both(2, size(normal))
+      real(rk), intent(in), optional :: normal(:), tangential(:)  !< (n_cells) [m] or [Pa]
 
-      both(1, :) = normal
-      both(2, :) = tangential
-      call grid%add(name, both, [character(len=10) :: "normal", "tangential"])
+      if (.not. present(normal)) return
+      call grid%add(name, transpose(reshape([normal, tangential], [size(normal), 2])), &
+                    [character(len=10) :: "normal", "tangential"])
    end subroutine add_pair
 
    !> Remove snapshots of an earlier run, the last one first, so that an interrupted removal can be

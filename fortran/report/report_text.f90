@@ -208,12 +208,17 @@ contains
       call self%add_raw(key, integer_text(value))
    end subroutine add_long
 
+   !> A text; null where there is none.
    subroutine add_text(self, key, value)
       class(json_t), intent(inout) :: self
       character(len=*), intent(in) :: key
-      character(len=*), intent(in) :: value
+      character(len=*), intent(in), optional :: value
 
-      call self%add_raw(key, '"'//escaped(value)//'"')
+      if (present(value)) then
+         call self%add_raw(key, '"'//escaped(value)//'"')
+      else
+         call self%add_raw(key, "null")
+      end if
    end subroutine add_text
 
    subroutine add_reals(self, key, values)
@@ -246,14 +251,17 @@ contains
       call self%buffer%append("]")
    end subroutine add_integers
 
+   !> A list of texts, which is empty if it was never set.
    subroutine add_texts(self, key, values)
       class(json_t), intent(inout) :: self
       character(len=*), intent(in) :: key
-      type(text_t), intent(in) :: values(:)
-      integer :: i
+      type(text_t), allocatable, intent(in) :: values(:)
+      integer :: i, n
 
+      n = 0
+      if (allocated(values)) n = size(values)
       call self%begin_array(key)
-      do i = 1, size(values)
+      do i = 1, n
          call self%add("", values(i)%text)
       end do
       call self%end_array()

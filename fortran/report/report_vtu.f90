@@ -42,7 +42,7 @@ module report_vtu
       integer(ik) :: n_cells = 0
       integer(int8) :: cell_type = 0_int8
       real(rk) :: time = 0.0_rk  !< [s]
-      integer(ik) :: history_row = 0  !< row of history.csv of the same state, from 1; 0: none
+      integer(ik), public :: history_row = 0  !< of history.csv, for the same state, from 1; 0: none
       type(vtu_field_t), allocatable :: fields(:)
       integer :: n_fields = 0
    contains
@@ -52,7 +52,6 @@ module report_vtu
       procedure, private :: add_integer
       generic :: add => add_scalar, add_vector, add_integer
       procedure :: add_at_points
-      procedure :: set_history_row
       procedure :: set_units
       procedure :: write => write_grid
    end type vtu_grid_t
@@ -90,12 +89,13 @@ contains
       allocate (self%fields(16))
    end subroutine begin
 
-   !> A number in each cell.
+   !> A number in each cell; no field without values.
    subroutine add_scalar(self, name, values)
       class(vtu_grid_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: values(:)  !< (n_cells) [SI]
+      real(rk), intent(in), optional :: values(:)  !< (n_cells) [SI]
 
+      if (.not. present(values)) return
       call new_field(self, name)
       self%fields(self%n_fields)%reals = values
    end subroutine add_scalar
@@ -139,14 +139,6 @@ contains
       call new_field(self, name)
       self%fields(self%n_fields)%integers = values
    end subroutine add_integer
-
-   !> Set the row of history.csv of the same state.
-   pure subroutine set_history_row(self, row)
-      class(vtu_grid_t), intent(inout) :: self
-      integer(ik), intent(in) :: row  !< from 1
-
-      self%history_row = row
-   end subroutine set_history_row
 
    !> Set the units of the fields added so far, VTK's key UNITS_LABEL.
    pure subroutine set_units(self, names, units)

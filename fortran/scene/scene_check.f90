@@ -224,7 +224,7 @@ contains
 
    contains
 
-      !> The fracture's group if it has a value of its own.
+      !> The fracture's group if that gives the value.
       pure integer function owner(group, own) result(record)
          character(len=*), intent(in) :: group
          real(rk), intent(in) :: own  !< [m]

@@ -172,7 +172,7 @@ contains
       end do
    end subroutine check_fractures
 
-   !> Cells of its own are no larger than the fracture, and than those far from it.
+   !> The cell_size of a fracture is at most its length and size_boundary.
    pure subroutine check_cell_size(sheet, scene, i, error)
       type(sheet_t), intent(in) :: sheet
       type(scene_t), intent(in) :: scene

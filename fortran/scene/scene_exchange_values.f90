@@ -228,16 +228,7 @@ contains
       type(material_t), intent(inout) :: material
       character(len=name_length) :: plane
 
-      call exchange(record, "young", material%young)
-      call exchange(record, "poisson", material%poisson)
-      call exchange(record, "biot", material%biot)
-      call exchange(record, "porosity", material%porosity)
-      call exchange_permeability(record, material)
-      call exchange(record, "density", material%density, nothing=0.0_rk)
-      call exchange(record, "heat_capacity", material%heat_capacity, nothing=0.0_rk)
-      call exchange(record, "heat_conductivity", material%heat_conductivity, nothing=0.0_rk)
-      call exchange(record, "heat_expansion", material%heat_expansion, nothing=0.0_rk)
-      call exchange(record, "toughness", material%toughness, nothing=huge(1.0_rk))
+      call exchange_rock(record, material)
       call exchange(record, "radiation_damping", material%radiation_damping)
       plane = merge("stress", "strain", material%plane_stress)
       call exchange(record, "plane", plane)
@@ -272,24 +263,19 @@ contains
             own%heat_conductivity = not_given
             own%heat_expansion = not_given
          end if
-         call exchange(record, "young", own%young)
-         call exchange(record, "poisson", own%poisson)
-         call exchange(record, "biot", own%biot)
-         call exchange(record, "porosity", own%porosity)
-         call exchange_permeability(record, own)
-         call exchange(record, "density", own%density, nothing=0.0_rk)
-         call exchange(record, "toughness", own%toughness, nothing=huge(1.0_rk))
-         call exchange(record, "heat_capacity", own%heat_capacity, nothing=0.0_rk)
-         call exchange(record, "heat_conductivity", own%heat_conductivity, nothing=0.0_rk)
-         call exchange(record, "heat_expansion", own%heat_expansion, nothing=0.0_rk)
+         call exchange_rock(record, own)
       end associate
    end subroutine exchange_region
 
-   !> An isotropic permeability or the components of a tensor.
-   pure subroutine exchange_permeability(record, material)
+   !> The numbers of a rock that regions may have too; its permeability is isotropic or a tensor.
+   pure subroutine exchange_rock(record, material)
       type(record_t), intent(inout) :: record
       type(material_t), intent(inout) :: material
 
+      call exchange(record, "young", material%young)
+      call exchange(record, "poisson", material%poisson)
+      call exchange(record, "biot", material%biot)
+      call exchange(record, "porosity", material%porosity)
       if (record%reading .and. record%is_set("permeability")) then
          call exchange(record, "permeability", material%permeability_xx)
          material%permeability_yy = material%permeability_xx
@@ -297,7 +283,12 @@ contains
       call exchange(record, "permeability_xx", material%permeability_xx, nothing=0.0_rk)
       call exchange(record, "permeability_yy", material%permeability_yy, nothing=0.0_rk)
       call exchange(record, "permeability_xy", material%permeability_xy, nothing=0.0_rk)
-   end subroutine exchange_permeability
+      call exchange(record, "density", material%density, nothing=0.0_rk)
+      call exchange(record, "heat_capacity", material%heat_capacity, nothing=0.0_rk)
+      call exchange(record, "heat_conductivity", material%heat_conductivity, nothing=0.0_rk)
+      call exchange(record, "heat_expansion", material%heat_expansion, nothing=0.0_rk)
+      call exchange(record, "toughness", material%toughness, nothing=huge(1.0_rk))
+   end subroutine exchange_rock
 
    !> Group &side of a polygon or a disc.
    pure subroutine exchange_part(record, part)

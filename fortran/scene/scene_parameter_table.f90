@@ -3,12 +3,11 @@
 module scene_parameter_table
    use scene_body_parameters, only: body_parameters
    use scene_parameters, only: in_fluid, in_mechanics, kind_choice, kind_integer, kind_logical, &
-                               kind_name, kind_names, kind_reals, kind_text, kind_wholes, &
-                               need_always, need_choice, need_fluid, need_growth, parameter_t
-   use scene_words, only: at_least_one, at_least_zero, below_one, biot_range, dilation_range, &
-                          exponent_range, newton_range, passes_range, poisson_range, &
-                          porosity_range, positive, rosette_range, share, steps_range, &
-                          tolerance_range
+                               kind_name, kind_names, kind_reals, kind_text, need_always, &
+                               need_choice, need_fluid, need_growth, parameter_t
+   use scene_words, only: at_least_zero, below_one, biot_range, dilation_range, exponent_range, &
+                          newton_range, passes_range, poisson_range, porosity_range, positive, &
+                          rosette_range, share, steps_range, tolerance_range
    implicit none(type, external)
    private
 

@@ -6,12 +6,10 @@ module scene_parameters
    implicit none(type, external)
    private
 
-   public :: group_t, parameter_t
-   public :: groups, side_names, text_length
-   public :: kind_choice, kind_integer, kind_logical, kind_name, kind_names, kind_real, kind_reals
-   public :: kind_text, kind_wholes
-   public :: need_always, need_choice, need_fluid, need_growth, need_never
-   public :: applies, choice_name, choice_value, in_fluid, in_mechanics
+   public :: group_t, parameter_t, groups, side_names, text_length, kind_choice, kind_integer
+   public :: kind_logical, kind_name, kind_names, kind_real, kind_reals, kind_text, kind_wholes
+   public :: need_always, need_choice, need_fluid, need_growth, need_never, applies, choice_name
+   public :: choice_value, in_fluid, in_mechanics
 
    integer, parameter :: kind_real = 1
    integer, parameter :: kind_reals = 2  !< a list of any length

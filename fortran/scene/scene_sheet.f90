@@ -10,9 +10,8 @@ module scene_sheet
    implicit none(type, external)
    private
 
-   public :: record_t, sheet_t
-   public :: add_record, empty_record, group_index, line_text, parameter_index, path_from
-   public :: path_of, place, refuse
+   public :: record_t, sheet_t, add_record, empty_record, group_index, line_text, parameter_index
+   public :: path_from, path_of, place, refuse
 
    !> One group.
    type :: record_t

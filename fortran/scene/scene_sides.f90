@@ -5,9 +5,8 @@ module scene_sides
    private
 
    public :: boundary_side_t, in_time, mean_in_time, normal_tractions, side_course_t
-   public :: side_quantities
-   public :: of_inflow, of_normal_traction, of_pressure, of_shear_traction, of_x_displacement
-   public :: of_x_traction, of_y_displacement, of_y_traction
+   public :: side_quantities, of_inflow, of_normal_traction, of_pressure, of_shear_traction
+   public :: of_x_displacement, of_x_traction, of_y_displacement, of_y_traction
 
    !> Quantities that may change with time, by their names in a scene file.
    character(len=16), parameter :: side_quantities(8) = [character(len=16) :: &

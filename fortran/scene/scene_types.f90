@@ -7,12 +7,9 @@ module scene_types
    implicit none(type, external)
    private
 
-   public :: adaptive_t, boundary_part_t, discretization_t, domain_t, entry_t, fluid_t
-   public :: fracture_t, growth_t, in_situ_t
-   public :: initial_t
-   public :: injection_t, load_t, material_t, output_t, point_load_t, probe_t, region_t, restraint_t
-   public :: scene_t, time_t
-   public :: name_length, no_limit
+   public :: adaptive_t, boundary_part_t, discretization_t, domain_t, entry_t, fluid_t, fracture_t
+   public :: growth_t, in_situ_t, initial_t, injection_t, load_t, material_t, output_t
+   public :: point_load_t, probe_t, region_t, restraint_t, scene_t, time_t, name_length, no_limit
 
    integer, parameter :: name_length = 64
    real(rk), parameter :: no_limit = 1.0e30_rk  !< pressure of a stage without a limit [Pa]

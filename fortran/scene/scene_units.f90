@@ -9,7 +9,7 @@ module scene_units
    implicit none(type, external)
    private
 
-   public :: find_unit, find_with_unit, in_unit, unit_t
+   public :: find_with_unit, in_unit, unit_t
 
    !> A unit, as the ending of a name.
    type :: unit_t

@@ -12,8 +12,7 @@ module scene_values
    implicit none(type, external)
    private
 
-   public :: value_t
-   public :: default_value, most_values, read_value, shortened
+   public :: value_t, default_value, most_values, read_value, shortened
 
    !> The value of a parameter in one group of a file.
    type :: value_t

@@ -22,52 +22,47 @@ submodule(twolevel_state) twolevel_adaption
 
 contains
 
-   module subroutine judge_mesh(self, may_coarsen, sizes, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      logical, intent(in) :: may_coarsen
-      real(rk), allocatable, intent(out) :: sizes(:)
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), parameter :: aim = 0.7_rk  ! error that is aimed at, over the tolerance [-]
-      real(rk), parameter :: worth = 0.6_rk  ! cells after coarsening, at most, over those before
-      type(levels_state_t) :: start
-      real(rk), parameter :: most = 4.0_rk  ! times the present number of cells
-      real(rk), parameter :: gain = 0.9_rk  ! error after refinement, at most, over that before
-      real(rk) :: before, change(self%problem%mesh%n_cells), squares(self%problem%mesh%n_cells)
-      logical :: is_known, is_refined
-      integer(ik) :: c
+   module procedure judge_mesh
+   real(rk), parameter :: aim = 0.7_rk  ! error that is aimed at, over the tolerance [-]
+   real(rk), parameter :: worth = 0.6_rk  ! cells after coarsening, at most, over those before
+   type(levels_state_t) :: start
+   real(rk), parameter :: most = 4.0_rk  ! times the present number of cells
+   real(rk), parameter :: gain = 0.9_rk  ! error after refinement, at most, over that before
+   real(rk) :: before, change(self%problem%mesh%n_cells), squares(self%problem%mesh%n_cells)
+   logical :: is_known, is_refined
+   integer(ik) :: c
 
-      start = self%now
-      call try_stages(self, squares, is_known, timers, error)
-      self%now = start
-      call follow_sides(self%scene, 0.0_rk, 0.0_rk)
-      if (allocated(error)) return
-      if (.not. is_known) then
-         call self%chronicle%add_event(0.0_rk, event_remesh, "the mesh is not adapted: its "// &
-                                       "trial steps are not solved")
-         return
+   start = self%now
+   call try_stages(self, squares, is_known, timers, error)
+   self%now = start
+   call follow_sides(self%scene, 0.0_rk, 0.0_rk)
+   if (allocated(error)) return
+   if (.not. is_known) then
+      call self%chronicle%add_event(0.0_rk, event_remesh, "the mesh is not adapted: its "// &
+                                    "trial steps are not solved")
+      return
+   end if
+   before = self%summary%energy_error
+   is_refined = before > self%scene%adaptive%tolerance
+   self%summary%energy_error = sqrt(sum(squares))
+   associate (mesh => self%problem%mesh, tolerance => self%scene%adaptive%tolerance, &
+              found => self%summary%energy_error)
+      call self%chronicle%add_event(0.0_rk, event_remesh, brief_text(real(mesh%n_cells, rk), 7) &
+                                    //" cells, estimated error in the energy norm "// &
+                                    brief_text(found, 3))
+      if (is_refined .and. found > gain*before) return
+      change = sizes_for(squares, (aim*tolerance)**2)
+      sizes = [(sqrt(4.0_rk/sqrt(3.0_rk)*cell_area(mesh, c)), c=1, mesh%n_cells)]
+      call limit_change(self%scene, mesh, sizes, change)
+      change = change*max(1.0_rk, sqrt(sum(1.0_rk/change**2)/(most*mesh%n_cells)))
+      if (found > tolerance .or. (may_coarsen .and. sum(1.0_rk/change**2) &
+                                  < worth*mesh%n_cells)) then
+         sizes = sizes*change
+      else
+         deallocate (sizes)
       end if
-      before = self%summary%energy_error
-      is_refined = before > self%scene%adaptive%tolerance
-      self%summary%energy_error = sqrt(sum(squares))
-      associate (mesh => self%problem%mesh, tolerance => self%scene%adaptive%tolerance, &
-                 found => self%summary%energy_error)
-         call self%chronicle%add_event(0.0_rk, event_remesh, brief_text(real(mesh%n_cells, rk), 7) &
-                                       //" cells, estimated error in the energy norm "// &
-                                       brief_text(found, 3))
-         if (is_refined .and. found > gain*before) return
-         change = sizes_for(squares, (aim*tolerance)**2)
-         sizes = [(sqrt(4.0_rk/sqrt(3.0_rk)*cell_area(mesh, c)), c=1, mesh%n_cells)]
-         call limit_change(self%scene, mesh, sizes, change)
-         change = change*max(1.0_rk, sqrt(sum(1.0_rk/change**2)/(most*mesh%n_cells)))
-         if (found > tolerance .or. (may_coarsen .and. sum(1.0_rk/change**2) &
-                                     < worth*mesh%n_cells)) then
-            sizes = sizes*change
-         else
-            deallocate (sizes)
-         end if
-      end associate
-   end subroutine judge_mesh
+   end associate
+   end procedure judge_mesh
 
    !> Cells on fractures grow to at most a fifth of the fracture's length, where they are smaller.
    pure subroutine limit_change(scene, mesh, sizes, change)

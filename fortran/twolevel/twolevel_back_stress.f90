@@ -23,7 +23,7 @@ module twolevel_back_stress
    implicit none(type, external)
    private
 
-   public :: back_stress_of, diffusivity_at, strip_weight, weighted
+   public :: back_stress_of, diffusivity_at, weighted
 
    !> K_I of a layer that has diffused round the tip, over that of one which ends there [-].
    real(rk), parameter :: round_tip = 1.0_rk/sqrt(2.0_rk)

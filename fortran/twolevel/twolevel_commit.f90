@@ -1,7 +1,6 @@
 !> Make a step the accepted state: what the run keeps of it. `commit_step` is the one place where
 !! this happens.
 submodule(twolevel_state:twolevel_steps) twolevel_commit
-use base_errors, only: error_t
 use base_kinds, only: rk
 use coarse_rock, only: shear_beside
 use mesh_types, only: fracture_mesh_t
@@ -9,7 +8,7 @@ use report_rows, only: entry_row_t, history_row_t, well_row_t
 use report_limits, only: limit_depth, limit_well_error
 use report_slip, only: slip_step_t
 use twolevel_field_errors, only: load_errors
-use twolevel_heat, only: add_well_temperatures, follow_heat, warn_of_heat
+use twolevel_heat, only: follow_heat, warn_of_heat
 use twolevel_limits, only: watch_levels
 use twolevel_notes, only: note_stated_errors, states_errors
 use twolevel_place_errors, only: note_entries
@@ -28,49 +27,47 @@ contains
 
 !> Make the state that was found the accepted one: sums over the run, limits, and the event log.
    !! An error if a limit stops the run.
-module subroutine commit_step(self, error)
-   class(two_levels_t), intent(inout) :: self
-   type(error_t), allocatable, intent(out) :: error
-   type(history_row_t) :: row
-   real(rk), allocatable :: pressure(:), of_load(:, :)
+module procedure commit_step
+type(history_row_t) :: row
+real(rk), allocatable :: pressure(:), of_load(:, :)
 
-   call book_change(self)
-   call follow_heat(self%scene, self%before, self%now%coarse, self%problem, self%now%heat, error)
-   if (allocated(error)) return
-   self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
-   row = self%history()
-   call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
-                     self%now%fluid%mass_error, row%mass_error_relative)
-   call self%heed_limits(error)
-   if (allocated(error)) return
-   self%shows_growth = self%now%has_new_mesh
-   self%now%has_new_mesh = .false.
-   if (.not. self%is_initial) then
-      self%summary%steps = self%summary%steps + 1
-      if (.not. (self%owes_state .or. self%scene%growth%in_equilibrium())) then
-         pressure = self%problem%fracture_pressure(self%now%coarse)
-         call self%stepper%settle(pressure(self%now%grown))
-      end if
+call book_change(self)
+call follow_heat(self%scene, self%before, self%now%coarse, self%problem, self%now%heat, error)
+if (allocated(error)) return
+self%now%fluid%mass_error = self%now%fluid%mass_error + self%step%report%mass_error
+row = self%history()
+call watch_levels(self%watch, self%scene, self%problem, self%now%coarse, self%step%report, &
+                  self%now%fluid%mass_error, row%mass_error_relative)
+call self%heed_limits(error)
+if (allocated(error)) return
+self%shows_growth = self%now%has_new_mesh
+self%now%has_new_mesh = .false.
+if (.not. self%is_initial) then
+   self%summary%steps = self%summary%steps + 1
+   if (.not. (self%owes_state .or. self%scene%growth%in_equilibrium())) then
+      pressure = self%problem%fracture_pressure(self%now%coarse)
+      call self%stepper%settle(pressure(self%now%grown))
    end if
-   if (states_errors(self%scene%growth)) then
-      allocate (of_load(2, size(self%tip)), source=0.0_rk)
-      if (self%scene%growth%enabled .and. .not. self%is_initial) of_load = &
-         & load_errors(self%scene, self%problem, self%now%coarse, self%value_errors, self%tip)
-      call note_stated_errors(self%scene, self%front_state_t, self%problem, of_load, &
-                              self%step%dt, self%now, self%notes)
-      self%position_error = self%now%stated_errors%tip
-   end if
-   if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
-   call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row, &
-                                     self%now%stated_errors, facts_of(self))
-   call note_well_rows(self)
-   call watch_errors(self)
-   self%summary%heat = row%heat
-   if (allocated(self%problem%heat)) then
-      call warn_of_heat(self%now%heat, self%summary)
-   end if
-   call note_state(self, row%mass_error_relative)
-end subroutine commit_step
+end if
+if (states_errors(self%scene%growth)) then
+   allocate (of_load(2, size(self%tip)), source=0.0_rk)
+   if (self%scene%growth%enabled .and. .not. self%is_initial) of_load = &
+      & load_errors(self%scene, self%problem, self%now%coarse, self%value_errors, self%tip)
+   call note_stated_errors(self%scene, self%front_state_t, self%problem, of_load, &
+                           self%step%dt, self%now, self%notes)
+   self%position_error = self%now%stated_errors%tip
+end if
+if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
+call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row, &
+                                  self%now%stated_errors, facts_of(self))
+call note_well_rows(self)
+call watch_errors(self)
+self%summary%heat = row%heat
+if (allocated(self%problem%heat)) then
+   call warn_of_heat(self%now%heat, self%summary)
+end if
+call note_state(self, row%mass_error_relative)
+end procedure commit_step
 
 !> What the errors of the last step need to know.
 pure type(step_facts_t) function facts_of(self) result(facts)
@@ -164,7 +161,8 @@ subroutine note_well_rows(self)
                                merge(0.0_rk, self%step%dt, self%is_initial), rows)
    call self%value_errors%note_wells(self%scene, self%problem, self%now%coarse, rows, &
                                      self%now%stated_errors, facts_of(self))
-   call add_well_temperatures(self%problem%heat, self%now%heat, rows)
+   if (allocated(self%problem%heat)) rows%temperature = self%problem%heat%heat%temperature &
+                                                        + self%now%heat%well_temperature
    self%chronicle%wells = [self%chronicle%wells, rows]
    if (.not. self%scene%has_entries()) return
    entries = entry_rows(self%problem, self%now%coarse)

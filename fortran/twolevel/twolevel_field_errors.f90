@@ -22,14 +22,11 @@
 !! with its whole error.
 module twolevel_field_errors
    use base_kinds, only: ik, pi, rk
-   use coarse_fields, only: cell_stress
    use coarse_state, only: state_t
    use contact_law, only: state_open, state_slip
    use growth_tip, only: tip_t
-   use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: jump_errors_t, unevenness
-   use report_rows, only: fracture_errors_t, fracture_fields_t, intersection_fields_t, &
-                          matrix_fields_t
+   use report_rows, only: fracture_fields_t, matrix_fields_t
    use scene_types, only: scene_t
    use twolevel_jump_errors, only: jumps_in_space_t
    use twolevel_pressure_errors, only: fracture_means, have_given_pressure, largest_of, least, &
@@ -41,7 +38,7 @@ module twolevel_field_errors
    implicit none(type, external)
    private
 
-   public :: add_rock_errors, find_fracture_errors, load_errors, note_joint_errors
+   public :: add_rock_errors, find_fracture_errors, load_errors
 
    !> errors of flows, over the difference from the neighbours and the largest one of a fracture [-]
    real(rk), parameter :: of_neighbours = 1.2_rk, of_largest = 0.04_rk
@@ -289,14 +286,6 @@ contains
       end function root
 
    end function load_errors
-
-   !> Errors of the pressures of joints.
-   pure subroutine note_joint_errors(errors, fields)
-      type(value_errors_t), intent(in) :: errors
-      type(intersection_fields_t), intent(inout) :: fields
-
-      fields%pressure_error = spread(errors%pressure_error(), 1, size(fields%pressure))
-   end subroutine note_joint_errors
 
    !> Add the errors of time and of the fractures to those of each cell of the rock.
    pure subroutine add_rock_errors(scene, problem, state, errors, fields)

@@ -13,7 +13,7 @@ module twolevel_heat
    use heat_steps, only: advance_heat
    use heat_transfer, only: transfer_heat
    use mesh_types, only: mesh_map_t
-   use report_rows, only: heat_row_t, summary_t, well_row_t
+   use report_rows, only: heat_row_t, summary_t
    use report_simulation, only: snapshot_t
    use scene_fluid_law, only: viscosity_ratio
    use scene_types, only: injection_t, scene_t
@@ -24,7 +24,7 @@ module twolevel_heat
    implicit none(type, external)
    private
 
-   public :: act, add_heat_fields, add_well_temperatures, carry_heat, follow_heat, heat_row
+   public :: act, add_heat_fields, carry_heat, follow_heat, heat_row
    public :: predict_heat, set_heat, settle_heat, settlings_max, warn_of_heat
 
    integer, parameter :: settlings_max = 3  !< tries that are repeated since they moved other heat
@@ -396,16 +396,6 @@ contains
       row = heat_row_t(state%stored, state%by_wells, state%by_sides, state%balance_error(), &
                        state%beyond_range)
    end function heat_row
-
-   !> Add the temperatures of the wells to their rows.
-   pure subroutine add_well_temperatures(heat, state, rows)
-      type(heat_model_t), allocatable, intent(in) :: heat
-      type(heat_state_t), intent(in) :: state
-      type(well_row_t), intent(inout) :: rows(:)
-
-      if (.not. allocated(heat)) return
-      rows%temperature = heat%heat%temperature + state%well_temperature
-   end subroutine add_well_temperatures
 
    !> Add the temperatures to the fields of a state.
    pure subroutine add_heat_fields(heat, state, fields)

@@ -22,104 +22,96 @@ submodule(twolevel_state) twolevel_remeshing
 
 contains
 
-   module subroutine grow_coarse(self, grew, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      logical, intent(out) :: grew
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: centres(:, :)
-      logical :: is_straightened
-      real(rk) :: threshold
+   module procedure grow_coarse
+   real(rk), allocatable :: centres(:, :)
+   logical :: is_straightened
+   real(rk) :: threshold
 
-      threshold = self%scene%growth%threshold*self%scene%discretization%size_fracture
-      if (any(self%has_gained())) threshold = same_place*self%rules%increment
-      call hand_over(threshold, self%network, self%tip, self%now%coarse_network, centres, &
-                     is_straightened)
-      grew = size(centres, 2) > 0
-      if (.not. grew) return
-      if (is_straightened) then
-         call self%windows%network_changed()
-         call self%reference%network_changed()
-      end if
-      call self%remesh_coarse(centres, timers, error)
-      call discard(self%kept_problem)
-   end subroutine grow_coarse
+   threshold = self%scene%growth%threshold*self%scene%discretization%size_fracture
+   if (any(self%has_gained())) threshold = same_place*self%rules%increment
+   call hand_over(threshold, self%network, self%tip, self%now%coarse_network, centres, &
+                  is_straightened)
+   grew = size(centres, 2) > 0
+   if (.not. grew) return
+   if (is_straightened) then
+      call self%windows%network_changed()
+      call self%reference%network_changed()
+   end if
+   call self%remesh_coarse(centres, timers, error)
+   call discard(self%kept_problem)
+   end procedure grow_coarse
 
-   module subroutine remesh_coarse(self, centres, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      real(rk), intent(in) :: centres(:, :)
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      type(coarse_problem_t), allocatable :: of_try, problem
-      type(mesh_map_t) :: map
-      type(profiles_t) :: profiles
-      type(kept_faces_t) :: faces
-      type(fracture_mesh_t) :: fracture_before
-      type(fracture_layout_t) :: layout
-      type(guess_t) :: guess
-      integer(ik), allocatable :: pairs(:, :)
-      real(rk) :: radius
-      integer(ik) :: i, k, nearest
+   module procedure remesh_coarse
+   type(coarse_problem_t), allocatable :: of_try, problem
+   type(mesh_map_t) :: map
+   type(profiles_t) :: profiles
+   type(kept_faces_t) :: faces
+   type(fracture_mesh_t) :: fracture_before
+   type(fracture_layout_t) :: layout
+   type(guess_t) :: guess
+   integer(ik), allocatable :: pairs(:, :)
+   real(rk) :: radius
+   integer(ik) :: i, k, nearest
 
-      call timers%heed(error)
-      if (allocated(error)) return
-      allocate (problem)
-      radius = 0.0_rk  ! the largest of those of the tips that have gone on
-      do i = 1, size(centres, 2, kind=ik)
-         nearest = minloc([(norm2(self%tip(k)%xy - centres(:, i)), k=1, size(self%tip))], dim=1)
-         associate (f => self%tip(nearest)%fracture)
-            radius = max(radius, 5.0_rk*self%rules%increment_of(f), &
-                         3.0_rk*self%scene%cell_size_of(f))
-         end associate
-      end do
-      call timers%start(phase_remesh)
-      call remesh(self%problem%mesher, self%now%coarse_network, centres, radius, &
-                  self%scene%smallest_cell(), problem%mesher, problem%mesh, map, error)
-      call timers%stop(phase_remesh)
-      if (allocated(error)) return
-      call timers%start(phase_transfer)
-      faces = kept_faces(self%problem%mesh%fracture, problem%mesh%fracture)
-      associate (layers => self%problem%model%layers, state => self%now%coarse)
-         if (layers%n > 0) then
-            profiles = profiles_of(layers, state%unknowns, state%layer)
-            call set_apart(layers, map%cell_old, faces, state%unknowns, state%content, profiles)
-         else
-            profiles = no_profiles()
-         end if
+   call timers%heed(error)
+   if (allocated(error)) return
+   allocate (problem)
+   radius = 0.0_rk  ! the largest of those of the tips that have gone on
+   do i = 1, size(centres, 2, kind=ik)
+      nearest = minloc([(norm2(self%tip(k)%xy - centres(:, i)), k=1, size(self%tip))], dim=1)
+      associate (f => self%tip(nearest)%fracture)
+         radius = max(radius, 5.0_rk*self%rules%increment_of(f), &
+                      3.0_rk*self%scene%cell_size_of(f))
       end associate
-      guess = self%now%coarse%guess
-      fracture_before = self%problem%mesh%fracture
-      pairs = self%problem%model%connections
-      layout = layout_of(self%problem)
-      call transfer_levels(self%scene, self%problem, map, problem, self%now)
-      call timers%stop(phase_transfer)
-      if (.not. allocated(self%kept_problem)) then
-         call move_alloc(self%problem, self%kept_problem)
+   end do
+   call timers%start(phase_remesh)
+   call remesh(self%problem%mesher, self%now%coarse_network, centres, radius, &
+               self%scene%smallest_cell(), problem%mesher, problem%mesh, map, error)
+   call timers%stop(phase_remesh)
+   if (allocated(error)) return
+   call timers%start(phase_transfer)
+   faces = kept_faces(self%problem%mesh%fracture, problem%mesh%fracture)
+   associate (layers => self%problem%model%layers, state => self%now%coarse)
+      if (layers%n > 0) then
+         profiles = profiles_of(layers, state%unknowns, state%layer)
+         call set_apart(layers, map%cell_old, faces, state%unknowns, state%content, profiles)
       else
-         call move_alloc(self%problem, of_try)
-         call of_try%model%release()
+         profiles = no_profiles()
       end if
-      call move_alloc(problem, self%problem)
-      call self%windows%coarse_changed()
-      call self%reference%coarse_changed()
-      call choose_first_step(self%scene, self%problem%model%first_step)
-      call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
-      if (allocated(error)) return
-      call transfer_layers(self%problem, profiles, map, faces, self%now%coarse)
-      call self%problem%feed_wells(self%scene, error)
-      if (allocated(error)) return
-      call rest_fluid(self%problem%model, self%now%coarse)
-      if (allocated(of_try)) then
-         call carry_heat(self%scene, of_try, map, faces, self%problem, self%now, error)
-      else
-         call carry_heat(self%scene, self%kept_problem, map, faces, self%problem, self%now, error)
-      end if
-      if (allocated(error)) return
-      call transfer_guess(fracture_before, self%problem%mesh%fracture, pairs, &
-                          self%problem%model%connections, layout, layout_of(self%problem), guess)
-      self%now%coarse%guess = guess
-      self%now%has_new_mesh = .true.
-   end subroutine remesh_coarse
+   end associate
+   guess = self%now%coarse%guess
+   fracture_before = self%problem%mesh%fracture
+   pairs = self%problem%model%connections
+   layout = layout_of(self%problem)
+   call transfer_levels(self%scene, self%problem, map, problem, self%now)
+   call timers%stop(phase_transfer)
+   if (.not. allocated(self%kept_problem)) then
+      call move_alloc(self%problem, self%kept_problem)
+   else
+      call move_alloc(self%problem, of_try)
+      call of_try%model%release()
+   end if
+   call move_alloc(problem, self%problem)
+   call self%windows%coarse_changed()
+   call self%reference%coarse_changed()
+   call choose_first_step(self%scene, self%problem%model%first_step)
+   call self%problem%model%set_mesh(self%problem%mesh, self%scene, timers, error)
+   if (allocated(error)) return
+   call transfer_layers(self%problem, profiles, map, faces, self%now%coarse)
+   call self%problem%feed_wells(self%scene, error)
+   if (allocated(error)) return
+   call rest_fluid(self%problem%model, self%now%coarse)
+   if (allocated(of_try)) then
+      call carry_heat(self%scene, of_try, map, faces, self%problem, self%now, error)
+   else
+      call carry_heat(self%scene, self%kept_problem, map, faces, self%problem, self%now, error)
+   end if
+   if (allocated(error)) return
+   call transfer_guess(fracture_before, self%problem%mesh%fracture, pairs, &
+                       self%problem%model%connections, layout, layout_of(self%problem), guess)
+   self%now%coarse%guess = guess
+   self%now%has_new_mesh = .true.
+   end procedure remesh_coarse
 
    !> Numbering of the unknowns on the fractures.
    pure type(fracture_layout_t) function layout_of(problem) result(layout)

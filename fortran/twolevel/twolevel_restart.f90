@@ -19,74 +19,69 @@ submodule(twolevel_state) twolevel_restart
    use twolevel_places, only: place_tips
    use twolevel_schedule, only: next_switch
    use twolevel_setup, only: keep_above_zero, rules_of_scene
+   use twolevel_window_tip, only: window_tip_t
    implicit none(type, external)
 
 contains
 
-   module subroutine prepare(self, scene)
-      class(two_levels_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
+   module procedure prepare
 
-      self%end_time = scene%time%end
-      self%tape%is_recording = .true.
-      call self%stepper%begin(scene%time)
-      call self%set_scene(scene)
-      call self%chronicle%clear()
-      call keep_above_zero(self%scene)
-      self%rules = rules_of_scene(self%scene)
-      self%load_pressure = pressure_scale(self%scene)
-      allocate (self%problem)
-   end subroutine prepare
+   self%end_time = scene%time%end
+   self%tape%is_recording = .true.
+   call self%stepper%begin(scene%time)
+   call self%set_scene(scene)
+   call self%chronicle%clear()
+   call keep_above_zero(self%scene)
+   self%rules = rules_of_scene(self%scene)
+   self%load_pressure = pressure_scale(self%scene)
+   allocate (self%problem)
+   end procedure prepare
 
-   module subroutine visit(self, archive, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure visit
 
-      ! As the next step does at its beginning.
-      if (.not. archive%is_loading) then
-         call discard(self%kept_problem)
-         if (self%scene%growth%intensities) then
-            call self%windows%begin_step()
-            call self%reference%begin_step()
-         end if
+   ! As the next step does at its beginning.
+   if (.not. archive%is_loading) then
+      call discard(self%kept_problem)
+      if (self%scene%growth%intensities) then
+         call self%windows%begin_step()
+         call self%reference%begin_step()
       end if
-      call visit_simulation(archive, self)
-      call archive%item("growth_was_enabled", self%scene%growth%was_enabled)
-      call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
-      associate (mesh => self%problem%mesh)
-         if (archive%is_loading .and. .not. allocated(archive%fault)) then
-            if (mesh%n_cells == 0) then
-               call archive%set_fault("mesh")
-            else
-               call archive%compare_range("mesh", mesh%face_side, "; 0:sides")
-            end if
-         end if
-         call archive%set_extent("all_wells", size(self%scene%injections, kind=ik))
-         call archive%set_extent("cells", mesh%n_cells)
-         call archive%set_extent("nodes", mesh%n_nodes)
-         call archive%set_extent("fcells", mesh%fracture%n_cells)
-         call archive%set_extent("mesh_tips", mesh%fracture%n_tips)
-      end associate
-      call visit_levels(archive, "now", self%now)
-      if (archive%is_loading) call check_places(archive, self%front_state_t, self%now)
-      ! The next step begins with the present state: of the one before only its time is needed.
-      call archive%item("before_time", self%before%time)
-      if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
+   end if
+   call visit_simulation(archive, self)
+   call archive%item("growth_was_enabled", self%scene%growth%was_enabled)
+   call visit_mesher_and_mesh(archive, "mesh", self%problem%mesher, self%problem%mesh)
+   associate (mesh => self%problem%mesh)
       if (archive%is_loading .and. .not. allocated(archive%fault)) then
-         call follow_sides(self%scene, self%now%coarse%time, self%before%time)
+         if (mesh%n_cells == 0) then
+            call archive%set_fault("mesh")
+         else
+            call archive%compare_range("mesh", mesh%face_side, "; 0:sides")
+         end if
       end if
-      call visit_problem(archive, self, timers, error)
-      if (allocated(error) .or. allocated(archive%fault)) return
-      call visit_windows(archive, "windows", self%windows, self%now%windows%tip, self, error)
-      if (allocated(error) .or. allocated(archive%fault)) return
-      call visit_windows(archive, "reference", self%reference, self%now%reference%tip, self, error)
-      if (allocated(error) .or. allocated(archive%fault)) return
-      call visit_control(archive, self)
-      if (allocated(self%problem%heat)) self%summary%heat = heat_row(self%now%heat)
-      if (archive%is_loading) call go_beyond_end(self)
-   end subroutine visit
+      call archive%set_extent("all_wells", size(self%scene%injections, kind=ik))
+      call archive%set_extent("cells", mesh%n_cells)
+      call archive%set_extent("nodes", mesh%n_nodes)
+      call archive%set_extent("fcells", mesh%fracture%n_cells)
+      call archive%set_extent("mesh_tips", mesh%fracture%n_tips)
+   end associate
+   call visit_levels(archive, "now", self%now)
+   if (archive%is_loading) call check_places(archive, self%front_state_t, self%now)
+   ! The next step begins with the present state: of the one before only its time is needed.
+   call archive%item("before_time", self%before%time)
+   if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
+   if (archive%is_loading .and. .not. allocated(archive%fault)) then
+      call follow_sides(self%scene, self%now%coarse%time, self%before%time)
+   end if
+   call visit_problem(archive, self, timers, error)
+   if (allocated(error) .or. allocated(archive%fault)) return
+   call visit_windows(archive, "windows", self%windows, self%now%windows%tip, self, error)
+   if (allocated(error) .or. allocated(archive%fault)) return
+   call visit_windows(archive, "reference", self%reference, self%now%reference%tip, self, error)
+   if (allocated(error) .or. allocated(archive%fault)) return
+   call visit_control(archive, self)
+   if (allocated(self%problem%heat)) self%summary%heat = heat_row(self%now%heat)
+   if (archive%is_loading) call go_beyond_end(self)
+   end procedure visit
 
    !> The tips are at the ends of the network, and where their segments say, which end in the last
    !! coarse cells.

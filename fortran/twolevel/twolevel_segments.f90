@@ -196,7 +196,10 @@ contains
             call remove_segment(front, before(i), i)
             front%tip(i)%path_target = target(i)
             front%tip(i)%origin = front%tip(i)%xy
-            call make_ligament(front%tip(i), to(:, i), now%segment(i))
+            associate (way => to(:, i) - front%tip(i)%xy)  ! all of it is a ligament
+               call now%segment(i)%open_segment(front%tip(i)%xy, way/norm2(way), norm2(way))
+            end associate
+            call now%segment(i)%stay_at_start()
          else
             front%tip(i)%path_target = target(i)
             call begin_segment(front, start, rules, i, to(:, i), now%segment(i))
@@ -236,16 +239,6 @@ contains
       call find_beside(network, rules%outline, tip%fracture, tip%origin, tip%xy, &
                        rules%near_of(tip%fracture), target, to)
    end subroutine find_end
-
-   !> Make the whole segment of a tip a ligament.
-   subroutine make_ligament(tip, to, segment)
-      type(tip_t), intent(in) :: tip
-      real(rk), intent(in) :: to(2)  !< position of the target [m]
-      type(segment_t), intent(inout) :: segment
-
-      call segment%open_segment(tip%xy, (to - tip%xy)/norm2(to - tip%xy), norm2(to - tip%xy))
-      call segment%stay_at_start()
-   end subroutine make_ligament
 
    !> Open a new segment from the end of the last one.
    pure subroutine begin_segment(front, start, rules, i, to, segment)

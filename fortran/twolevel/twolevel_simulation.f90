@@ -2,15 +2,13 @@
 submodule(twolevel_state) twolevel_simulation
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use base_texts, only: text_t
    use base_timers, only: phase_mesh, phase_remesh, timers_t
    use base_tolerances, only: same_time
    use coarse_model, only: new_state
    use growth_network, only: fracture_length, network_of_scene
    use mesh_builder, only: build_mesh, build_mesh_sized
    use scene_sizes, only: sizes_text
-   use scene_plausible, only: doubts_of_scene
-   use scene_types, only: growth_t, scene_t
+   use scene_types, only: scene_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_field_errors, only: load_errors
    use twolevel_heat, only: set_heat
@@ -31,24 +29,20 @@ submodule(twolevel_state) twolevel_simulation
 
 contains
 
-   module subroutine begin(self, scene, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
+   module procedure begin
 
-      self%end_time = scene%time%end
-      self%tape%is_recording = .true.
-      call self%stepper%begin(scene%time)
-      call mesh_levels(self, scene, timers, error)
-      if (allocated(error)) return
-      call self%catalogue%begin(scene%output%out_of_plane_length, &
-                                scene%output%stimulated_jump, scene%output%seismic_slip_rate)
-      call self%notes%begin(size(self%tip))
-      if (self%scene%growth%enabled) self%summary%growth_jumps = 0
-      call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
-      if (.not. allocated(error)) call note_features(self)
-   end subroutine begin
+   self%end_time = scene%time%end
+   self%tape%is_recording = .true.
+   call self%stepper%begin(scene%time)
+   call mesh_levels(self, scene, timers, error)
+   if (allocated(error)) return
+   call self%catalogue%begin(scene%output%out_of_plane_length, &
+                             scene%output%stimulated_jump, scene%output%seismic_slip_rate)
+   call self%notes%begin(size(self%tip))
+   if (self%scene%growth%enabled) self%summary%growth_jumps = 0
+   call watch_mesh(self%watch, self%problem, self%now%coarse%time, error)
+   if (.not. allocated(error)) call note_features(self)
+   end procedure begin
 
    !> Mesh, discretize and set the state before the load.
    subroutine mesh_levels(self, scene, timers, error)
@@ -199,50 +193,47 @@ contains
       end associate
    end subroutine note_features
 
-   module subroutine grow(self, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      logical :: may_grow
+   module procedure grow
+   logical :: may_grow
 
-      may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
-      self%owes_state = .false.
-      if (self%scene%growth%intensities) then
-         if (may_grow .and. self%scene%growth%in_equilibrium()) then
-            call note_equilibrium(self, error)
-         else
-            call evaluate_tips(self, timers, error)
-            if (allocated(error)) return
-            if (may_grow) then
-               call follow_tips(self, timers, error)
-            else
-               self%tip%advance = 0.0_rk
-               call self%note_tips(load_errors=load_errors_of(self))
-            end if
-         end if
-         if (allocated(error)) return
-         associate (toughness => self%rules%toughness, time => self%now%coarse%time)
-            if (self%scene%growth%in_equilibrium()) then
-               call note_uncertain_tips(self, self%notes%is_uncertain)
-               call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
-                                           self%chronicle)
-               if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
-            end if
-            call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
-         end associate
-         call self%count_unknowns()
-         call self%heed_limits(error)
-         if (allocated(error)) return
-      end if
+   may_grow = self%scene%growth%enabled .and. .not. self%is_initial .and. .not. self%owes_state
+   self%owes_state = .false.
+   if (self%scene%growth%intensities) then
       if (may_grow .and. self%scene%growth%in_equilibrium()) then
-         call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
-                                         self%increments(), self%chronicle)
+         call note_equilibrium(self, error)
+      else
+         call evaluate_tips(self, timers, error)
+         if (allocated(error)) return
+         if (may_grow) then
+            call follow_tips(self, timers, error)
+         else
+            self%tip%advance = 0.0_rk
+            call self%note_tips(load_errors=load_errors_of(self))
+         end if
       end if
-      if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
-         if (.not. allocated(self%ending)) self%ending = at_end
-         self%owes_state = .false.
-      end if
-   end subroutine grow
+      if (allocated(error)) return
+      associate (toughness => self%rules%toughness, time => self%now%coarse%time)
+         if (self%scene%growth%in_equilibrium()) then
+            call note_uncertain_tips(self, self%notes%is_uncertain)
+            call self%notes%note_onsets(self%tip, self%now%segment, toughness, time, &
+                                        self%chronicle)
+            if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
+         end if
+         call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+      end associate
+      call self%count_unknowns()
+      call self%heed_limits(error)
+      if (allocated(error)) return
+   end if
+   if (may_grow .and. self%scene%growth%in_equilibrium()) then
+      call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
+                                      self%increments(), self%chronicle)
+   end if
+   if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
+      if (.not. allocated(self%ending)) self%ending = at_end
+      self%owes_state = .false.
+   end if
+   end procedure grow
 
    !> Evaluate the intensities in a state without growth, with refined windows where growth after it
    !! requires this.

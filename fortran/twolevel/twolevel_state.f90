@@ -14,7 +14,7 @@ module twolevel_state
    use report_rows, only: history_row_t, probe_row_t
    use report_restart, only: restartable_t
    use report_simulation, only: snapshot_t
-   use twolevel_field_errors, only: add_rock_errors, find_fracture_errors, note_joint_errors
+   use twolevel_field_errors, only: add_rock_errors, find_fracture_errors
    use twolevel_heat, only: act, add_heat_fields, heat_row, predict_heat
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
@@ -32,7 +32,6 @@ module twolevel_state
    use twolevel_wells, only: rate
    use twolevel_unsolved, only: why_unsolved
    use twolevel_well_rows, only: well_results_t
-   use twolevel_window_tip, only: window_tip_t
    use twolevel_windows, only: windows_t
    implicit none(type, external)
    private
@@ -527,7 +526,8 @@ contains
          call find_fracture_errors(self%scene, self%problem, self%now%coarse, self%value_errors, &
                                    fields%fracture)
       end if
-      call note_joint_errors(self%value_errors, fields%intersection)
+      fields%intersection%pressure_error = spread(self%value_errors%pressure_error(), 1, &
+                                                  size(fields%intersection%pressure))
       if (self%scene%output%windows .and. allocated(self%windows%slot)) then
          fields%windows = self%windows%meshes(self%tip)
          if (size(fields%windows%tip) == 0) deallocate (fields%windows)

@@ -50,37 +50,34 @@ submodule(twolevel_state) twolevel_steps
 
 contains
 
-   module subroutine next_state(self, timers, error)
-      class(two_levels_t), intent(inout) :: self
-      type(timers_t), intent(inout) :: timers
-      type(error_t), allocatable, intent(out) :: error
-      type(trial_t) :: trial
-      real(rk) :: wanted
-      logical :: is_first
+   module procedure next_state
+   type(trial_t) :: trial
+   real(rk) :: wanted
+   logical :: is_first
 
-      is_first = .not. self%has_begun
-      self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
-      self%has_begun = .true.
-      call self%begin_step()
-      call self%tape%begin()
-      if (self%scene%growth%enabled) then
-         call limit_windows(self, timers, error)
-         if (allocated(error)) return
+   is_first = .not. self%has_begun
+   self%is_initial = is_first .and. self%scene%initial%fracture_pressure == "equilibrated"
+   self%has_begun = .true.
+   call self%begin_step()
+   call self%tape%begin()
+   if (self%scene%growth%enabled) then
+      call limit_windows(self, timers, error)
+      if (allocated(error)) return
+   end if
+   if (self%is_initial) then
+      call find_initial_state(self, timers, error)
+   else
+      if (is_first) then
+         call self%stimulation%begin(self%problem, self%now%coarse)
+         call self%well_results%begin(self%scene, self%problem, self%now%coarse)
+         call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
       end if
-      if (self%is_initial) then
-         call find_initial_state(self, timers, error)
-      else
-         if (is_first) then
-            call self%stimulation%begin(self%problem, self%now%coarse)
-            call self%well_results%begin(self%scene, self%problem, self%now%coarse)
-            call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
-         end if
-         call find_step(self, trial, wanted, timers, error)
-         if (.not. allocated(error)) call accept_step(self, trial, wanted)
-      end if
-      if (.not. allocated(error)) call commit_step(self, error)
-      if (allocated(error)) call self%put_back()
-   end subroutine next_state
+      call find_step(self, trial, wanted, timers, error)
+      if (.not. allocated(error)) call accept_step(self, trial, wanted)
+   end if
+   if (.not. allocated(error)) call commit_step(self, error)
+   if (allocated(error)) call self%put_back()
+   end procedure next_state
 
    !> Find a step from the stored state, from a record or freely.
    subroutine find_step(self, trial, wanted, timers, error)

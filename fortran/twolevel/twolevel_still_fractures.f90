@@ -15,7 +15,7 @@ module twolevel_still_fractures
    implicit none(type, external)
    private
 
-   public :: find_needed, still_fractures
+   public :: find_needed
 
 contains
 

@@ -1,8 +1,11 @@
 !> Growth or wells that a scene has from a restart on. The state has been loaded as that of a scene
 !! with the wells and the growth of the checkpoint; mesh and fields stay.
 submodule(twolevel_state:twolevel_simulation) twolevel_switch
+use base_texts, only: text_t
 use coarse_wells, only: control_rate, rock_wells_t
 use report_rows, only: entry_row_t
+use scene_plausible, only: doubts_of_scene
+use scene_types, only: growth_t
 use twolevel_places, only: place_tips
 use twolevel_schedule, only: next_switch
 use twolevel_well_rows, only: entry_rows, well_pressures
@@ -10,59 +13,56 @@ implicit none(type, external)
 
 contains
 
-module subroutine take_over(self, scene, error)
-   class(two_levels_t), intent(inout) :: self
-   type(scene_t), intent(in) :: scene  !< the wells of the state are its first ones
-   type(error_t), allocatable, intent(out) :: error
-   type(growth_t) :: growth
-   type(timers_t) :: timers
-   real(rk), allocatable :: share(:, :)
-   type(text_t), allocatable :: doubts(:)
-   integer(ik) :: i, n_controlled, n_old, n_rock
+module procedure take_over
+type(growth_t) :: growth
+type(timers_t) :: timers
+real(rk), allocatable :: share(:, :)
+type(text_t), allocatable :: doubts(:)
+integer(ik) :: i, n_controlled, n_old, n_rock
 
-   growth = self%scene%growth
-   n_old = size(self%scene%injections, kind=ik)
-   call timers%begin()
-   self%scene = scene
-   call keep_above_zero(self%scene)
-   doubts = doubts_of_scene(scene)
-   do i = 1, size(doubts, kind=ik)
-      call self%summary%warn(doubts(i)%text)
-   end do
-   self%scene%growth%was_enabled = growth%enabled .or. growth%was_enabled
-   self%rules = rules_of_scene(self%scene)
-   associate (now => self%now%coarse%time, before => self%before%time, step => self%step)
-      call follow_sides(self%scene, now, before)
-      step%ends_at_switch = step%ends_at_switch .or. &
-                            next_switch(self%scene, before) <= now*(1.0_rk + same_time)
-   end associate
-   associate (problem => self%problem, mesh => self%problem%mesh)
-      n_controlled = problem%model%wells%n_all
-      n_rock = problem%model%rock_wells%n
-      problem%model%rock_wells = rock_wells_t()
-      call share_wells(entries_of(self%scene%injections), mesh%fracture, share)
-      share(:, :size(problem%share, 2)) = problem%share
-      problem%share = share
-      call problem%model%set_mesh(mesh, self%scene, timers, error)
-      if (allocated(error)) return
-      call problem%feed_wells(self%scene, error)
-      if (allocated(error)) return
-      if (self%scene%growth%leaves_partial_cells()) then
-         call place_tips(self%front_state_t, self%now%segment, problem)
-      end if
-   end associate
-   if (size(self%scene%injections) > n_old) call add_wells(self, n_old, n_controlled, n_rock)
-   if (self%scene%growth%enabled .eqv. growth%enabled) return
-   call set_scales(self)
-   self%now%grown = [integer(ik) ::]
-   if (.not. self%scene%growth%enabled) return
-   call self%summary%use_after_all("growth", no_growth)
-   self%summary%growth_jumps = max(0_ik, self%summary%growth_jumps)
-   if (allocated(self%windows%slot)) return
-   call begin_windows(self)
-   call self%evaluate(timers, error)
-   if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
-end subroutine take_over
+growth = self%scene%growth
+n_old = size(self%scene%injections, kind=ik)
+call timers%begin()
+self%scene = scene
+call keep_above_zero(self%scene)
+doubts = doubts_of_scene(scene)
+do i = 1, size(doubts, kind=ik)
+   call self%summary%warn(doubts(i)%text)
+end do
+self%scene%growth%was_enabled = growth%enabled .or. growth%was_enabled
+self%rules = rules_of_scene(self%scene)
+associate (now => self%now%coarse%time, before => self%before%time, step => self%step)
+   call follow_sides(self%scene, now, before)
+   step%ends_at_switch = step%ends_at_switch .or. &
+                         next_switch(self%scene, before) <= now*(1.0_rk + same_time)
+end associate
+associate (problem => self%problem, mesh => self%problem%mesh)
+   n_controlled = problem%model%wells%n_all
+   n_rock = problem%model%rock_wells%n
+   problem%model%rock_wells = rock_wells_t()
+   call share_wells(entries_of(self%scene%injections), mesh%fracture, share)
+   share(:, :size(problem%share, 2)) = problem%share
+   problem%share = share
+   call problem%model%set_mesh(mesh, self%scene, timers, error)
+   if (allocated(error)) return
+   call problem%feed_wells(self%scene, error)
+   if (allocated(error)) return
+   if (self%scene%growth%leaves_partial_cells()) then
+      call place_tips(self%front_state_t, self%now%segment, problem)
+   end if
+end associate
+if (size(self%scene%injections) > n_old) call add_wells(self, n_old, n_controlled, n_rock)
+if (self%scene%growth%enabled .eqv. growth%enabled) return
+call set_scales(self)
+self%now%grown = [integer(ik) ::]
+if (.not. self%scene%growth%enabled) return
+call self%summary%use_after_all("growth", no_growth)
+self%summary%growth_jumps = max(0_ik, self%summary%growth_jumps)
+if (allocated(self%windows%slot)) return
+call begin_windows(self)
+call self%evaluate(timers, error)
+if (.not. allocated(error)) call estimate_coarse_errors(self, timers, error)
+end procedure take_over
 
 !> Add wells at rest after those of the state.
 subroutine add_wells(self, n_old, n_controlled, n_rock)

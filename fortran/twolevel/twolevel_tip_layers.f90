@@ -82,7 +82,7 @@ contains
    !> Set the driving force to zero at tips that were open before the step and that the suction of
    !! the viscous fluid closes: such a tip is too far ahead, whatever its faces slip. It waits until
    !! it opens again. Open is a tip with more opening than sliding. Where the toughness is no scale
-   !! for K, so small a K tells nothing.
+   !! for K, so small a K is not significant.
    subroutine close_tips(self)
       class(two_levels_t), intent(inout) :: self
       logical :: was_closed, was_open

@@ -7,47 +7,39 @@ submodule(twolevel_window) twolevel_window_archive
 
 contains
 
-   module subroutine visit(self, archive, scene, mesher, coarse, values, tips, error)
-      class(window_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      type(scene_t), intent(in) :: scene
-      type(mesher_t), intent(in) :: mesher
-      type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
-      type(window_tip_t), intent(in) :: tips(:)
-      type(error_t), allocatable, intent(out) :: error
+   module procedure visit
 
-      call archive%enter("window")
-      call archive%set_extent("serves", -1_ik)
-      call archive%set_extent("served", -1_ik)
-      call archive%list("serves", self%serves, "serves")
-      if (archive%is_loading .and. allocated(self%serves)) then
-         if (any(self%serves < 1 .or. self%serves > size(tips))) call archive%set_fault("serves")
-      end if
-      if (allocated(archive%fault)) return
-      call archive%item("is_body", self%is_body)
-      call archive%item("lower", self%lower)
-      call archive%item("upper", self%upper)
-      call archive%item("coarser", self%coarser)
-      call archive%item("element_size", self%element_size)
-      call archive%item("usual_edge", self%usual_edge)
-      call archive%item("times_larger", self%times_larger)
-      call archive%item("has_moved", self%has_moved)
-      call visit_mesher_and_mesh(archive, "mesh", self%mesher, self%mesh)
-      call visit_mesher(archive, "as_made", self%as_made)
-      call visit_made(self, archive)
-      if (self%mesh%n_cells > 0) call visit_model(self, archive, scene, tips, error)
-      call archive%leave()
-      if (.not. (archive%is_loading .and. allocated(self%made)) .or. allocated(error)) return
-      if (allocated(archive%fault) .or. .not. self%made%is_projected) return
-      if (.not. (allocated(values%of) .and. allocated(values%is_grown))) then
-         call archive%set_fault("values")
-         return
-      end if
-      call self%project(mesher, coarse, values%is_grown, error)
-      if (allocated(error)) return
-      if (any(self%faces%coarse_cell < 1)) call archive%set_fault("cell_fracture")
-   end subroutine visit
+   call archive%enter("window")
+   call archive%set_extent("serves", -1_ik)
+   call archive%set_extent("served", -1_ik)
+   call archive%list("serves", self%serves, "serves")
+   if (archive%is_loading .and. allocated(self%serves)) then
+      if (any(self%serves < 1 .or. self%serves > size(tips))) call archive%set_fault("serves")
+   end if
+   if (allocated(archive%fault)) return
+   call archive%item("is_body", self%is_body)
+   call archive%item("lower", self%lower)
+   call archive%item("upper", self%upper)
+   call archive%item("coarser", self%coarser)
+   call archive%item("element_size", self%element_size)
+   call archive%item("usual_edge", self%usual_edge)
+   call archive%item("times_larger", self%times_larger)
+   call archive%item("has_moved", self%has_moved)
+   call visit_mesher_and_mesh(archive, "mesh", self%mesher, self%mesh)
+   call visit_mesher(archive, "as_made", self%as_made)
+   call visit_made(self, archive)
+   if (self%mesh%n_cells > 0) call visit_model(self, archive, scene, tips, error)
+   call archive%leave()
+   if (.not. (archive%is_loading .and. allocated(self%made)) .or. allocated(error)) return
+   if (allocated(archive%fault) .or. .not. self%made%is_projected) return
+   if (.not. (allocated(values%of) .and. allocated(values%is_grown))) then
+      call archive%set_fault("values")
+      return
+   end if
+   call self%project(mesher, coarse, values%is_grown, error)
+   if (allocated(error)) return
+   if (any(self%faces%coarse_cell < 1)) call archive%set_fault("cell_fracture")
+   end procedure visit
 
    subroutine visit_made(self, archive)
       type(window_t), intent(inout) :: self

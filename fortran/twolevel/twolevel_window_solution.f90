@@ -13,86 +13,74 @@ submodule(twolevel_window) twolevel_window_solution
 
 contains
 
-   module subroutine find_intensities(self, scene, coarse, values, state, tips, history, error)
-      class(window_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(mesh_t), intent(in) :: coarse
-      type(coarse_values_t), intent(in) :: values
-      type(state_t), intent(in) :: state
-      type(window_tip_t), intent(inout) :: tips(:)
-      type(window_history_t), intent(inout) :: history
-      type(error_t), allocatable, intent(out) :: error
-      integer(ik) :: i
-      logical :: again
+   module procedure find_intensities
+   integer(ik) :: i
+   logical :: again
 
-      associate (n => self%model%mesh%n_vertices)
-         call self%map%interpolate(coarse, values%nodal(3, :), self%loads%pore_pressure(:n))
-      end associate
-      if (any(self%sides%of%changes())) call follow_sides(self, scene)
-      self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
-                                                          values%gradient)
-      if (self%undrained) then
-         self%loads%pore_pressure = scene%initial%pressure
-         if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
-      end if
-      if (.not. allocated(self%served)) call self%choose_tips(self%at > 0)
-      if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
-         call remember_contact(self, state, history)
-      end if
-      associate (face_condition => scene%discretization%face_condition)
-         call self%faces%load(self%model%mesh, face_condition, state, &
-                              scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ, &
-                              values%viscous)
-      end associate
-      if (self%is_body .and. .not. allocated(self%made%held) .and. &
-          scene%discretization%face_condition == "contact") then
-         self%made%held = choose_held(self%model%mesh, self%faces, coarse, values%law, state, &
-                                      history%contact%slip_before, tips)
-      end if
-      do
-         call self%prepare_matrix(scene, values%law, error)
-         if (allocated(error)) return
-         if (allocated(self%made%held)) then
-            call hold_faces(self%made%held, history%contact, self%model%conditions%law, self%loads)
-         end if
-         call self%model%solve(self%loads, self%displacement, error, history%contact)
-         if (allocated(error)) return
-         if (.not. allocated(self%made%held)) exit
-         call release_faces(self%model, self%loads, self%displacement, coarse, self%faces, &
-                            self%made%held, again)
-         if (.not. again) exit
-      end do
-      call find_probes(self, error)
+   associate (n => self%model%mesh%n_vertices)
+      call self%map%interpolate(coarse, values%nodal(3, :), self%loads%pore_pressure(:n))
+   end associate
+   if (any(self%sides%of%changes())) call follow_sides(self, scene)
+   self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &
+                                                       values%gradient)
+   if (self%undrained) then
+      self%loads%pore_pressure = scene%initial%pressure
+      if (allocated(self%pressure_in_situ)) self%loads%pore_pressure = 0.0_rk
+   end if
+   if (.not. allocated(self%served)) call self%choose_tips(self%at > 0)
+   if (.not. allocated(history%contact) .or. allocated(history%mesh)) then
+      call remember_contact(self, state, history)
+   end if
+   associate (face_condition => scene%discretization%face_condition)
+      call self%faces%load(self%model%mesh, face_condition, state, &
+                           scene%fluid%vapour_pressure, self%loads, self%pressure_in_situ, &
+                           values%viscous)
+   end associate
+   if (self%is_body .and. .not. allocated(self%made%held) .and. &
+       scene%discretization%face_condition == "contact") then
+      self%made%held = choose_held(self%model%mesh, self%faces, coarse, values%law, state, &
+                                   history%contact%slip_before, tips)
+   end if
+   do
+      call self%prepare_matrix(scene, values%law, error)
       if (allocated(error)) return
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => tips(self%serves(i)))
-            if (.not. self%served(i)%is_evaluated) cycle
-            call tip_intensity(self%model, self%loads, self%displacement, self%served(i)%probe, &
-                               tip%found, error)
-            if (allocated(error)) return
-            ! Both methods see the same elements, which are twice as large as usual.
-            if (self%is_body .and. .not. tip%has_focus) then
-               tip%found%k1_error = without_focus*tip%found%k1_error
-               tip%found%k2_error = without_focus*tip%found%k2_error
-            end if
-         end associate
-      end do
-   end subroutine find_intensities
-
-   module subroutine prepare_matrix(self, scene, law, error)
-      class(window_t), intent(inout) :: self
-      type(scene_t), intent(in) :: scene
-      type(contact_law_t), intent(in) :: law(:)
-      type(error_t), allocatable, intent(out) :: error
-      type(face_conditions_t) :: conditions
-
-      conditions = self%faces%conditions(self%model%mesh, scene%discretization%face_condition, law)
       if (allocated(self%made%held)) then
-         where (self%made%held) conditions%condition = face_jump
+         call hold_faces(self%made%held, history%contact, self%model%conditions%law, self%loads)
       end if
-      if (same_conditions(self%model, conditions)) return
-      call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
-   end subroutine prepare_matrix
+      call self%model%solve(self%loads, self%displacement, error, history%contact)
+      if (allocated(error)) return
+      if (.not. allocated(self%made%held)) exit
+      call release_faces(self%model, self%loads, self%displacement, coarse, self%faces, &
+                         self%made%held, again)
+      if (.not. again) exit
+   end do
+   call find_probes(self, error)
+   if (allocated(error)) return
+   do i = 1, size(self%serves, kind=ik)
+      associate (tip => tips(self%serves(i)))
+         if (.not. self%served(i)%is_evaluated) cycle
+         call tip_intensity(self%model, self%loads, self%displacement, self%served(i)%probe, &
+                            tip%found, error)
+         if (allocated(error)) return
+         ! Both methods see the same elements, which are twice as large as usual.
+         if (self%is_body .and. .not. tip%has_focus) then
+            tip%found%k1_error = without_focus*tip%found%k1_error
+            tip%found%k2_error = without_focus*tip%found%k2_error
+         end if
+      end associate
+   end do
+   end procedure find_intensities
+
+   module procedure prepare_matrix
+   type(face_conditions_t) :: conditions
+
+   conditions = self%faces%conditions(self%model%mesh, scene%discretization%face_condition, law)
+   if (allocated(self%made%held)) then
+      where (self%made%held) conditions%condition = face_jump
+   end if
+   if (same_conditions(self%model, conditions)) return
+   call self%model%prepare(conditions, error, self%sides%held_edge(self%model%mesh))
+   end procedure prepare_matrix
 
    !> Update the time-dependent values of the sides.
    pure subroutine follow_sides(self, scene)
@@ -120,49 +108,38 @@ contains
       end do
    end subroutine find_probes
 
-   pure module function curved_edge(self, coarse, displacement, gradient) result(edge)
-      class(window_t), intent(in) :: self
-      type(mesh_t), intent(in) :: coarse
-      real(rk), intent(in) :: displacement(:, :)
-      real(rk), intent(in) :: gradient(:, :, :)
-      real(rk), allocatable :: edge(:, :)
+   module procedure curved_edge
 
-      edge = self%map%curved_edge(self%model%mesh, coarse, displacement, gradient)
-      call self%sides%take_given(self%model%mesh, edge)
-   end function curved_edge
+   edge = self%map%curved_edge(self%model%mesh, coarse, displacement, gradient)
+   call self%sides%take_given(self%model%mesh, edge)
+   end procedure curved_edge
 
-   module subroutine intensities_with(self, history, k, error, edge, pressure)
-      class(window_t), intent(inout) :: self
-      type(window_history_t), intent(in) :: history
-      real(rk), intent(inout) :: k(:, :)
-      type(error_t), allocatable, intent(out) :: error
-      real(rk), intent(in), optional :: edge(:, :)
-      real(rk), intent(in), optional :: pressure(:)
-      type(fine_loads_t) :: loads
-      type(contact_t) :: contact
-      type(intensity_t) :: result
-      real(rk), allocatable :: displacement(:, :)
-      integer(ik) :: i
+   module procedure intensities_with
+   type(fine_loads_t) :: loads
+   type(contact_t) :: contact
+   type(intensity_t) :: result
+   real(rk), allocatable :: displacement(:, :)
+   integer(ik) :: i
 
-      loads = self%loads
-      if (present(edge)) loads%boundary_displacement = edge
-      if (present(pressure)) then
-         loads%pore_pressure(:self%model%mesh%n_vertices) = &
-            pressure(self%map%coarse_cell(:self%model%mesh%n_vertices))
-      end if
-      contact = history%contact
-      call self%model%solve(loads, displacement, error, contact)
-      if (allocated(error)) return
-      do i = 1, size(self%serves, kind=ik)
-         associate (tip => self%serves(i))
-            if (.not. self%served(i)%is_evaluated) cycle
-            call tip_intensity(self%model, loads, displacement, self%served(i)%probe, result, &
-                               error, quickly=.true.)
-            if (allocated(error)) return
-            k(:, tip) = [result%k1, result%k2]
-         end associate
-      end do
-   end subroutine intensities_with
+   loads = self%loads
+   if (present(edge)) loads%boundary_displacement = edge
+   if (present(pressure)) then
+      loads%pore_pressure(:self%model%mesh%n_vertices) = &
+         pressure(self%map%coarse_cell(:self%model%mesh%n_vertices))
+   end if
+   contact = history%contact
+   call self%model%solve(loads, displacement, error, contact)
+   if (allocated(error)) return
+   do i = 1, size(self%serves, kind=ik)
+      associate (tip => self%serves(i))
+         if (.not. self%served(i)%is_evaluated) cycle
+         call tip_intensity(self%model, loads, displacement, self%served(i)%probe, result, &
+                            error, quickly=.true.)
+         if (allocated(error)) return
+         k(:, tip) = [result%k1, result%k2]
+      end associate
+   end do
+   end procedure intensities_with
 
    !> Set the contact on a new mesh: that of the previous mesh, and outside of it that of the coarse
    !! level.

@@ -12,7 +12,7 @@ module twolevel_windows
    use growth_law, only: growth_drive
    use growth_tip, only: tip_t
    use mesh_builder, only: mesher_t
-   use mesh_types, only: mesh_t, network_t
+   use mesh_types, only: mesh_t
    use scene_types, only: scene_t
    use report_rows, only: window_fields_t
    use report_scene, only: has_other_toughness, relative_toughness

@@ -1,4 +1,4 @@
-!> What the ranks beside the first one do: take part in MUMPS' work on the matrices that are shared.
+!> What all ranks but the first one do: take part in MUMPS' work on the matrices that are shared.
 !! The first one has the matrices, right-hand sides and settings; these have nothing but their part
 !! of the factors.
 module algebra_parts

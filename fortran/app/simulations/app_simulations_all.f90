@@ -8,37 +8,32 @@ submodule(app_simulations) app_simulations_all
 
 contains
 
-   pure module logical function simulates_fluids()
-      simulates_fluids = .true.
-   end function simulates_fluids
+   module procedure simulates_fluids
+   simulates_fluids = .true.
+   end procedure simulates_fluids
 
-   module function first_mesh(scene, network) result(spec)
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(mesh_spec_t) :: spec
+   module procedure first_mesh
 
-      if (scene%has_fluid()) then
-         spec = coarse_spec(scene)
-      else
-         spec = body_spec(scene, network)
-      end if
-   end function first_mesh
+   if (scene%has_fluid()) then
+      spec = coarse_spec(scene)
+   else
+      spec = body_spec(scene, network)
+   end if
+   end procedure first_mesh
 
-   module subroutine allocate_simulation(scene, simulation)
-      type(scene_t), intent(in) :: scene
-      class(simulation_t), allocatable, intent(out) :: simulation
+   module procedure allocate_simulation
 
-      type(two_levels_t), allocatable :: levels
-      type(mechanics_simulation_t), allocatable :: body
+   type(two_levels_t), allocatable :: levels
+   type(mechanics_simulation_t), allocatable :: body
 
-      ! Moved: in an allocation of `simulation` itself gfortran 12 copies unset components.
-      if (scene%has_fluid()) then
-         allocate (levels)
-         call move_alloc(levels, simulation)
-      else
-         allocate (body)
-         call move_alloc(body, simulation)
-      end if
-   end subroutine allocate_simulation
+   ! Moved: in an allocation of `simulation` itself gfortran 12 copies unset components.
+   if (scene%has_fluid()) then
+      allocate (levels)
+      call move_alloc(levels, simulation)
+   else
+      allocate (body)
+      call move_alloc(body, simulation)
+   end if
+   end procedure allocate_simulation
 
 end submodule app_simulations_all

@@ -6,27 +6,22 @@ submodule(app_simulations) app_simulations_mechanics
 
 contains
 
-   pure module logical function simulates_fluids()
-      simulates_fluids = .false.
-   end function simulates_fluids
+   module procedure simulates_fluids
+   simulates_fluids = .false.
+   end procedure simulates_fluids
 
-   module function first_mesh(scene, network) result(spec)
-      type(scene_t), intent(in) :: scene
-      type(network_t), intent(in) :: network
-      type(mesh_spec_t) :: spec
+   module procedure first_mesh
 
-      spec = body_spec(scene, network)
-   end function first_mesh
+   spec = body_spec(scene, network)
+   end procedure first_mesh
 
-   module subroutine allocate_simulation(scene, simulation)
-      type(scene_t), intent(in) :: scene
-      class(simulation_t), allocatable, intent(out) :: simulation
+   module procedure allocate_simulation
 
-      type(mechanics_simulation_t), allocatable :: body
+   type(mechanics_simulation_t), allocatable :: body
 
-      if (scene%has_fluid()) return
-      allocate (body)
-      call move_alloc(body, simulation)
-   end subroutine allocate_simulation
+   if (scene%has_fluid()) return
+   allocate (body)
+   call move_alloc(body, simulation)
+   end procedure allocate_simulation
 
 end submodule app_simulations_mechanics

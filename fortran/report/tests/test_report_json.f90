@@ -11,6 +11,7 @@ program test_report_json
    type(checks_t) :: checks
    type(json_t) :: json, line
    real(rk) :: nan, infinity
+   type(text_t), allocatable :: silence(:), words(:)
 
    call same(escaped('say "hi"'), 'say \"hi\"')
    call same(escaped("a\b"), "a\\b")
@@ -37,8 +38,9 @@ program test_report_json
    call json%add("x", [0.5_rk, nan, infinity])
    call json%add("n", [1_ik, 2_ik])
    call json%add("none", [integer(ik) ::])
-   call json%add("words", [text_t("a"), text_t("b")])
-   call json%add("silence", [text_t ::])
+   words = [text_t("a"), text_t("b")]
+   call json%add("words", words)
+   call json%add("silence", silence)
    call json%begin_object("inner")
    call json%add("y", nan)
    call json%end_object()

@@ -5,6 +5,7 @@ program test_report_run
    use base_kinds, only: ik, pi, rk
    use base_timers, only: phase_output, timers_t
    use contact_law, only: state_open, state_slip, state_stick
+   use fine_tip_types, only: intensity_t
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
    use report_files, only: make_directory, write_text_file
    use report_record, only: run_record_t, status_finished
@@ -50,6 +51,7 @@ contains
       type(run_output_t) :: output
       type(run_record_t) :: record
       type(history_row_t) :: row
+      type(intensity_t) :: intensity
       integer :: i
 
       ! Leftovers of an earlier and longer run, and of one that died while it wrote.
@@ -79,18 +81,19 @@ contains
             & n_open=1_ik, fracture_length=1.25_rk, n_tips=2_ik, n_intersections=1_ik, &
             & seismic_moment=1.0e6_rk)
          call output%tables%history_row(row)
-         call output%tables%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
-            & xy=[1.0_rk, 0.5_rk], k1=1.0e6_rk, k2=2.0e5_rk, k1_dc=1.1e6_rk, k2_dc=2.1e5_rk, &
-            & keq=1.05e6_rk, g=30.0_rk, angle=pi/4.0_rk, advance=0.0_rk, &
+         intensity = intensity_t(k1=1.0e6_rk, k2=2.0e5_rk, k1_dc=1.1e6_rk, k2_dc=2.1e5_rk, &
             & k1_error=1.0e3_rk, k2_error=2.0e3_rk, g_domain=28.0_rk, g_error=1.5_rk, &
             & k1_dc_error=3.0e3_rk, k2_dc_error=4.0e3_rk, k1_corrected=1.0005e6_rk, &
-            & k2_corrected=2.005e5_rk))
+            & k2_corrected=2.005e5_rk)
+         call output%tables%tip_row(tip_row_t(time=2.0_rk*i, tip=1_ik, fracture=1_ik, &
+            & xy=[1.0_rk, 0.5_rk], keq=1.05e6_rk, g=30.0_rk, angle=pi/4.0_rk, advance=0.0_rk, &
+            & intensity=intensity))
          call output%tables%probe_row(2.0_rk*i, probes)
          call checks%is_true(output%fields_due(2.0_rk*i), "fields are due at each regular step")
         call output%write_fields(snapshot_t(2.0_rk*i, mesh, matrix, fracture, intersections), error)
          call checks%no_error(error, "fields")
          call checks%is_true(.not. output%fields_due(2.0_rk*i + 0.02_rk), "not at the short steps")
-         call output%network_step(2.0_rk*i, network, mesh)
+         call output%network%step(2.0_rk*i, network, mesh%fracture)
       end do
       associate (tables => output%tables)
          call tables%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])

@@ -61,8 +61,8 @@ contains
       associate (row => simulation%chronicle%tips)
          call checks%is_close(maxval(abs(row%time - 0.5_rk)), 0.0_rk, 0.0_rk, "time")
          call checks%is_true(all(row%tip == [1, 2, 1, 2]), "tips in their order")
-         call checks%is_close(maxval(abs(row%k1 - [16.0_rk, 17.0_rk, 26.0_rk, 27.0_rk])), 0.0_rk, &
-                              0.0_rk, "before, then after")
+        call checks%is_close(maxval(abs(row%intensity%k1 - [16.0_rk, 17.0_rk, 26.0_rk, 27.0_rk])), &
+                              0.0_rk, 0.0_rk, "before, then after")
          call checks%is_close(row(1)%xy(1), 0.8_rk, 0.0_rk, "grown: where it was")
          call checks%is_close(row(1)%advance, 0.1_rk, 1.0e-15_rk, "and how far it went")
          call checks%is_close(row(1)%angle, 0.25_rk, 0.0_rk, "in which direction")
