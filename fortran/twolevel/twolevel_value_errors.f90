@@ -210,7 +210,9 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(jumps_in_space_t), intent(in) :: jumps
       type(history_row_t), intent(in) :: row
-      real(rk), parameter :: of_slip_rate = 0.3_rk  ! cells slip in turn as their zone grows
+      ! Cells slip in turn as their zone grows; what slips after the most has slipped is little.
+      real(rk), parameter :: of_slip_rate = 0.3_rk, of_late_slip = 0.1_rk
+      real(rk) :: mean_rate
 
       associate (fracture => problem%mesh%fracture, time => self%quantities%error)
          ! At a kink the faces may open by all of their slip.
@@ -219,11 +221,14 @@ contains
                                       maxval(jumps%slip%kink*jumps%t) - row%max_opening)
          self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
          self%of_held = jumps%volume
-         self%row%fracture_volume = time(volume) + jumps%volume
+         self%row%fracture_volume = time(volume) + jumps%volume + jumps%loosened
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
+         mean_rate = 0.0_rk
+         if (row%time > self%start) mean_rate = row%max_slip/(row%time - self%start)
          ! Where faces open, cells slide by a share of what they open.
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                  + of_slip_rate*row%max_slip_rate &
+                                  + max(of_slip_rate*row%max_slip_rate, &
+                                        of_late_slip*sqrt(mean_rate*row%max_slip_rate)) &
                                   + jumps%slip%of_slip(maxloc(jumps%n, dim=1)) &
                                   *abs(self%quantities%rate(opening))
          self%of_opening = 0.0_rk
@@ -315,8 +320,8 @@ contains
          if (fracture%n_cells == 0) return
          longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
          error%connected_length = grown
-         if (.not. (row%stimulated_length > 0.0_rk .or. row%max_slip > 0.0_rk)) return
-         error%stimulated_length = grown + 2.0_rk*longest
+         if (.not. (row%stimulated_length > 0.0_rk .or. row%max_slip + error%max_slip > 0.0_rk)) return
+         error%stimulated_length = grown + 2.0_rk*longest + row%doubtful_length
          error%connected_stimulated = error%stimulated_length
       end associate
    end subroutine note_rest
