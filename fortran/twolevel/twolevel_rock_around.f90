@@ -21,7 +21,7 @@ module twolevel_rock_around
 
    integer, parameter :: n_circles = 64, n_sectors = 48
 
-   public :: place_rings, refine_at_wells
+   public :: circle_of, place_rings, refine_at_wells
 
 contains
 
@@ -35,7 +35,7 @@ contains
       type(rock_wells_t), intent(inout) :: rock_wells
       type(error_t), allocatable, intent(out) :: error
       type(annuli_t) :: around, meshed
-      real(rk) :: area, by_outline
+      real(rk) :: area, by_outline, radius
       integer(ik) :: k, w
 
       rock_wells%ring_number = pack([(w, w=1, size(cells, kind=ik))], cells > 0)
@@ -49,10 +49,35 @@ contains
                           cell_centre(mesh, cells(w)), around, meshed, &
                           by_outline, error)
          if (allocated(error)) return
-         rock_wells%rings(k) = new_well_rings(scene%injections(w)%radius, area, around, meshed)
-         rock_wells%rings(k)%error = rock_wells%rings(k)%error + by_outline
+         radius = circle_of(scene%injections(w), rock, cells(w))
+         rock_wells%rings(k) = new_well_rings(radius, area, around, meshed)
+         rock_wells%rings(k)%error = rock_wells%rings(k)%error + by_outline &
+                                     + by_tensor(rock, cells(w))/log(max(2.0_rk, sqrt(area)/radius))
       end do
    end subroutine place_rings
+
+   !> Radius of the circle that the wall of a well acts like where the permeability is made isotropic
+   !! by stretching, without a change of areas: the wall is an ellipse there, with the mean of its
+   !! half-axes [m].
+   pure real(rk) function circle_of(well, rock, cell) result(radius)
+      type(injection_t), intent(in) :: well
+      type(rock_t), intent(in) :: rock
+      integer(ik), intent(in) :: cell
+
+      radius = well%radius*sqrt(0.5_rk*(1.0_rk + rock%mean_over_mobility(cell)))
+   end function circle_of
+
+   !> Error of the logarithm of the radius at which a cell has its pressure, by the directions of its
+   !! edges in anisotropic rock: bound of 48 measured ones, ratios of 3 to 100 [-].
+   pure real(rk) function by_tensor(rock, cell) result(error)
+      type(rock_t), intent(in) :: rock
+      integer(ik), intent(in) :: cell
+      real(rk), parameter :: linear = 0.02_rk, cubic = 0.016_rk
+
+      associate (ratio => 2.0_rk*acosh(rock%mean_over_mobility(cell)))
+         error = linear*ratio + cubic*ratio**3
+      end associate
+   end function by_tensor
 
    !> The rock around a well, up to four radii of its cell. Beyond, both chains have the same.
    subroutine find_annuli(scene, well, mesher, rock, cell, radius, middle, around, meshed, &
@@ -69,7 +94,8 @@ contains
       real(rk), intent(out) :: by_outline
       type(error_t), allocatable, intent(out) :: error
       real(rk), parameter :: edge_of_cell = 2.7_rk  ! of a triangle as large as a circle
-      real(rk), parameter :: of_contrast = 0.04_rk  ! measured for contrasts of 10 and 100
+      ! measured for contrasts of 10 and 100: far from an outline and in cells that it cuts
+      real(rk), parameter :: of_contrast(2) = [0.03_rk, 0.04_rk]
       real(rk), dimension(n_sectors, n_circles) :: along, outwards, storage
       real(rk), allocatable :: constants(:, :)
       real(rk) :: distance, end, far, xy(2, n_sectors)
@@ -91,8 +117,10 @@ contains
       do i = 1, size(places%outline)
          constants(:, i) = constants_of(scene%regions(i)%material, scene%fluid)
       end do
-      by_outline = of_contrast*log(maxval(constants(1, :))/minval(constants(1, :))) &
-                   /(1.0_rk + (distance/(edge_of_cell*radius))**2)
+      associate (far_off => distance/(edge_of_cell*radius))
+         by_outline = log(maxval(constants(1, :))/minval(constants(1, :))) &
+                      *sum(of_contrast/(1.0_rk + [far_off, far_off**2]))
+      end associate
       if (distance > end) return
       do i = 1, n_circles
          xy = circle([well%x, well%y], well%radius*(end/well%radius)**((i - 0.5_rk)/n_circles))
