@@ -47,6 +47,7 @@ module coarse_joints
       !> (branches) length of the way of the flow to the joint over half of the cell, shorter where
       !! much leaks off on it (coarse_well_ways) [-]
       real(rk), allocatable :: way(:)
+      real(rk), allocatable :: way_error(:)  !< (branches) of the flow by that, relative [-]
       !> (branches) no flow, since the crack has not reached the joint
       logical, allocatable :: is_shut(:)
    contains
@@ -99,6 +100,7 @@ contains
          end do
          allocate (joints%is_shut(n_branches), source=.false.)
          allocate (joints%way(n_branches), source=1.0_rk)
+         allocate (joints%way_error(n_branches), source=0.0_rk)
          allocate (joints%beyond(n_branches))
          do b = 1, n_branches
             joints%beyond(b) = cell_beyond(fracture, joints, b)

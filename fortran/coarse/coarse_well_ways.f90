@@ -180,17 +180,34 @@ contains
    end subroutine way_at_end
 
    !> Way from the middle of a cell to a side with a pressure at its end, over half of the cell: the
-   !! flow into the cells is then that into the line [-].
-   elemental real(rk) function way_of_outlet(self) result(way)
-      class(uptake_t), intent(in) :: self
+   !! flow into the cells is then that into the line. Their ratio is the geometric mean of that at
+   !! one s, and of that of Stehfest's sums over s: measured, cells flow 4 to 20 % too fast by the
+   !! former, where the front in the rock is wider than the way, and too slow by the latter.
+   pure subroutine way_of_outlet(self, time, way, error)
+      class(uptake_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< since the side has the pressure [s]
+      real(rk), intent(out) :: way  !< [-]
+      real(rk), intent(out) :: error  !< of the flow, relative [-]
+      integer, parameter :: weight(6) = [1, -49, 366, -858, 810, -270]
       real(rk), parameter :: small = 1.0e-5_rk
+      real(rk) :: flow(2), ratio(2)
+      integer :: i
 
+      flow = 0.0_rk
+      do i = 1, size(weight)
+         call self%find(i*log(2.0_rk)/time, 1.0_rk)
+         flow = flow + weight(i)*[self%into_cells, self%into_line]/i
+      end do
+      call self%find(effective_s(time, .false.), 1.0_rk)
       way = 1.0_rk
+      error = 0.0_rk
       if (self%theta < small) return
-      associate (of_cells => 0.5_rk*self%between/(1.0_rk - self%between))
-         way = (1.0_rk + 2.0_rk*of_cells)*self%into_cells/self%into_line - 2.0_rk*of_cells
+      ratio = [flow(1)/flow(2), self%into_cells/self%into_line]
+      error = abs(log(ratio(2)/ratio(1)))
+      associate (of_cells => self%between/(1.0_rk - self%between))
+         way = (1.0_rk + of_cells)*sqrt(product(ratio)) - of_cells
       end associate
-   end function way_of_outlet
+   end subroutine way_of_outlet
 
    !> s of a well at a constant rate or pressure, for a time [1/s].
    elemental real(rk) function effective_s(age, has_rate) result(s)

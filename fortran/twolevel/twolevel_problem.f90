@@ -273,7 +273,8 @@ contains
       end do
       if (self%model%joints%n == 0) return
       call find_outlet_ways(self%model, self%mesh, conductance, time, &
-                            any(self%steady > 0.0_rk, dim=2), self%model%joints%way)
+                            any(self%steady > 0.0_rk, dim=2), self%model%joints%way, &
+                            self%model%joints%way_error)
    end subroutine find_ways
 
    !> Compute the values that windows use, unless they are those of this state already.

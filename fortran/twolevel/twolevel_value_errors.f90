@@ -262,11 +262,13 @@ contains
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
       real(rk), parameter :: half = 0.5_rk  ! of the first pressure, where both begin, and of others
-      real(rk) :: drive, first, held, leak
+      real(rk) :: drive, first, held, leak, of_way
 
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
-         error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
+         of_way = 0.0_rk
+         if (problem%model%joints%n > 0) of_way = maxval(problem%model%joints%way_error)
+         error%outflow = time(outflow) + (max(least, self%of_flow) + of_way)*abs(row%outflow) + lost
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
          associate (share => maxval(sum(self%of_first, dim=2))/max(changes(pressure), tiny(1.0_rk)))
@@ -431,7 +433,9 @@ contains
       do w = 1, size(rows, kind=ik)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
-            share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
+            share = self%of_pressure
+            if (well%fracture == 0) share = self%of_rock + self%of_length &
+                                            + merge(least, 0.0_rk, problem%mesh%fracture%n_cells > 0)
             missing = unresolved_at(problem, state, findloc(problem%well_of, w, dim=1, kind=ik), &
                                     rows%flow)
             error%pressure = share*changes(w)

@@ -71,24 +71,25 @@ contains
    end function uptake_at
 
    !> Ways of the branches to outlets without a well next to them, in a step that ends at a time.
-   pure subroutine find_outlet_ways(model, mesh, conductance, time, has_well, way)
+   pure subroutine find_outlet_ways(model, mesh, conductance, time, has_well, way, error)
       type(coarse_model_t), intent(in) :: model
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
       real(rk), intent(in) :: time  !< since sides have pressures [s]
       logical, intent(in) :: has_well(:)  !< (fracture cells)
       real(rk), intent(inout) :: way(:)  !< (branches) over half of their cell [-]
+      real(rk), intent(inout) :: error(:)  !< (branches) of their flows, relative [-]
       type(uptake_t) :: uptake
       integer(ik) :: b, i
 
       way = 1.0_rk
+      error = 0.0_rk
       do b = 1, model%joints%branch_count()
          associate (cell => model%joints%cell(b))
             if (has_well(cell) .or. .not. model%joints%is_outlet(model%joints%joint(b))) cycle
             uptake = uptake_at(model, mesh, conductance, cell, &
                                [(i == cell, i=1, size(has_well, kind=ik))])
-            call uptake%find(effective_s(time, .false.), 1.0_rk)
-            way(b) = uptake%way_of_outlet()
+            call uptake%way_of_outlet(time, way(b), error(b))
          end associate
       end do
    end subroutine find_outlet_ways
