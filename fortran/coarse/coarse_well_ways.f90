@@ -52,7 +52,7 @@ contains
       real(rk), intent(in) :: s  !< [1/s]
       real(rk), intent(in) :: from_side  !< distance from a side with a pressure [l/2]
       integer, parameter :: n = 200  ! places of the midpoint rule, dense at k = 0
-      real(rk) :: cell, decay, front, g, k, v
+      real(rk) :: cell, decay, front, g, k, v, x
       integer :: i
       logical :: is_little
 
@@ -64,6 +64,7 @@ contains
       is_little = decay < 1.0_rk
       self%to_side = 0.5_rk*(1.0_rk - exp(-decay*from_side))/decay
       front = s*self%length**2*sum(self%mobility/self%diffusivity)/sum(self%mobility)
+      x = min(50.0_rk, 0.5_rk*sqrt(front))
       self%into_line = 0.0_rk
       self%into_cells = 0.0_rk
       do i = 1, n
@@ -80,7 +81,9 @@ contains
          self%between = self%between - 3.0_rk*v**2/n*g/(cell + g)
          self%to_side = self%to_side + v**2*unlike_layers(k)
          self%into_line = self%into_line + 6.0_rk*v**2/n*front/(k**2 + front)*g/(k**2 + g)
-         self%into_cells = self%into_cells + 6.0_rk*v**2/n*left_by_front(cell)*g/(cell + g)
+         ! The rock has part of the pressure by its front.
+         self%into_cells = self%into_cells + 6.0_rk*v**2/n*g/(cell + g) &
+                           *(1.0_rk - 0.25_rk*cell*cosh(x)/(sinh(x)**2 + 0.25_rk*cell))
          k = pi/v**3
          self%at_middle = self%at_middle + merge(-taken(k)/k**2, 1.0_rk, is_little) &
                           *3.0_rk/(n*v**4*(k**2 + taken(k)))
@@ -102,16 +105,6 @@ contains
          excess = 1.0_rk/12.0_rk + k**2/240.0_rk + k**4/6048.0_rk + k**6/172800.0_rk
          if (k > small) excess = 1.0_rk/cell - 1.0_rk/k**2
       end function excess
-
-      !> Share of the pressure of a side, in cells, that the rock does not have by its front.
-      pure real(rk) function left_by_front(cell) result(left)
-         real(rk), intent(in) :: cell
-         real(rk), parameter :: most = 50.0_rk
-
-         associate (x => min(most, 0.5_rk*sqrt(front)))
-            left = 1.0_rk - 0.25_rk*cell*cosh(x)/(sinh(x)**2 + 0.25_rk*cell)
-         end associate
-      end function left_by_front
 
       !> What the pressure next to a side has for k.
       pure real(rk) function unlike_layers(k)
@@ -189,7 +182,7 @@ contains
       real(rk), intent(out) :: way  !< [-]
       real(rk), intent(out) :: error  !< of the flow, relative [-]
       integer, parameter :: weight(6) = [1, -49, 366, -858, 810, -270]
-      real(rk), parameter :: small = 1.0e-5_rk
+      real(rk), parameter :: small = 3.0e-3_rk  ! below, quadrature is less exact
       real(rk) :: flow(2), ratio(2)
       integer :: i
 
@@ -202,10 +195,11 @@ contains
       way = 1.0_rk
       error = 0.0_rk
       if (self%theta < small) return
-      ratio = [flow(1)/flow(2), self%into_cells/self%into_line]
+      ratio = self%into_cells/self%into_line
+      if (all(flow > 0.0_rk)) ratio(1) = flow(1)/flow(2)
       error = abs(log(ratio(2)/ratio(1)))
       associate (of_cells => self%between/(1.0_rk - self%between))
-         way = (1.0_rk + of_cells)*sqrt(product(ratio)) - of_cells
+         way = max(small, (1.0_rk + of_cells)*sqrt(product(ratio)) - of_cells)
       end associate
    end subroutine way_of_outlet
 

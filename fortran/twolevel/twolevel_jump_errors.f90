@@ -25,9 +25,9 @@ module twolevel_jump_errors
    !> opening of faces that slide past a kink, over slip times sine, in the cells there and in the
    !! mean of them [-]
    real(rk), parameter :: past_kink = 0.35_rk, mean_past_kink = 0.06_rk
-   !> opening over slip at the ends of a zone that slides; error of tractions over differences from
+   !> opening over the error of slip of closed faces; error of tractions over differences from
    !! neighbours; share of what may move by it (chosen with five drawn states) [-]
-   real(rk), parameter :: at_end = 3.0e-3_rk, of_neighbours = 1.5_rk, of_loose = 0.3_rk
+   real(rk), parameter :: at_end = 0.03_rk, of_neighbours = 1.5_rk, of_loose = 0.3_rk
 
    !> What the errors need besides the state.
    type :: jump_facts_t
@@ -100,9 +100,7 @@ contains
             opened = opened + self%error_n
          end where
          loose = of_loose*compliance*may_move(problem, state, facts%of_pressure)
-         where (ends_zone(fracture, moves(self%t)) .and. .not. is_open)
-            loose(:, 1) = loose(:, 1) + at_end*self%t
-         end where
+         where (.not. is_open) loose(:, 1) = loose(:, 1) + at_end*self%slip%of_slip*self%t
          self%error_t = self%error_t + loose(:, 2)
          self%error_n = self%error_n + loose(:, 1)
          self%loosened = sum(length*loose(:, 1))
@@ -158,23 +156,6 @@ contains
          end do
       end associate
    end function may_move
-
-   !> Whether each cell is the first or the last of those that move on its fracture.
-   pure function ends_zone(fracture, moved) result(ends)
-      type(fracture_mesh_t), intent(in) :: fracture
-      logical, intent(in) :: moved(:)
-      logical :: ends(size(moved))
-      integer(ik) :: i, k
-
-      do i = 1, fracture%n_cells
-         ends(i) = .false.
-         do k = max(1, i - 1), min(fracture%n_cells, i + 1)
-            ends(i) = ends(i) .or. .not. moved(k) &
-                      .or. fracture%cell_fracture(k) /= fracture%cell_fracture(i)
-         end do
-         ends(i) = moved(i) .and. (ends(i) .or. i == 1 .or. i == fracture%n_cells)
-      end do
-   end function ends_zone
 
    !> Half of the jump next to a cell whose faces have not moved: the zone may end in it [m].
    pure function at_ends(fracture, moved, jump) result(error)

@@ -21,7 +21,7 @@ module twolevel_problem
    use heat_state, only: heat_state_t
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
-   use twolevel_rock_around, only: circle_of, place_rings
+   use twolevel_rock_around, only: place_rings
    use twolevel_well_ways, only: find_outlet_ways, find_way
    use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, &
                              places_of_cells, rate, &
@@ -169,8 +169,9 @@ contains
          rock%n = wells%n_all - wells%n
          rock%cell = self%rock_cell(wells%number(wells%n + 1:))
          rock%conductance = spread(0.0_rk, 1, int(rock%n))
-         rock%index = [(well_index(circle_of(scene%injections(wells%number(wells%n + k)), &
-                                             self%model%rock, rock%cell(k)), &
+         rock%index = [(well_index(scene%injections(wells%number(wells%n + k))%radius &
+                                   *sqrt(0.5_rk + 0.5_rk*self%model%rock%mean_over_mobility( &
+                                         & rock%cell(k))), &
                                    cell_area(self%mesh, rock%cell(k)), &
                                    self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
          if (.not. all(rock%index > 0.0_rk)) then

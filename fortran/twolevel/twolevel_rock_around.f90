@@ -21,7 +21,7 @@ module twolevel_rock_around
 
    integer, parameter :: n_circles = 64, n_sectors = 48
 
-   public :: circle_of, place_rings, refine_at_wells
+   public :: place_rings, refine_at_wells
 
 contains
 
@@ -35,7 +35,10 @@ contains
       type(rock_wells_t), intent(inout) :: rock_wells
       type(error_t), allocatable, intent(out) :: error
       type(annuli_t) :: around, meshed
-      real(rk) :: area, by_outline, radius
+      ! Of the logarithm of the cell's radius, by powers of half that of the ratio of permeabilities:
+      ! bound of 48 measured ones, ratios of 3 to 100.
+      real(rk), parameter :: by_tensor(2) = [0.04_rk, 0.13_rk]
+      real(rk) :: area, by_outline, mean, radius
       integer(ik) :: k, w
 
       rock_wells%ring_number = pack([(w, w=1, size(cells, kind=ik))], cells > 0)
@@ -49,35 +52,16 @@ contains
                           cell_centre(mesh, cells(w)), around, meshed, &
                           by_outline, error)
          if (allocated(error)) return
-         radius = circle_of(scene%injections(w), rock, cells(w))
+         ! Stretched to isotropic rock without a change of areas, the wall is an ellipse and acts like
+         ! a circle of the mean of its half-axes; the radius of the cell depends on its edges.
+         mean = rock%mean_over_mobility(cells(w))
+         radius = scene%injections(w)%radius*sqrt(0.5_rk*(1.0_rk + mean))
          rock_wells%rings(k) = new_well_rings(radius, area, around, meshed)
          rock_wells%rings(k)%error = rock_wells%rings(k)%error + by_outline &
-                                     + by_tensor(rock, cells(w))/log(max(2.0_rk, sqrt(area)/radius))
+                                     + sum(by_tensor*acosh(mean)**[1, 3]) &
+                                     /log(max(2.0_rk, sqrt(area)/radius))
       end do
    end subroutine place_rings
-
-   !> Radius of the circle that the wall of a well acts like where the permeability is made isotropic
-   !! by stretching, without a change of areas: the wall is an ellipse there, with the mean of its
-   !! half-axes [m].
-   pure real(rk) function circle_of(well, rock, cell) result(radius)
-      type(injection_t), intent(in) :: well
-      type(rock_t), intent(in) :: rock
-      integer(ik), intent(in) :: cell
-
-      radius = well%radius*sqrt(0.5_rk*(1.0_rk + rock%mean_over_mobility(cell)))
-   end function circle_of
-
-   !> Error of the logarithm of the radius at which a cell has its pressure, by the directions of its
-   !! edges in anisotropic rock: bound of 48 measured ones, ratios of 3 to 100 [-].
-   pure real(rk) function by_tensor(rock, cell) result(error)
-      type(rock_t), intent(in) :: rock
-      integer(ik), intent(in) :: cell
-      real(rk), parameter :: linear = 0.02_rk, cubic = 0.016_rk
-
-      associate (ratio => 2.0_rk*acosh(rock%mean_over_mobility(cell)))
-         error = linear*ratio + cubic*ratio**3
-      end associate
-   end function by_tensor
 
    !> The rock around a well, up to four radii of its cell. Beyond, both chains have the same.
    subroutine find_annuli(scene, well, mesher, rock, cell, radius, middle, around, meshed, &

@@ -212,9 +212,9 @@ contains
       type(history_row_t), intent(in) :: row
       ! Cells slip in turn as their zone grows; what slips after the most has slipped is little.
       real(rk), parameter :: of_slip_rate = 0.3_rk, of_late_slip = 0.1_rk
-      real(rk) :: mean_rate
 
-      associate (fracture => problem%mesh%fracture, time => self%quantities%error)
+      associate (fracture => problem%mesh%fracture, time => self%quantities%error, &
+                 since_start => max(row%time - self%start, tiny(1.0_rk)))
          ! At a kink the faces may open by all of their slip.
          self%row%max_opening = time(opening) &
                                 + max(error_of_largest(fracture, jumps%n, jumps%error_n), &
@@ -223,12 +223,10 @@ contains
          self%of_held = jumps%volume
          self%row%fracture_volume = time(volume) + jumps%volume + jumps%loosened
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
-         mean_rate = 0.0_rk
-         if (row%time > self%start) mean_rate = row%max_slip/(row%time - self%start)
          ! Where faces open, cells slide by a share of what they open.
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                  + max(of_slip_rate*row%max_slip_rate, &
-                                        of_late_slip*sqrt(mean_rate*row%max_slip_rate)) &
+                                  + max(of_slip_rate*row%max_slip_rate, of_late_slip &
+                                        *sqrt(row%max_slip*row%max_slip_rate/since_start)) &
                                   + jumps%slip%of_slip(maxloc(jumps%n, dim=1)) &
                                   *abs(self%quantities%rate(opening))
          self%of_opening = 0.0_rk
@@ -262,13 +260,13 @@ contains
       type(step_facts_t), intent(in) :: facts
       real(rk), intent(in) :: layers  !< relative error of leak-off by layers [-]
       real(rk), parameter :: half = 0.5_rk  ! of the first pressure, where both begin, and of others
-      real(rk) :: drive, first, held, leak, of_way
+      real(rk) :: drive, first, held, leak
 
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
-         of_way = 0.0_rk
-         if (problem%model%joints%n > 0) of_way = maxval(problem%model%joints%way_error)
-         error%outflow = time(outflow) + (max(least, self%of_flow) + of_way)*abs(row%outflow) + lost
+         error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
+         if (problem%model%joints%n > 0) error%outflow = error%outflow + abs(row%outflow) &
+                                                         *maxval(problem%model%joints%way_error)
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
          associate (share => maxval(sum(self%of_first, dim=2))/max(changes(pressure), tiny(1.0_rk)))
@@ -322,7 +320,7 @@ contains
          if (fracture%n_cells == 0) return
          longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
          error%connected_length = grown
-         if (.not. (row%stimulated_length > 0.0_rk .or. row%max_slip + error%max_slip > 0.0_rk)) return
+         if (.not. max(row%stimulated_length, row%max_slip, error%max_slip) > 0.0_rk) return
          error%stimulated_length = grown + 2.0_rk*longest + row%doubtful_length
          error%connected_stimulated = error%stimulated_length
       end associate
@@ -433,9 +431,8 @@ contains
       do w = 1, size(rows, kind=ik)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
-            share = self%of_pressure
-            if (well%fracture == 0) share = self%of_rock + self%of_length &
-                                            + merge(least, 0.0_rk, problem%mesh%fracture%n_cells > 0)
+            share = merge(self%of_rock + self%of_flow + self%of_length, self%of_pressure, &
+                          well%fracture == 0)
             missing = unresolved_at(problem, state, findloc(problem%well_of, w, dim=1, kind=ik), &
                                     rows%flow)
             error%pressure = share*changes(w)
