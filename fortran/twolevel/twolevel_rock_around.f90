@@ -35,8 +35,8 @@ contains
       type(rock_wells_t), intent(inout) :: rock_wells
       type(error_t), allocatable, intent(out) :: error
       type(annuli_t) :: around, meshed
-      ! Of the logarithm of the cell's radius, by powers of half that of the ratio of permeabilities:
-      ! bound of 48 measured ones, ratios of 3 to 100.
+      ! Of the logarithm of the cell's radius, by powers of half that of the ratio of
+      ! permeabilities: bound of 48 measured ones, ratios of 3 to 100.
       real(rk), parameter :: by_tensor(2) = [0.04_rk, 0.13_rk]
       real(rk) :: area, by_outline, mean, radius
       integer(ik) :: k, w
@@ -52,8 +52,8 @@ contains
                           cell_centre(mesh, cells(w)), around, meshed, &
                           by_outline, error)
          if (allocated(error)) return
-         ! Stretched to isotropic rock without a change of areas, the wall is an ellipse and acts like
-         ! a circle of the mean of its half-axes; the radius of the cell depends on its edges.
+         ! Stretched to isotropic rock without a change of areas, the wall is an ellipse and acts
+         ! like a circle of the mean of its half-axes; the radius of the cell depends on its edges.
          mean = rock%mean_over_mobility(cells(w))
          radius = scene%injections(w)%radius*sqrt(0.5_rk*(1.0_rk + mean))
          rock_wells%rings(k) = new_well_rings(radius, area, around, meshed)

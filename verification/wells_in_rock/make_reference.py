@@ -76,7 +76,7 @@ def stretched(ratio: float) -> float:
     """Pressure in the middle of rock of `ratio` times the permeability along x [Pa].
 
     Stretched, the square is a rectangle: images in its long direction, a strip in the other.
-    The wall is an ellipse with uniform pressure, which acts like a circle of the mean of its half-axes.
+    The wall is an ellipse with one pressure, like a circle of the mean of its half-axes.
     """
     a = ratio**-0.25
     total = math.log(4 * a * HALF / math.pi) - math.log(0.004 * (a + 1 / a) / 2)
