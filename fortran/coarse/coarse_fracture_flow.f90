@@ -315,7 +315,7 @@ contains
       cells = eq%paths%joints%cell(b)
       if (eq%paths%joints%beyond(b) > 0) cells(2) = eq%paths%joints%beyond(b)
       reach = eq%cells%share(cells)*eq%condensed%length(cells)
-      length = 0.5_rk*reach(1)
+      length = 0.5_rk*reach(1)*eq%paths%joints%way(b)
       weight = reach(2:1:-1)/(sum(reach)*eq%cells%share(cells))
    end subroutine find_branch_way
 

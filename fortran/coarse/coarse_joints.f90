@@ -44,6 +44,10 @@ module coarse_joints
       !> (branches) the cell beyond the joint in which the fracture, or in a V the way, goes on; 0:
       !! none
       integer(ik), allocatable :: beyond(:)
+      !> (branches) length of the way of the flow to the joint over half of the cell, shorter where
+      !! much leaks off on it (coarse_well_ways) [-]
+      real(rk), allocatable :: way(:)
+      real(rk), allocatable :: way_error(:)  !< (branches) of the flow by that, relative [-]
       !> (branches) no flow, since the crack has not reached the joint
       logical, allocatable :: is_shut(:)
    contains
@@ -95,6 +99,8 @@ contains
             end associate
          end do
          allocate (joints%is_shut(n_branches), source=.false.)
+         allocate (joints%way(n_branches), source=1.0_rk)
+         allocate (joints%way_error(n_branches), source=0.0_rk)
          allocate (joints%beyond(n_branches))
          do b = 1, n_branches
             joints%beyond(b) = cell_beyond(fracture, joints, b)

@@ -50,6 +50,7 @@ module coarse_rock
       integer(ik) :: most_layered_cell = 0
    contains
       procedure :: mobility_at
+      procedure :: mean_over_mobility
       procedure :: diffusivity_at
       procedure :: solid_at
       procedure :: heat_pressure
@@ -124,6 +125,16 @@ contains
          mobility_at = 1.0_rk/sqrt(r(1, 1)*r(2, 2) - r(1, 2)*r(2, 1))
       end associate
    end function mobility_at
+
+   !> Mean of the two principal K/mu over their geometric mean; 1 in isotropic rock [-].
+   pure real(rk) function mean_over_mobility(self, cell) result(ratio)
+      class(rock_t), intent(in) :: self
+      integer(ik), intent(in) :: cell
+
+      associate (r => self%resistivity(:, :, min(int(cell), size(self%resistivity, 3))))
+         ratio = max(1.0_rk, 0.5_rk*(r(1, 1) + r(2, 2))*self%mobility_at(cell))
+      end associate
+   end function mean_over_mobility
 
    !> c at uniaxial strain [m2/s].
    pure real(rk) function diffusivity_at(self, cell)

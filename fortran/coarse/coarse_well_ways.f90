@@ -34,10 +34,14 @@ module coarse_well_ways
       real(rk) :: at_middle = 0.0_rk, between = 1.0_rk  !< f, d [-]
       real(rk) :: to_side = 0.0_rk  !< pressure over R q next to a side with a pressure [-]
       real(rk) :: theta = 0.0_rk  !< of layers with the same d [-]
+      !> Flow from a side with a pressure into a line that ends there, and into its cells, times R
+      !! over this pressure [-].
+      real(rk) :: into_line = 0.0_rk, into_cells = 0.0_rk
    contains
       procedure :: find
       procedure :: way
       procedure :: way_at_end
+      procedure :: way_of_outlet
    end type uptake_t
 
 contains
@@ -48,7 +52,7 @@ contains
       real(rk), intent(in) :: s  !< [1/s]
       real(rk), intent(in) :: from_side  !< distance from a side with a pressure [l/2]
       integer, parameter :: n = 200  ! places of the midpoint rule, dense at k = 0
-      real(rk) :: cell, decay, g, k, v
+      real(rk) :: cell, decay, front, g, k, v, x
       integer :: i
       logical :: is_little
 
@@ -59,6 +63,10 @@ contains
       ! With little uptake, less what there is without: that is 0, and the rule leaves 1e-5 of it.
       is_little = decay < 1.0_rk
       self%to_side = 0.5_rk*(1.0_rk - exp(-decay*from_side))/decay
+      front = s*self%length**2*sum(self%mobility/self%diffusivity)/sum(self%mobility)
+      x = min(50.0_rk, 0.5_rk*sqrt(front))
+      self%into_line = 0.0_rk
+      self%into_cells = 0.0_rk
       do i = 1, n
          v = (i - 0.5_rk)/n
          k = pi*v**3
@@ -72,10 +80,16 @@ contains
          end if
          self%between = self%between - 3.0_rk*v**2/n*g/(cell + g)
          self%to_side = self%to_side + v**2*unlike_layers(k)
+         self%into_line = self%into_line + 6.0_rk*v**2/n*front/(k**2 + front)*g/(k**2 + g)
+         ! The rock has part of the pressure by its front.
+         self%into_cells = self%into_cells + 6.0_rk*v**2/n*g/(cell + g) &
+                           *(1.0_rk - 0.25_rk*cell*cosh(x)/(sinh(x)**2 + 0.25_rk*cell))
          k = pi/v**3
          self%at_middle = self%at_middle + merge(-taken(k)/k**2, 1.0_rk, is_little) &
                           *3.0_rk/(n*v**4*(k**2 + taken(k)))
          self%to_side = self%to_side + unlike_layers(k)/v**4
+         self%into_line = self%into_line + 6.0_rk/(n*v**4)*front/(k**2 + front) &
+                          *taken(k)/(k**2 + taken(k))
       end do
       associate (d => min(1.0_rk, max(tiny(1.0_rk), self%between)))
          self%theta = 2.0_rk*(1.0_rk - d)/sqrt(d*(2.0_rk - d))
@@ -157,6 +171,37 @@ contains
       in_cell = (1.0_rk - share + 2.0_rk*at_node)/(in_cell + 2.0_rk)
       way = way - 2.0_rk*((1.0_rk - share)*in_cell + share*at_node)
    end subroutine way_at_end
+
+   !> Way from the middle of a cell to a side with a pressure at its end, over half of the cell: the
+   !! flow into the cells is then that into the line. Their ratio is the geometric mean of that at
+   !! one s, and of that of Stehfest's sums over s: measured, cells flow 4 to 20 % too fast by the
+   !! former, where the front in the rock is wider than the way, and too slow by the latter.
+   pure subroutine way_of_outlet(self, time, way, error)
+      class(uptake_t), intent(inout) :: self
+      real(rk), intent(in) :: time  !< since the side has the pressure [s]
+      real(rk), intent(out) :: way  !< [-]
+      real(rk), intent(out) :: error  !< of the flow, relative [-]
+      integer, parameter :: weight(6) = [1, -49, 366, -858, 810, -270]
+      real(rk), parameter :: small = 3.0e-3_rk  ! below, quadrature is less exact
+      real(rk) :: flow(2), ratio(2)
+      integer :: i
+
+      flow = 0.0_rk
+      do i = 1, size(weight)
+         call self%find(i*log(2.0_rk)/time, 1.0_rk)
+         flow = flow + weight(i)*[self%into_cells, self%into_line]/i
+      end do
+      call self%find(effective_s(time, .false.), 1.0_rk)
+      way = 1.0_rk
+      error = 0.0_rk
+      if (self%theta < small) return
+      ratio = self%into_cells/self%into_line
+      if (all(flow > 0.0_rk)) ratio(1) = flow(1)/flow(2)
+      error = abs(log(ratio(2)/ratio(1)))
+      associate (of_cells => self%between/(1.0_rk - self%between))
+         way = max(small, (1.0_rk + of_cells)*sqrt(product(ratio)) - of_cells)
+      end associate
+   end subroutine way_of_outlet
 
    !> s of a well at a constant rate or pressure, for a time [1/s].
    elemental real(rk) function effective_s(age, has_rate) result(s)

@@ -34,6 +34,7 @@ module report_rows
       real(rk) :: injection_rate = 0.0_rk  !< net rate of all wells in the step [m2/s]
       real(rk) :: injectivity = 0.0_rk  !< injectivity of the only well; 0: none [m2/s/Pa]
       real(rk) :: stimulated_length = 0.0_rk  !< [m]
+      real(rk) :: doubtful_length = 0.0_rk  !< moved by about the least jump of that [m]
       real(rk) :: connected_length = 0.0_rk  !< length connected to the wells [m]
       real(rk) :: connected_stimulated = 0.0_rk  !< length that is both [m]
       integer(ik) :: n_clusters = 0  !< clusters of connected fractures

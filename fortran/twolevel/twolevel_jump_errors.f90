@@ -3,12 +3,14 @@
 !! the pressure change: by 4/E' times sqrt(d1 d2) of opening per pressure, d1 and d2 the distances
 !! from the ends of the zone, and of slip per pressure times friction.
 !!
-!! Faces that slide past a kink open there, in a length that cells do not resolve. A closed joint
-!! has its largest differences of closure where it ends.
+!! Faces that slide past a kink open there, in a length that cells do not resolve, and some at the
+!! ends of a zone that slides. A closed joint has its largest differences of closure where it ends.
+!! Faces in contact may move in part of what remains of the error of their traction, the difference
+!! from the neighbours and the error of the pressure, beyond their distance from sliding or opening.
 module twolevel_jump_errors
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
-   use contact_law, only: state_open, state_slip
+   use contact_law, only: state_open, state_slip, state_stick
    use mesh_types, only: fracture_mesh_t
    use report_jump_errors, only: by_crossings, finite_volumes, jump_errors_t, &
                                  relative_jump_errors, unevenness
@@ -23,6 +25,9 @@ module twolevel_jump_errors
    !> opening of faces that slide past a kink, over slip times sine, in the cells there and in the
    !! mean of them [-]
    real(rk), parameter :: past_kink = 0.35_rk, mean_past_kink = 0.06_rk
+   !> opening over the error of slip of closed faces; error of tractions over differences from
+   !! neighbours; share of what may move by it (chosen with five drawn states) [-]
+   real(rk), parameter :: at_end = 0.03_rk, of_neighbours = 1.5_rk, of_loose = 0.3_rk
 
    !> What the errors need besides the state.
    type :: jump_facts_t
@@ -42,6 +47,7 @@ module twolevel_jump_errors
       !> error of the uniform pressure that opens the faces like their openings [Pa]
       real(rk), allocatable :: net_error(:)
       real(rk) :: volume = 0.0_rk  !< error of the sum of openings [m2]
+      real(rk) :: loosened = 0.0_rk  !< what faces in contact may open by more [m2]
       real(rk) :: slipped = 0.0_rk  !< error of the sum of slip [m2]
    contains
       procedure :: find
@@ -58,7 +64,7 @@ contains
       type(state_t), intent(in) :: state
       type(jump_facts_t), intent(in) :: facts
       real(rk), dimension(size(state%pressure)) :: length, moved, n, opened, slid
-      real(rk) :: compliance
+      real(rk) :: compliance, loose(size(state%pressure), 2)
       logical :: is_open(size(state%pressure))
 
       self%n = 0.5_rk*sum(state%jump(1, :, :), dim=1)
@@ -93,6 +99,12 @@ contains
                            *abs(self%n)
             opened = opened + self%error_n
          end where
+         loose = of_loose*compliance*may_move(problem, state, facts%of_pressure)
+         where (.not. is_open) loose(:, 1) = loose(:, 1) + at_end*self%slip%of_slip*self%t
+         self%error_t = self%error_t + loose(:, 2)
+         self%error_n = self%error_n + loose(:, 1)
+         self%loosened = sum(length*loose(:, 1))
+         slid = slid + loose(:, 2)
          self%volume = sum(length*opened)
          self%slipped = sum(length*((self%slip%of_slip_sum + facts%of_length) &
                                     *merge(moved, self%t, is_open) + slid))
@@ -117,6 +129,33 @@ contains
 
       moves = jump > rounding*maxval(jump)
    end function moves
+
+   !> Tractions by which cells in contact may lack contact, and stick, times the reach of the zone
+   !! that would move then (report_jump_errors) [Pa m].
+   function may_move(problem, state, of_pressure) result(loose)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk), intent(in) :: of_pressure(:)  !< (cells) its error [Pa]
+      real(rk) :: loose(size(of_pressure), 2)
+      type(jump_errors_t) :: zone
+      real(rk) :: error(size(of_pressure)), normal(size(of_pressure)), shear(size(of_pressure))
+      integer :: i
+
+      normal = -0.5_rk*sum(state%traction(1, :, :), dim=1)
+      shear = 0.5_rk*sum(state%traction(2, :, :), dim=1)
+      associate (fracture => problem%mesh%fracture, states => cell_states(state), &
+                 friction => problem%model%cells%law%friction)
+         error = of_neighbours*unevenness(fracture, normal) + of_pressure
+         loose(:, 1) = merge(0.0_rk, max(0.0_rk, error - normal), states == state_open)
+         error = friction*error + of_neighbours*unevenness(fracture, shear)
+         loose(:, 2) = merge(max(0.0_rk, error - (friction*normal - abs(shear))), 0.0_rk, &
+                             states == state_stick)
+         do i = 1, 2
+            zone = relative_jump_errors(fracture, loose(:, i) > 0.0_rk, finite_volumes)
+            loose(:, i) = loose(:, i)*zone%reach
+         end do
+      end associate
+   end function may_move
 
    !> Half of the jump next to a cell whose faces have not moved: the zone may end in it [m].
    pure function at_ends(fracture, moved, jump) result(error)

@@ -22,7 +22,7 @@ module twolevel_problem
    use twolevel_faces, only: coarse_values_t
    use twolevel_schedule, only: follow_sides
    use twolevel_rock_around, only: place_rings
-   use twolevel_well_ways, only: find_way
+   use twolevel_well_ways, only: find_outlet_ways, find_way
    use twolevel_wells, only: ask_wells, control_wells, entries_of, place_wells, &
                              places_of_cells, rate, &
                              wells_of_entries
@@ -169,7 +169,9 @@ contains
          rock%n = wells%n_all - wells%n
          rock%cell = self%rock_cell(wells%number(wells%n + 1:))
          rock%conductance = spread(0.0_rk, 1, int(rock%n))
-         rock%index = [(well_index(scene%injections(wells%number(wells%n + k))%radius, &
+         rock%index = [(well_index(scene%injections(wells%number(wells%n + k))%radius &
+                                   *sqrt(0.5_rk + 0.5_rk*self%model%rock%mean_over_mobility( &
+                                         & rock%cell(k))), &
                                    cell_area(self%mesh, rock%cell(k)), &
                                    self%model%rock%mobility_at(rock%cell(k))), k=1, rock%n)]
          if (.not. all(rock%index > 0.0_rk)) then
@@ -248,7 +250,7 @@ contains
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
 
-   !> Ways of the wells at points of fractures in the step that ends at a time.
+   !> Ways of the wells at points of fractures, and to outlets, in the step that ends at a time.
    pure subroutine find_ways(self, state, time)
       class(coarse_problem_t), intent(inout) :: self
       type(state_t), intent(in) :: state
@@ -256,7 +258,8 @@ contains
       real(rk), allocatable :: conductance(:)
       integer(ik) :: e, i
 
-      if (size(self%entries) == 0 .or. self%mesh%fracture%n_cells == 0) return
+      if (self%mesh%fracture%n_cells == 0) return
+      if (size(self%entries) + self%model%joints%n == 0) return
       conductance = state%aperture**3/(12.0_rk*self%model%settings%viscosity*self%thickness(state))
       do e = 1, size(self%entries, kind=ik)
          call find_way(self%entries(e), self%steady(:, e), self%model, self%mesh, conductance, &
@@ -269,6 +272,10 @@ contains
          self%model%wells%share(:, i) = self%share(:, e)
          self%model%wells%joint_share(:, i) = self%joint_share(:, e)
       end do
+      if (self%model%joints%n == 0) return
+      call find_outlet_ways(self%model, self%mesh, conductance, time, &
+                            any(self%steady > 0.0_rk, dim=2), self%model%joints%way, &
+                            self%model%joints%way_error)
    end subroutine find_ways
 
    !> Compute the values that windows use, unless they are those of this state already.

@@ -119,7 +119,8 @@ contains
       type(state_t), intent(in) :: state
       type(history_row_t), intent(inout) :: row
       type(fracture_mesh_t) :: fracture
-      real(rk), allocatable :: length(:)
+      real(rk), parameter :: factor = 2.0_rk  ! to which a small jump is known
+      real(rk), allocatable :: jump(:, :), length(:)
       logical, allocatable :: all_pass(:), is_connected(:), is_stimulated(:)
       real(rk) :: rise
       integer(ik) :: i
@@ -143,13 +144,21 @@ contains
       row%connections_per_branch = connections_per_branch(fracture)
       row%stimulated_length = self%faces%length() + total_length(front%network) &
                               - total_length(start)
-
+      length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
+      jump = mean_jump(state)
+      do i = 1, fracture%n_cells
+         associate (moved => moved_by(self, fracture%cell_fracture(i), &
+                                      problem%mesh%fracture%cell_s(:, i), jump(:, i)), &
+                    least => scene%output%stimulated_jump)
+            if (max(moved, least) > factor*min(moved, least)) cycle
+            row%doubtful_length = row%doubtful_length + length(i)
+         end associate
+      end do
       if (size(scene%injections) == 0) return
       if (size(scene%injections) == 1 .and. all(scene%injections%fracture > 0)) then
          rise = row%well_pressure(1) - self%rock_pressure
          if (rise > 0.0_rk) row%injectivity = row%injection_rate/rise
       end if
-      length = fracture%cell_s(2, :) - fracture%cell_s(1, :)
       is_stimulated = [(counts(self, start, fracture%cell_fracture(i), &
                                0.5_rk*sum(problem%mesh%fracture%cell_s(:, i))), &
                         i=1, fracture%n_cells)]

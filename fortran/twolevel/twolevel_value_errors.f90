@@ -210,20 +210,23 @@ contains
       type(coarse_problem_t), intent(in) :: problem
       type(jumps_in_space_t), intent(in) :: jumps
       type(history_row_t), intent(in) :: row
-      real(rk), parameter :: of_slip_rate = 0.3_rk  ! cells slip in turn as their zone grows
+      ! Cells slip in turn as their zone grows; what slips after the most has slipped is little.
+      real(rk), parameter :: of_slip_rate = 0.3_rk, of_late_slip = 0.1_rk
 
-      associate (fracture => problem%mesh%fracture, time => self%quantities%error)
+      associate (fracture => problem%mesh%fracture, time => self%quantities%error, &
+                 since_start => max(row%time - self%start, tiny(1.0_rk)))
          ! At a kink the faces may open by all of their slip.
          self%row%max_opening = time(opening) &
                                 + max(error_of_largest(fracture, jumps%n, jumps%error_n), &
                                       maxval(jumps%slip%kink*jumps%t) - row%max_opening)
          self%row%max_slip = time(slip) + error_of_largest(fracture, jumps%t, jumps%error_t)
          self%of_held = jumps%volume
-         self%row%fracture_volume = time(volume) + jumps%volume
+         self%row%fracture_volume = time(volume) + jumps%volume + jumps%loosened
          self%row%seismic_moment = time(moment) + problem%model%rock%shear(1)*jumps%slipped
          ! Where faces open, cells slide by a share of what they open.
          self%row%max_slip_rate = self%quantities%of_step(slip_rate) &
-                                  + of_slip_rate*row%max_slip_rate &
+                                  + max(of_slip_rate*row%max_slip_rate, of_late_slip &
+                                        *sqrt(row%max_slip*row%max_slip_rate/since_start)) &
                                   + jumps%slip%of_slip(maxloc(jumps%n, dim=1)) &
                                   *abs(self%quantities%rate(opening))
          self%of_opening = 0.0_rk
@@ -262,6 +265,8 @@ contains
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
+         if (problem%model%joints%n > 0) error%outflow = error%outflow + abs(row%outflow) &
+                                                         *maxval(problem%model%joints%way_error)
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
          associate (share => maxval(sum(self%of_first, dim=2))/max(changes(pressure), tiny(1.0_rk)))
@@ -315,8 +320,8 @@ contains
          if (fracture%n_cells == 0) return
          longest = maxval(fracture%cell_s(2, :) - fracture%cell_s(1, :))
          error%connected_length = grown
-         if (.not. (row%stimulated_length > 0.0_rk .or. row%max_slip > 0.0_rk)) return
-         error%stimulated_length = grown + 2.0_rk*longest
+         if (.not. max(row%stimulated_length, row%max_slip, error%max_slip) > 0.0_rk) return
+         error%stimulated_length = grown + 2.0_rk*longest + row%doubtful_length
          error%connected_stimulated = error%stimulated_length
       end associate
    end subroutine note_rest
@@ -426,7 +431,8 @@ contains
       do w = 1, size(rows, kind=ik)
          associate (row => rows(w), n => size(rows), time => self%wells%error, &
                     error => rows(w)%error, well => scene%injections(w))
-            share = merge(self%of_rock, self%of_pressure, well%fracture == 0)
+            share = merge(self%of_rock + self%of_flow + self%of_length, self%of_pressure, &
+                          well%fracture == 0)
             missing = unresolved_at(problem, state, findloc(problem%well_of, w, dim=1, kind=ik), &
                                     rows%flow)
             error%pressure = share*changes(w)

@@ -11,7 +11,7 @@ module twolevel_well_ways
    implicit none(type, external)
    private
 
-   public :: find_way
+   public :: find_outlet_ways, find_way
 
 contains
 
@@ -27,21 +27,14 @@ contains
       real(rk), intent(inout) :: joint_share(:)  !< (joints) [-]
       real(rk) :: age, unused
       type(uptake_t) :: uptake
-      integer(ik) :: cell, i, joint
+      integer(ik) :: cell, joint
       logical :: around(size(steady))
 
       age = time - max(0.0_rk, well%stage_start(1_ik))
       if (well%fracture == 0 .or. .not. (well%at_point .and. age > 0.0_rk)) return
       around = steady > 0.0_rk
       cell = maxloc(merge(steady, 0.0_rk, share > 0.0_rk), dim=1, kind=ik)
-      associate (s => mesh%fracture%cell_s, &
-                 sides => mesh%face_cells(1, mesh%fracture%cell_faces(:, cell)))
-         uptake%conductance = count(around)/sum(1.0_rk/conductance, mask=around)
-         uptake%length = sum(s(2, :) - s(1, :), mask=around)/count(around)
-         uptake%mobility = [(model%rock%mobility_at(sides(i)), i=1, 2)]
-         uptake%diffusivity = [(model%rock%diffusivity_at(sides(i)), i=1, 2)]
-      end associate
-      if (allocated(model%cells%skin)) uptake%skin = model%cells%skin(cell)
+      uptake = uptake_at(model, mesh, conductance, cell, around)
       call uptake%find(effective_s(age, well%has_given_flow()), 1.0_rk - steady(cell))
       joint = findloc(joint_share > 0.0_rk, .true., dim=1, kind=ik)
       if (joint > 0) then
@@ -56,6 +49,50 @@ contains
          where (around) path = merge(1.0_rk, 2.0_rk, count(around) > 1)*uptake%way(steady)
       end if
    end subroutine find_way
+
+   !> What the rock takes up at a cell and those around it.
+   pure function uptake_at(model, mesh, conductance, cell, around) result(uptake)
+      type(coarse_model_t), intent(in) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
+      integer(ik), intent(in) :: cell
+      logical, intent(in) :: around(:)  !< (fracture cells) that conductance and length are means of
+      type(uptake_t) :: uptake
+      integer(ik) :: i
+
+      associate (s => mesh%fracture%cell_s, &
+                 sides => mesh%face_cells(1, mesh%fracture%cell_faces(:, cell)))
+         uptake%conductance = count(around)/sum(1.0_rk/conductance, mask=around)
+         uptake%length = sum(s(2, :) - s(1, :), mask=around)/count(around)
+         uptake%mobility = [(model%rock%mobility_at(sides(i)), i=1, 2)]
+         uptake%diffusivity = [(model%rock%diffusivity_at(sides(i)), i=1, 2)]
+      end associate
+      if (allocated(model%cells%skin)) uptake%skin = model%cells%skin(cell)
+   end function uptake_at
+
+   !> Ways of the branches to outlets without a well next to them, in a step that ends at a time.
+   pure subroutine find_outlet_ways(model, mesh, conductance, time, has_well, way, error)
+      type(coarse_model_t), intent(in) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
+      real(rk), intent(in) :: time  !< since sides have pressures [s]
+      logical, intent(in) :: has_well(:)  !< (fracture cells)
+      real(rk), intent(inout) :: way(:)  !< (branches) over half of their cell [-]
+      real(rk), intent(inout) :: error(:)  !< (branches) of their flows, relative [-]
+      type(uptake_t) :: uptake
+      integer(ik) :: b, i
+
+      way = 1.0_rk
+      error = 0.0_rk
+      do b = 1, model%joints%branch_count()
+         associate (cell => model%joints%cell(b))
+            if (has_well(cell) .or. .not. model%joints%is_outlet(model%joints%joint(b))) cycle
+            uptake = uptake_at(model, mesh, conductance, cell, &
+                               [(i == cell, i=1, size(has_well, kind=ik))])
+            call uptake%way_of_outlet(time, way(b), error(b))
+         end associate
+      end do
+   end subroutine find_outlet_ways
 
    !> What the branches of a joint take up by its pressure, over what that of one cell does: as the
    !! roots of their conductances. The side of an outlet takes up all [-].

@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
+from functools import partial
 
 from scipy.integrate import quad
 
@@ -70,8 +72,42 @@ def in_line(s: float) -> float:
     return 1e-6 / math.pi / s * float(quad(density, -40.0, 30.0, limit=1000)[0])
 
 
-def rise(t: float, n: int = 7) -> float:
-    """Rise at a time [Pa]."""
+def stretched(ratio: float) -> float:
+    """Pressure in the middle of rock of `ratio` times the permeability along x [Pa].
+
+    Stretched, the square is a rectangle: images in its long direction, a strip in the other.
+    The wall is an ellipse with one pressure, like a circle of the mean of its half-axes.
+    """
+    a = ratio**-0.25
+    total = math.log(4 * a * HALF / math.pi) - math.log(0.004 * (a + 1 / a) / 2)
+    for n in range(1, 20):
+        total -= 2 * (-1) ** n * math.log(math.tanh(math.pi * n / (2 * a**2)))
+    return UNIT * total / math.sqrt(ratio)
+
+
+def into_line(s: float, aperture: float) -> float:
+    """Laplace transform of what enters a narrow fracture at a side with 1 MPa more [m2 s].
+
+    The rock has its front, exp(-x sqrt(s/c)); the line differs from it by sines.
+    """
+    young, poisson, biot, viscosity = 16e9, 0.2, 0.7, 5e-4
+    mobility = 4.5e-16 / viscosity
+    storage = 0.02 * 4.4e-10 + (biot - 0.02) * 3 * (1 - 2 * poisson) / young
+    storage += biot**2 * (1 + poisson) * (1 - 2 * poisson) / (young * (1 - poisson))
+    conductance = aperture**3 / (12 * viscosity)
+    front = s * storage / mobility
+
+    def density(x: float) -> float:
+        k = math.exp(x)
+        taken = 2 * mobility * math.sqrt(k**2 + front)
+        return k * front / (k**2 + front) * taken / (conductance * k**2 + taken)
+
+    total = float(quad(density, -40.0, 30.0, limit=1000)[0])
+    return 1e6 * 2 / math.pi * conductance * total / s**2
+
+
+def at_time(transform: Callable[[float], float], t: float, n: int = 7) -> float:
+    """Inverse of a Laplace transform by Stehfest's sum."""
     total = 0.0
     for i in range(1, 2 * n + 1):
         weight = sum(
@@ -82,7 +118,7 @@ def rise(t: float, n: int = 7) -> float:
             / math.factorial(n)
             for j in range((i + 1) // 2, min(i, n) + 1)
         )
-        total += (-1) ** (i + n) * weight * in_line(i * math.log(2.0) / t)
+        total += (-1) ** (i + n) * weight * transform(i * math.log(2.0) / t)
     return total * math.log(2.0) / t
 
 
@@ -92,4 +128,7 @@ if __name__ == "__main__":
     print("at (-0.55, 0.7)", pressure(-0.55, 0.7, 0.004))
     print("in a disc", UNIT * (math.log(0.1 / 0.004) / 0.1 + math.log(1.0787052 / 0.1)))
     print("next to other rock", next_to_rock(0.05, 0.1))
-    print("narrow fracture, 100 and 1000 s", rise(100.0), rise(1000.0))
+    print("narrow fracture, 100 and 1000 s", *(at_time(in_line, t) for t in (100.0, 1000.0)))
+    for a in (5e-6, 2e-5):
+        print("from a side, 1000 s", a, at_time(partial(into_line, aperture=a), 1000.0))
+    print("in anisotropic rock, 10 times", stretched(10.0))

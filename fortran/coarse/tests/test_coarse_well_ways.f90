@@ -40,6 +40,7 @@ program test_coarse_well_ways
          end associate
       end do
    end do
+   call test_outlets()
    call test_rock()
    call test_leak_off()
    call checks%finish()
@@ -82,6 +83,47 @@ contains
       end do
       drop = sum(share*p(i:i + 1))
    end function drop
+
+   !> The flow of a side with a pressure into layers; into a line and cells that hardly conduct and
+   !! have the pressure of the rock behind its front; hardly any uptake; and the way itself.
+   subroutine test_outlets()
+      real(rk), parameter :: wide = 1.0e6_rk, apart(3) = [0.1_rk, 1.0_rk, 10.0_rk]
+      real(rk) :: error
+
+      do i = 1, size(thetas)
+         uptake = layers(thetas(i), 1.0_rk)
+         call checks%is_close(uptake%into_line, thetas(i), within*thetas(i), "flow into layers")
+         call checks%is_close(drop(thetas(i), 0.0_rk, 0.5_rk, n, [0.0_rk, 1.0_rk]), &
+                              1.0_rk/uptake%into_cells, within/thetas(i), "flow into cells")
+      end do
+      do i = 1, size(apart)
+         uptake = uptake_t(conductance=1.0_rk, length=1.0_rk, mobility=[wide, 3.0_rk*wide])
+         call uptake%find(apart(i)**2, 1.0_rk)
+         call checks%is_close(uptake%into_line, apart(i), 1.0e-3_rk*apart(i), "behind a front")
+         call checks%is_close(uptake%into_cells, 2.0_rk*(1.0_rk - exp(-0.5_rk*apart(i))), &
+                              1.0e-3_rk, "cells behind a front")
+      end do
+      uptake = uptake_t(conductance=1.0_rk, length=1.0_rk, mobility=[1.0e-9_rk, 1.0e-9_rk])
+      call uptake%way_of_outlet(1.0_rk, way, error)
+      call checks%is_close(way, 1.0_rk, 1.0e-3_rk, "hardly any uptake")
+      ! In layers the flow has the ratio of theta to that into cells of the same s.
+      uptake = uptake_t(conductance=1.0_rk, length=1.0_rk, mobility=[1.0e-9_rk, 3.0e-9_rk], &
+                        diffusivity=[1.0e-20_rk, 1.0e-20_rk])
+      call uptake%way_of_outlet(1.0_rk, way, error)
+      call uptake%find(effective_s(1.0_rk, .false.), 1.0_rk)
+      exact = 1.0_rk/uptake%theta
+      call checks%is_close(drop(uptake%theta, 0.0_rk, 0.5_rk*way, n, [0.0_rk, 1.0_rk]), exact, &
+                           error*exact, "way to an outlet")
+      call checks%is_true(error < 0.1_rk, "its error")
+      ! Where the rock's front is within the cell the way may be longer: cells of the rock lack it.
+      do i = -8, 8
+         do k = -8, 8
+            uptake = uptake_t(conductance=10.0_rk**i, length=1.0_rk, mobility=[1.0_rk, 0.1_rk])
+            call uptake%way_of_outlet(10.0_rk**k, way, error)
+            call checks%is_true(way > 0.0_rk .and. way < 1.25_rk .and. error < 2.0_rk, "any line")
+         end do
+      end do
+   end subroutine test_outlets
 
    !> Cells much longer than T/(2 K/mu), after a long time; and without rock on one side.
    subroutine test_rock()
