@@ -103,6 +103,8 @@ module twolevel_stepping
    integer, parameter :: many_steps = 500
    real(rk), parameter :: little = 0.005_rk
 
+   integer, parameter :: most_powers = 2  !< a step is at most 4 times the last one
+
    !> Control of the step length.
    type :: stepper_t
       real(rk) :: next = 0.0_rk  !< next step to try [s]
@@ -295,7 +297,6 @@ contains
       class(stepper_t), intent(inout) :: self
       type(trial_t), intent(in) :: trial
       real(rk), intent(in) :: dt  !< [s]
-      integer, parameter :: most_powers = 2  ! a step is at most 4 times the last one
       integer :: power
 
       self%in_vain = 0
@@ -308,8 +309,7 @@ contains
          power = max(-1, min(most_powers, powers(self, trial)))
          self%next = min(2.0_rk**power*dt, self%longest)
          ! Within a time that does not matter growth is a jump, however many segments it takes.
-         self%next = max(self%next, min(self%moment, self%longest, dt*2.0_rk**min( &
-                                        most_powers, powers_of_time(self, trial))))
+         self%next = max(self%next, least_step(self, trial, dt))
          call approach(self, trial, dt)
          call lengthen_slowly(self)
       else
@@ -331,6 +331,19 @@ contains
       self%slow_steps = self%slow_steps + 1
       self%slow_time = self%slow_time + dt
    end subroutine step_done
+
+   !> Length to which growth does not shorten the next step: the time of a jump within it does not
+   !! matter. It grows with time, but a step that is nearly as long is kept [s].
+   pure real(rk) function least_step(self, trial, dt)
+      class(stepper_t), intent(in) :: self
+      type(trial_t), intent(in) :: trial
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), parameter :: nearly = 0.75_rk
+
+      least_step = min(self%moment, self%longest, dt*2.0_rk**min(most_powers, &
+                                                                 powers_of_time(self, trial)))
+      if (dt < least_step .and. dt >= nearly*least_step) least_step = dt
+   end function least_step
 
    !> Limit the next step where a step in which tips advanced too far has been cut to this one: to
    !! half of the time that is left, and to all of it after several such steps, or where the time of

@@ -229,6 +229,8 @@ contains
       call checks%is_close(stepper%next, 40.0_rk, 0.0_rk, "as far as a tip runs in a moment")
       call stepper%step_done(trial_t(converged=.true., advance=far), 40.0_rk)
       call checks%is_close(stepper%next, 100.0_rk, 0.0_rk, "and no longer than this moment")
+      call stepper%step_done(trial_t(converged=.true., advance=far), 80.0_rk)
+      call checks%is_close(stepper%next, 80.0_rk, 0.0_rk, "a step nearly as long is kept")
       call stepper%step_done(trial_t(converged=.true., advance=far), 300.0_rk)
       call checks%is_close(stepper%next, 150.0_rk, 0.0_rk, "beyond it, segments count")
       call stepper%step_done(trial_t(converged=.true., advance=far, time_error=0.02_rk), 10.0_rk)
