@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -48,6 +49,17 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
     log = (tmp_path / "out" / "run.log").read_text()
     assert log.count("warning: forward error bound") == 1
     assert log.count("warning: mass error") == 1
+
+
+def test_growth_before_the_first_step_is_warned_of(tmp_path: Path) -> None:
+    """Friction 0.2 bears less than the 5 MPa of shear under 15 MPa less the fluid's pressure."""
+    changes = ("friction = 0.5", "friction = 0.2"), ("intensities = .true.", "enabled = .true.")
+    _, _, _, warnings = run(tmp_path, varied(*changes, ("start = 3600.0, end = 14400.0", "")))
+    value = first_value(warnings[-1], "K_eq over K_IC in the initial state ")
+    pressure = numbers(tmp_path / "out" / "history.csv", "well_pressure_pa")[0]
+    k2 = (5e6 - 0.2 * (15e6 - pressure)) * math.sqrt(math.pi * 0.05)
+    # maximum tangential stress; five cells along the fracture, in a body of twenty lengths
+    assert value == pytest.approx(2 / math.sqrt(3) * k2 / 0.3e6, rel=0.1)
 
 
 def test_a_bound_is_larger_than_the_error(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ module report_limits
    public :: limit_growth_error, limit_forward_error, limit_jump, limit_k_error, limit_k_methods
    public :: limit_k_to_grow, limit_keq, limit_layering, limit_loop_flow, limit_mass
    public :: limit_pressure_load, limit_pressure_stiffness, limit_strain, limit_t, limit_table
-   public :: limit_depth, limit_time_error, limit_well_error, limits, verdict_fine, verdict_stop
-   public :: verdict_warning
+   public :: limit_depth, limit_initial_keq, limit_time_error, limit_well_error, limits
+   public :: verdict_fine, verdict_stop, verdict_warning
 
    integer, parameter :: verdict_fine = 0, verdict_warning = 1, verdict_stop = 2
 
@@ -37,7 +37,7 @@ module report_limits
                          limit_k_to_grow = 12, limit_keq = 13, limit_time_error = 14, &
                          limit_layering = 15, limit_loop_flow = 16, limit_table = 17, &
                          limit_fluid_in_rock = 18, limit_growth_error = 19, &
-                         limit_depth = 20, limit_well_error = 21
+                         limit_depth = 20, limit_well_error = 21, limit_initial_keq = 22
 
    character(len=*), parameter :: with_fluid = "with a fluid"
    character(len=*), parameter :: with_growth = "with growth"
@@ -128,7 +128,12 @@ module report_limits
          "Estimated error of the pressure of a well over its largest rise so far, at the end "// &
          "of a stage or of the run; estimates are three times too large in the median", &
          "reduce the tolerance or the step of &time for errors in time, the cells for those in "// &
-         "space")]
+         "space"), &
+      limit_t("K_eq over K_IC in the initial state", "-", "fluid and growth", 1.02_rk, never, &
+         "Largest K_eq, over K_IC, of tips that may grow, before the first step: growth begins "// &
+         "by a jump, in which pressures fall within microseconds", &
+         "errors of pressure, slip and leak-off do not contain its course: reduce the loads or "// &
+         "the initial pressure, or use a larger toughness")]
    !&>
 
 contains

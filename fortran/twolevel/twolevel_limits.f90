@@ -10,8 +10,8 @@ module twolevel_limits
    use scene_fluid_law, only: viscosity_ratio
    use scene_types, only: scene_t
    use report_limits, only: limit_angle, limit_aperture, limit_contact, limit_forward_error, &
-                            limit_fluid_in_rock, limit_jump, limit_keq, limit_layering, &
-                            limit_loop_flow, limit_mass, limit_pressure_load, &
+                            limit_fluid_in_rock, limit_initial_keq, limit_jump, limit_keq, &
+                            limit_layering, limit_loop_flow, limit_mass, limit_pressure_load, &
                             limit_pressure_stiffness, limit_strain, limit_table
    use report_watch, only: watch_t, worst_place
    use twolevel_problem, only: coarse_problem_t
@@ -170,13 +170,15 @@ contains
 
    end subroutine watch_mesh
 
-   !> Check the tips. None may exceed the toughness once growth in a state has ended.
-   subroutine watch_windows(watch, scene, tips, time, growth_is_done)
+   !> Check the tips. None may exceed the toughness once growth in a state has ended, nor in the
+   !! initial state.
+   subroutine watch_windows(watch, scene, tips, time, growth_is_done, is_initial)
       type(watch_t), intent(inout) :: watch
       type(scene_t), intent(in) :: scene
       type(tip_t), intent(in) :: tips(:)
       real(rk), intent(in) :: time  !< [s]
       logical, intent(in) :: growth_is_done  !< false: tips do not grow in this state
+      logical, intent(in) :: is_initial  !< tips are about to grow from the initial state
       character(len=:), allocatable :: when
       real(rk) :: excess(size(tips))
       integer(ik) :: i
@@ -184,10 +186,10 @@ contains
       when = name_of(time)
       associate (toughness => scene%material%toughness, may_grow => scene%growth%enabled)
          call watch%see_tips(tips, toughness, may_grow, when)
-         if (.not. growth_is_done .or. all(tips%arrested)) return
+         if (.not. (growth_is_done .or. is_initial) .or. all(tips%arrested)) return
          excess = merge(-1.0_rk, tips%excess(toughness), tips%arrested)
          i = worst_place(excess)
-         call watch%see(limit_keq, 1.0_rk + excess(i), when, tips(i)%xy)
+         call watch%see(merge(limit_initial_keq, limit_keq, is_initial), 1.0_rk + excess(i), when, tips(i)%xy)
       end associate
    end subroutine watch_windows
 

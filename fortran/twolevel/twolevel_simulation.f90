@@ -219,7 +219,9 @@ contains
                                         self%chronicle)
             if (self%is_initial) call note_excess(self%tip, toughness, time, self%chronicle)
          end if
-         call watch_windows(self%watch, self%scene, self%tip, time, may_grow)
+         call watch_windows(self%watch, self%scene, self%tip, time, may_grow, self%is_initial &
+                            .and. self%scene%growth%enabled .and. &
+                            self%scene%growth%in_equilibrium())
       end associate
       call self%count_unknowns()
       call self%heed_limits(error)
