@@ -189,7 +189,9 @@ contains
          if (.not. (growth_is_done .or. is_initial) .or. all(tips%arrested)) return
          excess = merge(-1.0_rk, tips%excess(toughness), tips%arrested)
          i = worst_place(excess)
-         call watch%see(merge(limit_initial_keq, limit_keq, is_initial), 1.0_rk + excess(i), when, tips(i)%xy)
+         associate (limit => merge(limit_initial_keq, limit_keq, is_initial))
+            call watch%see(limit, 1.0_rk + excess(i), when, tips(i)%xy)
+         end associate
       end associate
    end subroutine watch_windows
 
