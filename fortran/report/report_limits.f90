@@ -111,7 +111,7 @@ module report_limits
       limit_t("pressure beyond the fluid's table", "-", "with a table", 1.0e-3_rk, never, &
          "Distance of the pressure in a fracture from the range of table_pressure, over that "// &
          "range; fluid properties are constant there", "extend the table of the fluid"), &
-      limit_t("fluid of the rock beside its law", "-", "with a law", 0.1_rk, never, &
+      limit_t("deviation of the fluid in rock from its law", "-", "with a law", 0.1_rk, never, &
          "Relative difference of viscosity over density at a pressure or temperature in the "// &
          "rock from that at reference_pressure and the temperature of &heat, which the rock uses", &
          "use a reference_pressure within the rock's pressures, with the viscosity and "// &
