@@ -265,8 +265,10 @@ contains
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
-         if (problem%model%joints%n > 0) error%outflow = error%outflow + abs(row%outflow) &
-                                                         *maxval(problem%model%joints%way_error)
+         associate (joints => problem%model%joints)
+            if (joints%n > 0) error%outflow = error%outflow + maxval(joints%way_error) &
+                                              *max(abs(row%outflow), sum(joints%gross))
+         end associate
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
          associate (share => maxval(sum(self%of_first, dim=2))/max(changes(pressure), tiny(1.0_rk)))
