@@ -49,8 +49,8 @@ module coarse_joints
       !! much leaks off on it (coarse_well_ways) [-]
       real(rk), allocatable :: way(:)
       real(rk), allocatable :: way_error(:)  !< (branches) of the flow by that, relative [-]
-      !> (branches) pressure that acts with that of the side, as other ways are right for what it has
-      !! changed by at other times [Pa]
+      !> (branches) pressure that acts with that of the side, as other ways are right for its
+      !! changes at other times [Pa]
       real(rk), allocatable :: excess(:)
       !> (branches) volume that flows by the changes of the side, without regard to signs [m2]
       real(rk), allocatable :: gross(:)

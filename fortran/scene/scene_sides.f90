@@ -96,8 +96,8 @@ contains
 
    end subroutine set_time
 
-   !> Changes of the pressure until a time, by their ages: all whose ages lie between halvings of the
-   !! time are one, with the mean of their ages. Without any, one of 0 with the age of the time.
+   !> Changes of the pressure until a time, by their ages: all whose ages lie between halvings of
+   !! the time are one, with the mean of their ages. Without any, one of 0 with the age of the time.
    pure subroutine pressure_changes(self, initial, time, age, change)
       class(boundary_side_t), intent(in) :: self
       real(rk), intent(in) :: initial  !< pressure before the time 0 [Pa]

@@ -29,7 +29,7 @@ module twolevel_value_errors
                                        undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
-   use twolevel_well_losses, only: by_wells_in_cells, unresolved_at
+   use twolevel_well_losses, only: by_wells_in_cells, lost_to_sides, unresolved_at
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
@@ -267,7 +267,9 @@ contains
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
          associate (joints => problem%model%joints)
             if (joints%n > 0) error%outflow = error%outflow + maxval(joints%way_error) &
-                                              *max(abs(row%outflow), sum(joints%gross))
+                                              *max(abs(row%outflow), sum(joints%gross)) &
+                                              + lost_to_sides(problem, state) &
+                                              *(abs(row%injected) + abs(row%produced))
          end associate
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
