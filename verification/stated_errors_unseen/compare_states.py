@@ -41,7 +41,7 @@ STATES = 12  # of each family and seed
 FINER = 4.0
 ROUNDING = 1e-7  # of the largest value in a table
 LEAST = {"_m": 1e-12, "_pa": 1.0, "_sqrtm": 10.0, "_j_m2": 1e-4, "_m2": 1e-12}  # differences
-CPU_S = {"coarse": 1.2, "fine": 50.0}  # of a run at most
+CPU_S = {"coarse": 2.0, "fine": 50.0}  # of a run at most
 LEAST_BETWEEN = 2  # cells of the finer run between two wells
 Row = dict[str, str]
 Rows = list[Row]
@@ -287,7 +287,7 @@ def state_of(family: str, seed: str, i: int, solver: Path) -> Scene | None:
     """The scene of a state; growth ends where a first run has nearly reached its gain."""
     scene = FAMILIES[family](Draw(f"{seed} {family} {i}"))
     if family == "growing":
-        pilot = solve(solver, scene, 2.0 * CPU_S["coarse"])
+        pilot = solve(solver, scene, 1.5 * CPU_S["coarse"])
         if pilot is None:
             return None
         end = 0.9 * float(rows_of(pilot, "history.csv")[-1]["time_s"])

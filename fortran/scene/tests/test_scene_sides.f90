@@ -119,7 +119,7 @@ contains
 
       call read_with("&side name='right' time=0,10,10,20 pressure=1e6,1e6,3e6,7e6 /")
       call checks%no_error(error, "a pressure that changes")
-      associate (side => scene%sides(size(scene%sides)))
+      associate (side => scene%sides(2))
          call side%pressure_changes(5.0e5_rk, 20.0_rk, age, change)
          call checks%is_close(sum(change), 6.5e6_rk, small*6.5e6_rk, "all changes")
          call checks%is_close(sum(change*age), 5.0e7_rk, small*5.0e7_rk, "their mean age")
