@@ -196,6 +196,7 @@ contains
       end do
       fall = log(self%into_line/of_first)/log(real(size(weight), rk))
       call self%find(effective_s(time, .false.), 1.0_rk)
+      if (self%theta < small) fall = 0.0_rk
       way = 1.0_rk
       error = 0.0_rk
       flow = 0.5_rk*self%into_line

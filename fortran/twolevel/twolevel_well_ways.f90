@@ -108,7 +108,8 @@ contains
             joints%way_error(b) = error(1)
             ! The pressure between side and cell, which has at most that of the side.
             lost = change*min(1.0_rk, flow*way)
-            fall = 1.0_rk - min(0.5_rk, max(0.0_rk, fall))
+            ! Where little of it is lost within the cell, others decide how the flow falls.
+            fall = 1.0_rk - min(0.5_rk, max(0.0_rk, fall))*min(1.0_rk, flow*way)
             flow = flow*change*age/fall
             joints%gross(b) = 2.0_rk*conductance(cell)/uptake%length*sum(abs(flow))
             flow = flow*(1.0_rk - max(0.0_rk, 1.0_rk - dt/age)**fall)/dt
