@@ -138,7 +138,7 @@ MADE_AGAIN = {
     "wells_t": _each("entry n n_all number share joint_share path storage", _RULE)
     | _each("friction turbulence pressure_in_situ n_entries of_entry entry_loss", _RULE),
     "joints_t": _each("n point is_outlet pressure_in_situ branches cell joint way way_error", _RULE)
-    | {"end": _RULE, "beyond": _RULE},
+    | _each("end beyond side excess gross", _RULE),
     "sparse_step_t": {"solver": _RULE},
     "window_t": {
         "follows_other": _EMPTY,

@@ -21,6 +21,7 @@
 !! as it does alone. The flows into a joint and the rate of a well there add up to zero, since a
 !! joint has no volume (coarse_joints):
 !!   q = a^3/(12 mu) (p_F - p_J)/(l/2),   sum q + Q = 0   or, at an outlet,   p_J = p of the side
+!! where l/2 and p_J are corrected for what leaks off within the cell (coarse_well_ways).
 !! A branch is shut, q = 0, before its crack reaches the joint. Where all are shut, the joint has
 !! the pressure of the first.
 module coarse_fracture_flow
@@ -284,7 +285,8 @@ contains
          by_pressure = [1.0_rk, -fluid%pressure_slope]
          by_jump = -1.5_rk*resistance*x(row)/aperture*slope*weight/eq%stiffness
          ends_in_joint = .not. eq%paths%joints%is_outlet(eq%paths%joints%joint(b))
-         eq%residual(row) = x(joint) - fluid%pressure + resistance*x(row)
+         eq%residual(row) = x(joint) + eq%paths%joints%excess(b) - fluid%pressure &
+                            + resistance*x(row)
          eq%residual(at) = eq%residual(at) + x(row)
          if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
       end if

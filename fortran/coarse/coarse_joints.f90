@@ -33,6 +33,7 @@ module coarse_joints
       integer(ik) :: n = 0  !< joints and outlets
       integer(ik), allocatable :: point(:)  !< (n) fracture point
       logical, allocatable :: is_outlet(:)  !< (n) its pressure is that of the side
+      integer(ik), allocatable :: side(:)  !< (n) of outlets, in a corner one of two
       real(rk), allocatable :: side_pressure(:)  !< (n) of outlets [Pa]
       !> (n) in situ, beyond which pressures count (coarse_in_situ); unallocated: 0 [Pa]
       real(rk), allocatable :: pressure_in_situ(:)
@@ -48,6 +49,11 @@ module coarse_joints
       !! much leaks off on it (coarse_well_ways) [-]
       real(rk), allocatable :: way(:)
       real(rk), allocatable :: way_error(:)  !< (branches) of the flow by that, relative [-]
+      !> (branches) pressure that acts with that of the side, as other ways are right for its
+      !! changes at other times [Pa]
+      real(rk), allocatable :: excess(:)
+      !> (branches) volume that flows by the changes of the side, without regard to signs [m2]
+      real(rk), allocatable :: gross(:)
       !> (branches) no flow, since the crack has not reached the joint
       logical, allocatable :: is_shut(:)
    contains
@@ -67,9 +73,12 @@ contains
       logical, allocatable :: is_given(:)
       real(rk), allocatable :: given(:)
       integer(ik) :: b, k, n_branches, point
+      integer(ik), allocatable :: side(:)
 
       allocate (is_given(mesh%fracture%n_points), given(mesh%fracture%n_points))
-      call find_side_pressures(mesh, sides, is_given, given)
+      allocate (side(mesh%fracture%n_points))
+      call find_side_pressures(mesh, sides, side, given)
+      is_given = side > 0
       associate (fracture => mesh%fracture)
          allocate (joints%point, source=pack([(point, point=1, fracture%n_points)], &
                                              [(is_joint(fracture%point_kind(point), &
@@ -78,6 +87,7 @@ contains
                                                point=1, fracture%n_points)]))
          joints%n = size(joints%point, kind=ik)
          joints%is_outlet = is_given(joints%point)
+         joints%side = side(joints%point)
          joints%side_pressure = given(joints%point)
          allocate (joints%injection(joints%n), source=0.0_rk)
          allocate (joints%branches%first(joints%n + 1), source=1_ik)
@@ -101,6 +111,8 @@ contains
          allocate (joints%is_shut(n_branches), source=.false.)
          allocate (joints%way(n_branches), source=1.0_rk)
          allocate (joints%way_error(n_branches), source=0.0_rk)
+         allocate (joints%excess(n_branches), source=0.0_rk)
+         allocate (joints%gross(n_branches), source=0.0_rk)
          allocate (joints%beyond(n_branches))
          do b = 1, n_branches
             joints%beyond(b) = cell_beyond(fracture, joints, b)
@@ -161,25 +173,25 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
       type(joints_t), intent(inout) :: joints
-      logical :: is_given(mesh%fracture%n_points)
+      integer(ik) :: side(mesh%fracture%n_points)
       real(rk) :: given(mesh%fracture%n_points)
 
-      call find_side_pressures(mesh, sides, is_given, given)
+      call find_side_pressures(mesh, sides, side, given)
       joints%side_pressure = given(joints%point)
    end subroutine renew_outlets
 
    !> Prescribed pressures of the sides at fracture points; in a corner the mean of two.
-   pure subroutine find_side_pressures(mesh, sides, is_given, given)
+   pure subroutine find_side_pressures(mesh, sides, side, given)
       type(mesh_t), intent(in) :: mesh
       type(boundary_side_t), intent(in) :: sides(:)
-      logical, intent(out) :: is_given(:)  !< (fracture points)
+      integer(ik), intent(out) :: side(:)  !< (fracture points) with a pressure; 0: none
       real(rk), intent(out) :: given(:)  !< (fracture points) [Pa]; 0 elsewhere
-      integer(ik) :: around(size(is_given)), f, k, point
+      integer(ik) :: around(size(side)), f, k, point
       integer(ik), allocatable :: point_of_node(:)
 
       given = 0.0_rk
       around = 0
-      is_given = .false.
+      side = 0
       if (.not. any(sides%pressure_given)) return
       allocate (point_of_node(mesh%n_nodes), source=0_ik)
       do k = 1, mesh%fracture%n_cells
@@ -194,9 +206,9 @@ contains
             if (mesh%fracture%point_kind(point) /= point_boundary) cycle
             given(point) = given(point) + sides(mesh%face_side(f))%pressure
             around(point) = around(point) + 1
+            side(point) = mesh%face_side(f)
          end do
       end do
-      is_given = around > 0
       given = given/max(around, 1_ik)
    end subroutine find_side_pressures
 

@@ -50,6 +50,7 @@ module scene_sides
    contains
       procedure :: changes
       procedure :: set_time
+      procedure :: pressure_changes
       procedure :: largest_stress
       procedure :: largest_displacement
    end type boundary_side_t
@@ -94,6 +95,61 @@ contains
       end subroutine set
 
    end subroutine set_time
+
+   !> Changes of the pressure until a time, by their ages: all whose ages lie between halvings of
+   !! the time are one, with the mean of their ages. Without any, one of 0 with the age of the time.
+   pure subroutine pressure_changes(self, initial, time, age, change)
+      class(boundary_side_t), intent(in) :: self
+      real(rk), intent(in) :: initial  !< pressure before the time 0 [Pa]
+      real(rk), intent(in) :: time  !< [s]
+      real(rk), allocatable, intent(out) :: age(:)  !< [s]
+      real(rk), allocatable, intent(out) :: change(:)  !< [Pa]
+      integer, parameter :: n = 12
+      real(rk) :: ends(2), part
+      real(rk) :: sums(3, n)  ! of changes, of their sizes, and of these times ages
+      integer :: i, k
+
+      sums = 0.0_rk
+      associate (list => self%course%values(of_pressure))
+         if (.not. allocated(list%of)) then
+            call add(self%pressure - initial, time, sums(:, 1))
+         else
+            call add(list%of(1) - initial, time, sums(:, 1))
+            do k = 2, size(list%of)
+               associate (first => self%course%time(k - 1), last => self%course%time(k), &
+                          rise => list%of(k) - list%of(k - 1))
+                  if (.not. first < time) exit
+                  do i = 1, n
+                     ends = [max(time - last, merge(0.0_rk, time/2**i, i == n)), &
+                             min(time - first, time/2**(i - 1))]
+                     if (ends(2) < ends(1)) cycle
+                     part = 1.0_rk
+                     if (last > first) part = (ends(2) - ends(1))/(last - first)
+                     call add(part*rise, 0.5_rk*sum(ends), sums(:, i))
+                     if (.not. last > first) exit
+                  end do
+               end associate
+            end do
+         end if
+      end associate
+      age = [time]
+      change = [0.0_rk]
+      if (.not. any(sums(2, :) > 0.0_rk)) return
+      age = pack(sums(3, :)/max(sums(2, :), tiny(1.0_rk)), sums(2, :) > 0.0_rk)
+      change = pack(sums(1, :), sums(2, :) > 0.0_rk)
+
+   contains
+
+      !> Add a change to the sums of those between two halvings.
+      pure subroutine add(rise, since, sums)
+         real(rk), intent(in) :: rise  !< [Pa]
+         real(rk), intent(in) :: since  !< [s]
+         real(rk), intent(inout) :: sums(3)  !< [Pa, Pa, Pa s]
+
+         sums = sums + [rise, abs(rise), abs(rise)*since]
+      end subroutine add
+
+   end subroutine pressure_changes
 
    !> Value at a time, from those at the times of a course [unit of the values].
    pure real(rk) function in_time(times, values, time)

@@ -242,7 +242,7 @@ contains
          call self%model%change_sides(self%mesh, scene, timers, error)
          if (allocated(error)) return
       end if
-      call self%find_ways(state, state%time + dt)
+      call self%find_ways(scene, state, dt)
       call self%ask(scene, state%time, dt)
       if (present(control)) then
          where (control > 0) self%model%wells%control = control
@@ -250,11 +250,12 @@ contains
       call self%model%advance(self%mesh, dt, state, timers, report, error)
    end subroutine advance
 
-   !> Ways of the wells at points of fractures, and to outlets, in the step that ends at a time.
-   pure subroutine find_ways(self, state, time)
+   !> Ways of the wells at points of fractures, and to outlets, in the step after a state.
+   pure subroutine find_ways(self, scene, state, dt)
       class(coarse_problem_t), intent(inout) :: self
+      type(scene_t), intent(in) :: scene
       type(state_t), intent(in) :: state
-      real(rk), intent(in) :: time  !< [s]
+      real(rk), intent(in) :: dt  !< [s]
       real(rk), allocatable :: conductance(:)
       integer(ik) :: e, i
 
@@ -263,7 +264,8 @@ contains
       conductance = state%aperture**3/(12.0_rk*self%model%settings%viscosity*self%thickness(state))
       do e = 1, size(self%entries, kind=ik)
          call find_way(self%entries(e), self%steady(:, e), self%model, self%mesh, conductance, &
-                       time, self%share(:, e), self%joint_share(:, e), self%path(:, e))
+                       state%time + dt, self%share(:, e), self%joint_share(:, e), &
+                       self%path(:, e))
       end do
       do i = 1, size(self%model%wells%entry, kind=ik)
          e = self%model%wells%entry(i)
@@ -273,9 +275,8 @@ contains
          self%model%wells%joint_share(:, i) = self%joint_share(:, e)
       end do
       if (self%model%joints%n == 0) return
-      call find_outlet_ways(self%model, self%mesh, conductance, time, &
-                            any(self%steady > 0.0_rk, dim=2), self%model%joints%way, &
-                            self%model%joints%way_error)
+      call find_outlet_ways(self%model, self%mesh, scene, conductance, state%time, dt, &
+                            any(self%steady > 0.0_rk, dim=2))
    end subroutine find_ways
 
    !> Compute the values that windows use, unless they are those of this state already.

@@ -29,7 +29,7 @@ module twolevel_value_errors
                                        undrained_share
    use twolevel_problem, only: coarse_problem_t
    use twolevel_results, only: cell_states
-   use twolevel_well_losses, only: by_wells_in_cells, unresolved_at
+   use twolevel_well_losses, only: by_wells_in_cells, lost_to_sides, unresolved_at
    use twolevel_well_rows, only: well_pressures
    implicit none(type, external)
    private
@@ -265,8 +265,12 @@ contains
       associate (time => self%quantities%error, error => self%row, lost => abs(facts%mass_error), &
                  changes => self%quantities%changes())
          error%outflow = time(outflow) + max(least, self%of_flow)*abs(row%outflow) + lost
-         if (problem%model%joints%n > 0) error%outflow = error%outflow + abs(row%outflow) &
-                                                         *maxval(problem%model%joints%way_error)
+         associate (joints => problem%model%joints)
+            if (joints%n > 0) error%outflow = error%outflow + maxval(joints%way_error) &
+                                              *max(abs(row%outflow), sum(joints%gross)) &
+                                              + lost_to_sides(problem, state) &
+                                              *(abs(row%injected) + abs(row%produced))
+         end associate
          error%rock_outflow = time(rock_outflow) + max(least, layers)*abs(row%rock_outflow) + lost
          first = held_at_first(scene, problem, state, sum(self%of_first, dim=2))
          associate (share => maxval(sum(self%of_first, dim=2))/max(changes(pressure), tiny(1.0_rk)))

@@ -1,13 +1,14 @@
 !> Flows of the entries of wells in fractures, and what the pressures of wells at points, and of the
 !! cells around them, may lack.
 module twolevel_well_losses
-   use base_kinds, only: ik, rk
+   use base_kinds, only: ik, pi, rk
    use coarse_state, only: state_t
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
-   public :: by_wells_in_cells, entry_flows, unresolved_at, unresolved_in_cells, uptake
+   public :: by_wells_in_cells, entry_flows, lost_to_sides, unresolved_at, unresolved_in_cells, &
+             uptake
 
 contains
 
@@ -118,10 +119,46 @@ contains
       end do
    end function by_wells_in_cells
 
+   !> The outlet next to an entry; 0: none.
+   pure integer(ik) function outlet_of(problem, entry) result(joint)
+      type(coarse_problem_t), intent(in) :: problem
+      integer(ik), intent(in) :: entry
+
+      joint = findloc(problem%joint_share(:, entry) > 0.0_rk, .true., dim=1, kind=ik)
+      if (joint == 0) return
+      if (.not. problem%model%joints%is_outlet(joint)) joint = 0
+   end function outlet_of
+
+   !> What wells next to sides with pressures lose to them may be wrong by this share of what they
+   !! inject: three times what leak-off changes (measured), at most 2/pi T/(2 K/mu d) at the
+   !! distance d from the side, which a line of little conductance T takes to it [-].
+   pure real(rk) function lost_to_sides(problem, state) result(share)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: loss(size(state%pressure)), rock
+      integer(ik) :: cell, e, i, j
+
+      share = 0.0_rk
+      do e = 1, size(problem%entries, kind=ik)
+         j = outlet_of(problem, e)
+         if (j == 0) cycle
+         cell = maxloc(problem%share(:, e), dim=1, kind=ik)
+         associate (mesh => problem%mesh, offset => problem%steady(cell, e))
+            associate (sides => mesh%face_cells(1, mesh%fracture%cell_faces(:, cell)))
+               rock = sum([(problem%model%rock%mobility_at(sides(i)), i=1, 2)])
+            end associate
+            loss = half_cells(problem, state)*rock
+            share = max(share, min(3.0_rk*abs(offset - problem%joint_share(j, e)), &
+                                   2.0_rk/pi/max(tiny(1.0_rk), loss(cell)*(1.0_rk - offset))))
+         end associate
+      end do
+   end function lost_to_sides
+
    !> What may be missing in the pressure of an entry at a point: a tenth of what the leak-off of
    !! its flow on the way changes, as coarse_well_ways has it; what other uptake changes, with
    !! stages of all; and twice the loss of the flows of other wells on its way to the
-   !! same cells, as the others lack that of its flow too [Pa].
+   !! same cells, as the others lack that of its flow too. Next to a side with a pressure, that of
+   !! the side may decay on the way as that of a well does, or linearly [Pa].
    pure real(rk) function unresolved_at(problem, state, entry, flow) result(pressure)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -136,6 +173,12 @@ contains
       loss = half_cells(problem, state)
       most = by_uptake(problem, state)
       pressure = sum(problem%share(:, entry)*most)
+      associate (j => outlet_of(problem, entry), &
+                 cell => maxloc(problem%share(:, entry), dim=1, kind=ik))
+         if (j > 0) pressure = pressure + abs(problem%steady(cell, entry) &
+                                              - problem%joint_share(j, entry)) &
+                               *abs(state%joint_pressure(j) - state%pressure(cell))
+      end associate
       associate (own => abs(flow(problem%well_of(entry))), path => problem%path(:, entry), &
                  s => problem%mesh%fracture%cell_s)
          steady = problem%steady(:, entry)

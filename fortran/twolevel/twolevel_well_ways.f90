@@ -7,7 +7,9 @@ module twolevel_well_ways
    use coarse_model, only: coarse_model_t
    use coarse_well_ways, only: effective_s, uptake_t
    use mesh_types, only: mesh_t
-   use scene_types, only: injection_t
+   use scene_outline, only: sides_of_scene
+   use scene_sides, only: boundary_side_t
+   use scene_types, only: injection_t, scene_t
    implicit none(type, external)
    private
 
@@ -70,26 +72,53 @@ contains
       if (allocated(model%cells%skin)) uptake%skin = model%cells%skin(cell)
    end function uptake_at
 
-   !> Ways of the branches to outlets without a well next to them, in a step that ends at a time.
-   pure subroutine find_outlet_ways(model, mesh, conductance, time, has_well, way, error)
-      type(coarse_model_t), intent(in) :: model
+   !> Ways of the branches to outlets, in a step from a time on. Each change of the side's pressure
+   !! has the way of its age, for the mean flow within the step; flow that is not due to these has
+   !! the mean of these ways, or that which a well next to the side has.
+   pure subroutine find_outlet_ways(model, mesh, scene, conductance, time, dt, has_well)
+      type(coarse_model_t), intent(inout) :: model
       type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: conductance(:)  !< (fracture cells) [m3/(Pa s)]
-      real(rk), intent(in) :: time  !< since sides have pressures [s]
+      real(rk), intent(in) :: time, dt  !< [s]
       logical, intent(in) :: has_well(:)  !< (fracture cells)
-      real(rk), intent(inout) :: way(:)  !< (branches) over half of their cell [-]
-      real(rk), intent(inout) :: error(:)  !< (branches) of their flows, relative [-]
+      real(rk), allocatable :: age(:), change(:), error(:), fall(:), flow(:), lost(:), way(:)
+      type(boundary_side_t), allocatable :: sides(:)
       type(uptake_t) :: uptake
       integer(ik) :: b, i
 
-      way = 1.0_rk
-      error = 0.0_rk
+      if (.not. any(model%joints%is_outlet)) return
+      sides = sides_of_scene(scene)
       do b = 1, model%joints%branch_count()
-         associate (cell => model%joints%cell(b))
-            if (has_well(cell) .or. .not. model%joints%is_outlet(model%joints%joint(b))) cycle
+         associate (joints => model%joints, cell => model%joints%cell(b), &
+                    joint => model%joints%joint(b))
+            if (.not. joints%is_outlet(joint)) cycle
             uptake = uptake_at(model, mesh, conductance, cell, &
                                [(i == cell, i=1, size(has_well, kind=ik))])
-            call uptake%way_of_outlet(time, way(b), error(b))
+            call sides(joints%side(joint))%pressure_changes(scene%initial%pressure, time + dt, &
+                                                            age, change)
+            way = age
+            error = age
+            flow = age
+            fall = age
+            do i = 1, size(age, kind=ik)
+               call uptake%way_of_outlet(age(i), way(i), error(i), flow(i), fall(i))
+            end do
+            joints%way(b) = way(1)
+            joints%way_error(b) = error(1)
+            ! The pressure between side and cell, which has at most that of the side.
+            lost = change*min(1.0_rk, flow*way)
+            ! Where little of it is lost within the cell, others decide how the flow falls.
+            fall = 1.0_rk - min(0.5_rk, max(0.0_rk, fall))*min(1.0_rk, flow*way)
+            flow = flow*change*age/fall
+            joints%gross(b) = 2.0_rk*conductance(cell)/uptake%length*sum(abs(flow))
+            flow = flow*(1.0_rk - max(0.0_rk, 1.0_rk - dt/age)**fall)/dt
+            if (any(abs(flow) > 0.0_rk)) then
+               joints%way(b) = sum(abs(lost))/sum(abs(flow))
+               joints%way_error(b) = sum(abs(flow)*error)/sum(abs(flow))
+            end if
+            if (has_well(cell)) joints%way(b) = 1.0_rk
+            joints%excess(b) = sum(joints%way(b)*flow - lost)
          end associate
       end do
    end subroutine find_outlet_ways

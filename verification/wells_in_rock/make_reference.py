@@ -130,5 +130,6 @@ if __name__ == "__main__":
     print("next to other rock", next_to_rock(0.05, 0.1))
     print("narrow fracture, 100 and 1000 s", *(at_time(in_line, t) for t in (100.0, 1000.0)))
     for a in (5e-6, 2e-5):
-        print("from a side, 1000 s", a, at_time(partial(into_line, aperture=a), 1000.0))
+        until, late = (at_time(partial(into_line, aperture=a), t) for t in (1000.0, 100.0))
+        print("from a side, 1000 s, the last 100 s, the others", a, until, late, until - late)
     print("in anisotropic rock, 10 times", stretched(10.0))

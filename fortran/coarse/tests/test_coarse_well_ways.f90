@@ -88,7 +88,7 @@ contains
    !! have the pressure of the rock behind its front; hardly any uptake; and the way itself.
    subroutine test_outlets()
       real(rk), parameter :: wide = 1.0e6_rk, apart(3) = [0.1_rk, 1.0_rk, 10.0_rk]
-      real(rk) :: error
+      real(rk) :: error, fall, flow
 
       do i = 1, size(thetas)
          uptake = layers(thetas(i), 1.0_rk)
@@ -104,22 +104,23 @@ contains
                               1.0e-3_rk, "cells behind a front")
       end do
       uptake = uptake_t(conductance=1.0_rk, length=1.0_rk, mobility=[1.0e-9_rk, 1.0e-9_rk])
-      call uptake%way_of_outlet(1.0_rk, way, error)
+      call uptake%way_of_outlet(1.0_rk, way, error, flow, fall)
       call checks%is_close(way, 1.0_rk, 1.0e-3_rk, "hardly any uptake")
-      ! In layers the flow has the ratio of theta to that into cells of the same s.
+      ! In layers the flow has the ratio of theta to that into cells of the same s; that in time, by
+      ! which the way is found, is 2 % different (wells_in_rock has the flow in time).
       uptake = uptake_t(conductance=1.0_rk, length=1.0_rk, mobility=[1.0e-9_rk, 3.0e-9_rk], &
                         diffusivity=[1.0e-20_rk, 1.0e-20_rk])
-      call uptake%way_of_outlet(1.0_rk, way, error)
+      call uptake%way_of_outlet(1.0_rk, way, error, flow, fall)
       call uptake%find(effective_s(1.0_rk, .false.), 1.0_rk)
       exact = 1.0_rk/uptake%theta
       call checks%is_close(drop(uptake%theta, 0.0_rk, 0.5_rk*way, n, [0.0_rk, 1.0_rk]), exact, &
-                           error*exact, "way to an outlet")
+                           0.03_rk*exact, "way to an outlet")
       call checks%is_true(error < 0.1_rk, "its error")
       ! Where the rock's front is within the cell the way may be longer: cells of the rock lack it.
       do i = -8, 8
          do k = -8, 8
             uptake = uptake_t(conductance=10.0_rk**i, length=1.0_rk, mobility=[1.0_rk, 0.1_rk])
-            call uptake%way_of_outlet(10.0_rk**k, way, error)
+            call uptake%way_of_outlet(10.0_rk**k, way, error, flow, fall)
             call checks%is_true(way > 0.0_rk .and. way < 1.25_rk .and. error < 2.0_rk, "any line")
          end do
       end do

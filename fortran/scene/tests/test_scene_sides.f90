@@ -28,6 +28,7 @@ program test_scene_sides
    type(error_t), allocatable :: error
 
    call check_values()
+   call check_changes()
    call check_lists()
    call check_table()
    call check_faults()
@@ -110,6 +111,27 @@ contains
       call checks%fails_with(error, path//":9: &side: pressure is given with schedule", &
                              "what a table says is given once")
    end subroutine check_table
+
+   !> The changes of a pressure and their mean age are those of its course; a jump has its age.
+   subroutine check_changes()
+      real(rk), parameter :: small = 1.0e-12_rk
+      real(rk), allocatable :: age(:), change(:)
+
+      call read_with("&side name='right' time=0,10,10,20 pressure=1e6,1e6,3e6,7e6 /")
+      call checks%no_error(error, "a pressure that changes")
+      associate (side => scene%sides(2))
+         call side%pressure_changes(5.0e5_rk, 20.0_rk, age, change)
+         call checks%is_close(sum(change), 6.5e6_rk, small*6.5e6_rk, "all changes")
+         call checks%is_close(sum(change*age), 5.0e7_rk, small*5.0e7_rk, "their mean age")
+         call checks%is_true(size(age) == 12, "one between two halvings")
+         call side%pressure_changes(1.0e6_rk, 10.5_rk, age, change)
+         call checks%is_close(sum(change), 2.2e6_rk, small*2.2e6_rk, "part of a ramp")
+         call checks%is_true(all(age <= 0.5_rk), "no older ones")
+         call side%pressure_changes(1.0e6_rk, 5.0_rk, age, change)
+         call checks%is_true(size(age) == 1 .and. all(abs(change) <= 0.0_rk), "none yet")
+         call checks%is_close(age(1), 5.0_rk, 0.0_rk, "its age")
+      end associate
+   end subroutine check_changes
 
    subroutine check_faults()
       call expect("time=0,10 x_traction=-1e6,-2e6,0", ":9: &side: x_traction has 3 values but "// &
