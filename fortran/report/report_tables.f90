@@ -10,7 +10,7 @@ module report_tables
    use report_column, only: applies, column_t, well_count
    use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
                              probe_columns, slip_event_columns, tip_columns, well_columns
-   use report_rows, only: entry_row_t, fracture_fields_t, history_row_t, probe_row_t, &
+   use report_rows, only: entry_row_t, event_t, fracture_fields_t, history_row_t, probe_row_t, &
                           slip_event_t, tip_row_t, well_row_t
    use report_series, only: series_t
    use scene_types, only: name_length, scene_t
@@ -229,14 +229,14 @@ contains
             if (allocated(fields%state)) then
                call table%put("state", state_name(fields%state(cell)))
             else
-               call table%put_nothing("state")
+               call table%put("state")
             end if
             call table%put("history_row", self%history_rows())
             associate (error => fields%error)
                if (allocated(fields%aperture)) then
                   call put_if_there(table, "aperture_error_m", error%jump_n, cell)
                else
-                  call table%put_nothing("aperture_error_m")
+                  call table%put("aperture_error_m")
                end if
                call put_if_there(table, "jump_n_error_m", error%jump_n, cell)
                call put_if_there(table, "jump_t_error_m", error%jump_t, cell)
@@ -280,28 +280,24 @@ contains
    end subroutine probe_row
 
    !> Add an event. Values that do not apply are empty.
-   subroutine event_row(self, time, kind, detail, fracture, xy)
+   subroutine event_row(self, event)
       class(tables_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s], or the load factor
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. of report_rows
-      character(len=*), intent(in) :: detail  !< a few words with numbers and units
-      integer(ik), intent(in), optional :: fracture
-      real(rk), intent(in), optional :: xy(2)  !< [m]
-      real(rk), allocatable :: place(:)
+      type(event_t), intent(in) :: event
 
-      if (present(xy)) place = xy
       associate (table => self%all(events))
-         call table%put("time_s", time)
-         call table%put("load_factor", time)
-         call table%put("kind", kind)
-         if (present(fracture)) then
-            call table%put("fracture", fracture)
+         call table%put("time_s", event%time)
+         call table%put("load_factor", event%time)
+         call table%put("kind", event%kind)
+         if (event%has_place) then
+            call table%put("fracture", event%fracture)
+            call table%put("x_m", event%xy(1))
+            call table%put("y_m", event%xy(2))
          else
-            call table%put_nothing("fracture")
+            call table%put("fracture")
+            call table%put("x_m")
+            call table%put("y_m")
          end if
-         call put_if_there(table, "x_m", place, 1_ik)
-         call put_if_there(table, "y_m", place, 2_ik)
-         call table%put("detail", detail)
+         call table%put("detail", event%detail)
          call table%end_row()
       end associate
    end subroutine event_row
@@ -467,7 +463,7 @@ contains
       if (allocated(values)) then
          call table%put(name, values(i))
       else
-         call table%put_nothing(name)
+         call table%put(name)
       end if
    end subroutine put_if_there
 
