@@ -52,7 +52,7 @@ module heat_model
       real(rk) :: fluid_capacity = 0.0_rk  !< C_f [J/(m3 K)]
       type(boundary_side_t), allocatable :: sides(:)  !< temperatures and heat flows of the sides
       integer(ik), allocatable :: first_node(:)  !< (layers) unknown of the node next to the face
-      integer(ik), allocatable :: cell_of(:)  !< (unknowns of the rock) the cell, or that of the node
+      integer(ik), allocatable :: cell_of(:)  !< (unknowns of the rock) the cell of each
       integer(ik) :: first_cell = 0  !< unknown of the first fracture cell
       integer(ik) :: first_joint = 0  !< unknown of the first joint
       integer(ik), allocatable :: of_scalar(:)  !< unknowns of what the stencils see; 0: none

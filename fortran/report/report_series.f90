@@ -114,6 +114,7 @@ contains
    subroutine end_row(self)
       class(series_t), intent(inout) :: self
 
+      if (.not. self%is_open()) return
       if (self%column < size(self%names)) call keep_fault(self, "ends")
       self%n_rows = self%n_rows + 1_lk
       self%column = 0
@@ -208,11 +209,13 @@ contains
       end if
    end subroutine flush_series
 
-   !> Put a value as it stands in the file into its column, which must be the next one.
+   !> Put a value as it stands in the file into its column, which must be the next one. A table that
+   !! has not been opened takes no rows.
    subroutine put_item(self, name, item)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name, item
 
+      if (.not. self%is_open()) return
       if (self%column >= size(self%names)) then
          call keep_fault(self, "goes on with "//name)
       else if (self%names(self%column + 1)%text /= name) then

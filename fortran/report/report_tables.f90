@@ -131,26 +131,24 @@ contains
          call table%put("connections_per_branch", row%connections_per_branch)
          call table%put("dimensionless_toughness", row%dimensionless_toughness)
          call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
-         associate (error => row%error)
-            call table%put("injected_error_m2", error%injected)
-            call table%put("produced_error_m2", error%produced)
-            call table%put("leakoff_error_m2", error%leakoff)
-            call table%put("outflow_error_m2", error%outflow)
-            call table%put("fracture_fluid_error_m2", error%fracture_fluid)
-            call table%put("rock_fluid_error_m2", error%rock_fluid)
-            call table%put("rock_outflow_error_m2", error%rock_outflow)
-            call table%put("fracture_volume_error_m2", error%fracture_volume)
-            call table%put("max_slip_error_m", error%max_slip)
-            call table%put("max_opening_error_m", error%max_opening)
-            call table%put("seismic_moment_error_nm", error%seismic_moment)
-            call table%put("strain_energy_error_j", error%strain_energy)
-            call table%put("injection_rate_error_m2_s", error%injection_rate)
-            call table%put("injectivity_error_m2_s_pa", error%injectivity)
-            call table%put("stimulated_length_error_m", error%stimulated_length)
-            call table%put("connected_length_error_m", error%connected_length)
-            call table%put("connected_stimulated_error_m", error%connected_stimulated)
-            call table%put("max_slip_rate_error_m_s", error%max_slip_rate)
-         end associate
+         call table%put("injected_error_m2", row%error%injected)
+         call table%put("produced_error_m2", row%error%produced)
+         call table%put("leakoff_error_m2", row%error%leakoff)
+         call table%put("outflow_error_m2", row%error%outflow)
+         call table%put("fracture_fluid_error_m2", row%error%fracture_fluid)
+         call table%put("rock_fluid_error_m2", row%error%rock_fluid)
+         call table%put("rock_outflow_error_m2", row%error%rock_outflow)
+         call table%put("fracture_volume_error_m2", row%error%fracture_volume)
+         call table%put("max_slip_error_m", row%error%max_slip)
+         call table%put("max_opening_error_m", row%error%max_opening)
+         call table%put("seismic_moment_error_nm", row%error%seismic_moment)
+         call table%put("strain_energy_error_j", row%error%strain_energy)
+         call table%put("injection_rate_error_m2_s", row%error%injection_rate)
+         call table%put("injectivity_error_m2_s_pa", row%error%injectivity)
+         call table%put("stimulated_length_error_m", row%error%stimulated_length)
+         call table%put("connected_length_error_m", row%error%connected_length)
+         call table%put("connected_stimulated_error_m", row%error%connected_stimulated)
+         call table%put("max_slip_rate_error_m_s", row%error%max_slip_rate)
          call table%put("unknowns", row%n_unknowns)
          call table%put("heat_stored_j", row%heat%stored)
          call table%put("heat_by_wells_j", row%heat%by_wells)
@@ -165,7 +163,6 @@ contains
       class(tables_t), intent(inout) :: self
       type(tip_row_t), intent(in) :: row
 
-      if (.not. self%all(tips)%is_open()) return
       associate (table => self%all(tips), k => row%intensity)
          call table%put("time_s", row%time)
          call table%put("load_factor", row%time)
@@ -205,11 +202,12 @@ contains
       real(rk), intent(in) :: time  !< [s], or the load factor
       type(fracture_mesh_t), intent(in) :: mesh
       type(fracture_fields_t), intent(in) :: fields
+      character(len=:), allocatable :: state
       real(rk) :: centre(2)
       integer(ik) :: cell
 
-      if (.not. self%all(fractures)%is_open()) return
-      associate (table => self%all(fractures))
+      state = ""
+      associate (table => self%all(fractures), error => fields%error)
          do cell = 1, mesh%n_cells
             centre = fracture_cell_centre(mesh, cell)
             call table%put("time_s", time)
@@ -226,26 +224,21 @@ contains
             call put_if_there(table, "pressure_pa", fields%pressure, cell)
             call put_if_there(table, "void_m", fields%void, cell)
             call put_if_there(table, "flow_m2_s", fields%flow, cell)
-            if (allocated(fields%state)) then
-               call table%put("state", state_name(fields%state(cell)))
-            else
-               call table%put("state")
-            end if
+            if (allocated(fields%state)) state = state_name(fields%state(cell))
+            call table%put("state", state)
             call table%put("history_row", self%history_rows())
-            associate (error => fields%error)
-               if (allocated(fields%aperture)) then
-                  call put_if_there(table, "aperture_error_m", error%jump_n, cell)
-               else
-                  call table%put("aperture_error_m")
-               end if
-               call put_if_there(table, "jump_n_error_m", error%jump_n, cell)
-               call put_if_there(table, "jump_t_error_m", error%jump_t, cell)
-               call put_if_there(table, "traction_n_error_pa", error%traction_n, cell)
-               call put_if_there(table, "traction_t_error_pa", error%traction_t, cell)
-               call put_if_there(table, "pressure_error_pa", error%pressure, cell)
-               call put_if_there(table, "flow_error_m2_s", error%flow, cell)
-               call put_if_there(table, "temperature_k", fields%temperature, cell)
-            end associate
+            if (allocated(fields%aperture)) then
+               call put_if_there(table, "aperture_error_m", error%jump_n, cell)
+            else
+               call table%put("aperture_error_m")
+            end if
+            call put_if_there(table, "jump_n_error_m", error%jump_n, cell)
+            call put_if_there(table, "jump_t_error_m", error%jump_t, cell)
+            call put_if_there(table, "traction_n_error_pa", error%traction_n, cell)
+            call put_if_there(table, "traction_t_error_pa", error%traction_t, cell)
+            call put_if_there(table, "pressure_error_pa", error%pressure, cell)
+            call put_if_there(table, "flow_error_m2_s", error%flow, cell)
+            call put_if_there(table, "temperature_k", fields%temperature, cell)
             call table%end_row()
          end do
       end associate
@@ -258,7 +251,6 @@ contains
       type(probe_row_t), intent(in) :: row
       integer(ik) :: i
 
-      if (.not. self%all(probes)%is_open()) return
       associate (table => self%all(probes))
          call table%put("time_s", time)
          call table%put("load_factor", time)
@@ -307,7 +299,6 @@ contains
       class(tables_t), intent(inout) :: self
       type(slip_event_t), intent(in) :: event
 
-      if (.not. self%all(slip_events)%is_open()) return
       associate (table => self%all(slip_events))
          call table%put("event", event%number)
          call table%put("time_s", event%time)
@@ -349,7 +340,6 @@ contains
       class(tables_t), intent(inout) :: self
       type(well_row_t), intent(in) :: row
 
-      if (.not. self%all(wells)%is_open()) return
       associate (table => self%all(wells))
          call table%put("time_s", row%time)
          call table%put("well", row%name)
