@@ -52,7 +52,6 @@ module heat_model
       real(rk) :: fluid_capacity = 0.0_rk  !< C_f [J/(m3 K)]
       type(boundary_side_t), allocatable :: sides(:)  !< temperatures and heat flows of the sides
       integer(ik), allocatable :: first_node(:)  !< (layers) unknown of the node next to the face
-      integer(ik), allocatable :: cell_of(:)  !< (unknowns of the rock) the cell of each
       integer(ik) :: first_cell = 0  !< unknown of the first fracture cell
       integer(ik) :: first_joint = 0  !< unknown of the first joint
       integer(ik), allocatable :: of_scalar(:)  !< unknowns of what the stencils see; 0: none
@@ -159,8 +158,6 @@ contains
             self%first_node(l) = n + 1
             n = n + layers%chain(l)%n
          end do
-         self%cell_of = [(c, c=1, mesh%n_cells), ((layers%cell(l), i=1, layers%chain(l)%n), &
-                                                  l=1, layers%n)]
          self%first_cell = n + 1
          self%first_joint = self%first_cell + mesh%fracture%n_cells
          self%n = self%first_joint + joints%n - 1
@@ -447,11 +444,14 @@ contains
       class(heat_model_t), intent(in) :: self
       real(rk), intent(in) :: values(:)  !< (unknowns of the rock, at least)
       real(rk) :: total(self%mesh%n_cells)
-      integer(ik) :: k
+      integer(ik) :: c, k, l
 
       total = values(:self%mesh%n_cells)
-      do k = self%mesh%n_cells + 1, self%first_cell - 1
-         total(self%cell_of(k)) = total(self%cell_of(k)) + values(k)
+      do l = 1, self%layers%n
+         c = self%layers%cell(l)
+         do k = self%first_node(l), self%last_node(l)
+            total(c) = total(c) + values(k)
+         end do
       end do
    end function of_cells
 

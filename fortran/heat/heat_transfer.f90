@@ -132,7 +132,7 @@ contains
       real(rk), intent(out) :: after(:, :), capacity(:)
       real(rk) :: covered(old%mesh%n_cells), share, whole(old%mesh%n_cells)
       real(rk), allocatable :: of_rock(:)
-      integer(ik) :: c, from, k
+      integer(ik) :: c, from, k, l
 
       after = 0.0_rk
       capacity = 0.0_rk
@@ -163,9 +163,12 @@ contains
       ! Fluid that has entered a cell is shared by its parts as the rock is.
       of_rock = new%rock_capacity()
       capacity(:new%mesh%n_cells) = capacity(:new%mesh%n_cells)/new%of_cells(of_rock)
-      do k = new%mesh%n_cells + 1, new%first_cell - 1
-         capacity(k) = capacity(new%cell_of(k))*of_rock(k)
-         after(:, k) = after(:, new%cell_of(k))
+      do l = 1, new%layers%n
+         c = new%layers%cell(l)
+         associate (nodes => [(k, k=new%first_node(l), new%last_node(l))])
+            capacity(nodes) = capacity(c)*of_rock(nodes)
+            after(:, nodes) = spread(after(:, c), 2, size(nodes))
+         end associate
       end do
       capacity(:new%mesh%n_cells) = capacity(:new%mesh%n_cells)*of_rock(:new%mesh%n_cells)
    end subroutine transfer_cells
@@ -204,22 +207,28 @@ contains
             end do
          end associate
       end do
-      do k = new%mesh%n_cells + 1, new%first_cell - 1
-         c = new%cell_of(k)
-         missing(c) = missing(c) - capacity(k)*(after(rise, k) - after(rise, c))
+      do l = 1, new%layers%n
+         c = new%layers%cell(l)
+         do k = new%first_node(l), new%last_node(l)
+            missing(c) = missing(c) - capacity(k)*(after(rise, k) - after(rise, c))
+         end do
       end do
       bound = merge(high, low, missing > 0.0_rk)
       associate (n => new%mesh%n_cells)
          space = capacity(:n)*(bound - after(rise, :n))
-         do k = n + 1, new%first_cell - 1
-            c = new%cell_of(k)
-            space(c) = space(c) + capacity(k)*(bound(c) - after(rise, k))
+         do l = 1, new%layers%n
+            c = new%layers%cell(l)
+            do k = new%first_node(l), new%last_node(l)
+               space(c) = space(c) + capacity(k)*(bound(c) - after(rise, k))
+            end do
          end do
          where (abs(space) > 0.0_rk) missing = max(0.0_rk, min(1.0_rk, missing/space))
          where (.not. abs(space) > 0.0_rk) missing = 0.0_rk
-         do k = n + 1, new%first_cell - 1
-            c = new%cell_of(k)
-            after(rise, k) = after(rise, k) + missing(c)*(bound(c) - after(rise, k))
+         do l = 1, new%layers%n
+            c = new%layers%cell(l)
+            do k = new%first_node(l), new%last_node(l)
+               after(rise, k) = after(rise, k) + missing(c)*(bound(c) - after(rise, k))
+            end do
          end do
          after(rise, :n) = after(rise, :n) + missing*(bound - after(rise, :n))
       end associate
@@ -337,13 +346,21 @@ contains
       real(rk), intent(in) :: bounds(2)  !< [K]
       real(rk), intent(inout) :: temperature(:)
       real(rk) :: bound, missing, space(new%n)
+      integer(ik) :: l
 
       missing = heat - sum(capacity*temperature)
       bound = bounds(merge(2, 1, missing > 0.0_rk))
       space = 0.0_rk
-      associate (n => new%first_cell - 1)
-         where (takes(new%cell_of)) space(:n) = capacity(:n)*(bound - temperature(:n))
+      associate (n => new%mesh%n_cells)
+         where (takes) space(:n) = capacity(:n)*(bound - temperature(:n))
       end associate
+      do l = 1, new%layers%n
+         if (.not. takes(new%layers%cell(l))) cycle
+         associate (nodes => [new%first_node(l), new%last_node(l)])
+            space(nodes(1):nodes(2)) = capacity(nodes(1):nodes(2)) &
+                                       *(bound - temperature(nodes(1):nodes(2)))
+         end associate
+      end do
       if (.not. abs(sum(space)) > 0.0_rk) return
       where (abs(space) > 0.0_rk)
          temperature = temperature + min(1.0_rk, missing/sum(space))*(bound - temperature)
