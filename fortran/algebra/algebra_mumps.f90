@@ -88,7 +88,9 @@ module algebra_mumps
    contains
       procedure :: analyse
       procedure :: factorize
-      procedure :: solve
+      procedure, private :: solve_all
+      procedure, private :: solve_one
+      generic :: solve => solve_all, solve_one
       procedure :: get_entries
       procedure :: get_schur
       procedure :: condense
@@ -200,7 +202,7 @@ contains
    end subroutine factorize
 
    !> Solve for one or more right-hand sides, which are overwritten by the solutions.
-   subroutine solve(self, x, error, transposed)
+   subroutine solve_all(self, x, error, transposed)
       class(mumps_t), intent(inout) :: self
       real(rk), intent(inout), contiguous, target :: x(:, :)  !< (n, n_rhs)
       type(error_t), allocatable, intent(out) :: error
@@ -215,7 +217,19 @@ contains
       call perform(self, job_solve)
       nullify (self%id%rhs)
       call check_status(self, "solution", error)
-   end subroutine solve
+   end subroutine solve_all
+
+   !> The same for one right-hand side.
+   subroutine solve_one(self, x, error, transposed)
+      class(mumps_t), intent(inout) :: self
+      real(rk), intent(inout), contiguous, target :: x(:)  !< (n)
+      type(error_t), allocatable, intent(out) :: error
+      logical, intent(in), optional :: transposed
+      real(rk), pointer :: column(:, :)
+
+      column(1:size(x), 1:1) => x
+      call self%solve_all(column, error, transposed)
+   end subroutine solve_one
 
    !> The entries of the matrix, as set by `factorize`.
    subroutine get_entries(self, row, col, values)

@@ -409,14 +409,7 @@ contains
 
       associate (chronicle => simulation%chronicle)
          do i = 1, size(chronicle%events, kind=ik)
-            associate (event => chronicle%events(i))
-               if (event%has_place) then
-                  call self%files%tables%event_row(event%time, event%kind, event%detail, &
-                                                   event%fracture, event%xy)
-               else
-                  call self%files%tables%event_row(event%time, event%kind, event%detail)
-               end if
-            end associate
+            call self%files%tables%event_row(chronicle%events(i))
          end do
          do i = 1, size(chronicle%tips, kind=ik)
             call self%files%tables%tip_row(chronicle%tips(i))

@@ -69,15 +69,14 @@ contains
 
    !> Numbers of the unknowns of a cell with layers: mean pressure, that of the rest, and those of
    !! its layers.
-   pure function numbers_of(self, k, mesh_first) result(number)
+   pure function numbers_of(self, k) result(number)
       class(layers_t), intent(in) :: self
       integer(ik), intent(in) :: k  !< of the cells with layers
-      integer(ik), intent(in) :: mesh_first  !< number of its first outer end
       integer(ik) :: number(2 + 3*self%of_cell%length(k))
       integer(ik) :: i
 
       number(1) = at_component(self%cells(k), 3_ik)
-      number(2) = mesh_first + 2
+      number(2) = self%at(2, self%of_cell%at(k, 1_ik)) + 2
       do i = 1, self%of_cell%length(k)
          number(3*i:3*i + 2) = self%at(:, self%of_cell%at(k, i))
       end do
@@ -141,19 +140,19 @@ contains
                                                                      chain%gamma)
             end associate
          end do
-         number = numbers_of(self, k, self%at(2, self%of_cell%at(k, 1_ik)))
+         number = numbers_of(self, k)
          allocate (terms(size(number), size(number)), of_mu(size(number)))
          call find_terms(self, k, terms, of_mu)
          do b = 1, size(number, kind=ik)
             do a = 1, size(number, kind=ik)
                if (number(a) == 0 .or. number(b) == 0) cycle
-               call matrix%add_layer_term(number(a), number(b), -terms(a, b))
+               call matrix%add_layer_term(number(a), number(b), -terms(a, b), .false.)
             end do
          end do
          do i = 2, self%of_cell%length(k)
             ! Only the first layer of a cell has an unknown for the rest of the cell.
             associate (unused => self%at(2, self%of_cell%at(k, i)) + 2)
-               call matrix%add_layer_term(unused, unused, -1.0_rk)
+               call matrix%add_layer_term(unused, unused, -1.0_rk, .false.)
             end associate
          end do
          deallocate (terms, of_mu)
@@ -186,7 +185,7 @@ contains
       p(1:size(unknowns)) => unknowns
       into(1:size(load)) => load
       do k = 1, size(self%cells, kind=ik)
-         number = numbers_of(self, k, self%at(2, self%of_cell%at(k, 1_ik)))
+         number = numbers_of(self, k)
          allocate (terms(size(number), size(number)), of_mu(size(number)), rhs(size(number)))
          call find_terms(self, k, terms, of_mu)
          rhs = 0.0_rk

@@ -37,7 +37,6 @@ module coarse_matrix
    contains
       procedure :: block_at
       procedure :: add_layer_term
-      procedure :: add_layer_flow
       procedure :: is_pressure
       procedure :: is_difference
       procedure :: entry_at
@@ -61,36 +60,25 @@ contains
       end associate
    end function block_at
 
-   !> Add a term between two unknowns to those of the layers; terms above the diagonal blocks are
-   !! left out.
-   pure subroutine add_layer_term(self, row, col, term)
+   !> Add a term between two unknowns to those of the layers, or to their flow [m2/(Pa s)]; terms
+   !! above the diagonal blocks are left out.
+   pure subroutine add_layer_term(self, row, col, term, is_flow)
       class(matrix_t), intent(inout) :: self
       integer(ik), intent(in) :: row, col  !< numbers of the unknowns
       real(rk), intent(in) :: term  !< [m2/Pa]
+      logical, intent(in) :: is_flow
+      integer(ik) :: at(3)
 
       associate (i => (row + 2)/3, j => (col + 2)/3)
          if (j > i) return
-         associate (at => self%layer_terms(row - 3*i + 3, col - 3*j + 3, &
-                                           self%of_layers(self%entry_at(i, j))))
-            at = at + term
-         end associate
+         at = [row - 3*i + 3, col - 3*j + 3, self%of_layers(self%entry_at(i, j))]
       end associate
+      if (is_flow) then
+         self%layer_flow(at(1), at(2), at(3)) = self%layer_flow(at(1), at(2), at(3)) + term
+      else
+         self%layer_terms(at(1), at(2), at(3)) = self%layer_terms(at(1), at(2), at(3)) + term
+      end if
    end subroutine add_layer_term
-
-   !> The same for the flow.
-   pure subroutine add_layer_flow(self, row, col, term)
-      class(matrix_t), intent(inout) :: self
-      integer(ik), intent(in) :: row, col  !< numbers of the unknowns
-      real(rk), intent(in) :: term  !< [m2/(Pa s)]
-
-      associate (i => (row + 2)/3, j => (col + 2)/3)
-         if (j > i) return
-         associate (at => self%layer_flow(row - 3*i + 3, col - 3*j + 3, &
-                                          self%of_layers(self%entry_at(i, j))))
-            at = at + term
-         end associate
-      end associate
-   end subroutine add_layer_flow
 
    !> Which unknowns are pressures.
    pure function is_pressure(self)

@@ -204,17 +204,17 @@ contains
       real(rk), intent(out) :: x(:)  !< [Pa]
       real(rk), intent(out) :: force(:)  !< [N/m], [m2]
       type(error_t), allocatable, intent(out) :: error
-      real(rk), allocatable :: all(:, :)
+      real(rk), allocatable :: all(:)
       integer(ik) :: n
 
       n = condensed%coupling%n_bulk
-      allocate (all(n + size(x), 1), source=0.0_rk)
-      all(n + 1:, 1) = rhs*self%row_factor
+      allocate (all(n + size(x)), source=0.0_rk)
+      all(n + 1:) = rhs*self%row_factor
       call self%solver%solve(all, error)
       self%solutions = self%solutions + 1
-      all(:, 1) = all(:, 1)*self%col_scale
-      x = all(n + 1:, 1)
-      call condensed%coupling%forces(all(:n, 1), x(slopes%x_of_q)*slopes%q_per_x, force)
+      all = all*self%col_scale
+      x = all(n + 1:)
+      call condensed%coupling%forces(all(:n), x(slopes%x_of_q)*slopes%q_per_x, force)
    end subroutine precondition
 
    !> Factorize the system with the present equations.
@@ -350,19 +350,19 @@ contains
       logical, intent(in) :: transposed
       real(rk), intent(inout) :: x(:)  !< (n) replaced by the product
       type(error_t), allocatable, intent(out) :: error
-      real(rk) :: all(size(self%col_scale), 1)
+      real(rk) :: all(size(self%col_scale))
       integer(ik) :: n
 
-      n = size(all, 1) - size(x)
-      all(:n, 1) = 0.0_rk
+      n = size(all) - size(x)
+      all(:n) = 0.0_rk
       if (transposed) then
-         all(n + 1:, 1) = merge(0.0_rk, x*self%col_scale(n + 1:), is_flow)
+         all(n + 1:) = merge(0.0_rk, x*self%col_scale(n + 1:), is_flow)
          call self%solver%solve(all, error, transposed=.true.)
-         x = all(n + 1:, 1)*self%row_factor*self%row_scale
+         x = all(n + 1:)*self%row_factor*self%row_scale
       else
-         all(n + 1:, 1) = x*self%row_factor*self%row_scale
+         all(n + 1:) = x*self%row_factor*self%row_scale
          call self%solver%solve(all, error)
-         x = merge(0.0_rk, all(n + 1:, 1)*self%col_scale(n + 1:), is_flow)
+         x = merge(0.0_rk, all(n + 1:)*self%col_scale(n + 1:), is_flow)
       end if
    end subroutine solve
 

@@ -195,8 +195,8 @@ contains
             if (matrix%of_layers(entry) > 0) then
                do j = 1, count(col > 0)
                   do i = 1, count(row > 0)
-                     call matrix%add_layer_flow(row(i), col(j), sign_row(i)*sign_col(j) &
-                                                *stencil%flow%matrix(a, b))
+                     call matrix%add_layer_term(row(i), col(j), sign_row(i)*sign_col(j) &
+                                                *stencil%flow%matrix(a, b), .true.)
                   end do
                end do
             else

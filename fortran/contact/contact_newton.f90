@@ -333,8 +333,7 @@ contains
       call system%end_restart()
       call system%evaluate(x)
       call system%find_step(.true., step, quality)
-      is_loose = quality%is_singular
-      if (.not. is_loose) is_loose = .not. quality%condition <= largest_condition
+      is_loose = quality%is_singular .or. .not. quality%condition <= largest_condition
    end function is_loose
 
    !> Iterate until convergence or failure. A sufficiently accurate initial guess is not accepted: a
@@ -483,11 +482,10 @@ contains
 
    !> Whether every residual is below the tolerance or below the rounding errors of its terms: in
    !! permeable rock, those of the fluid balance exceed any fixed tolerance.
-   pure function is_rounding(system, x, tolerance) result(is_small)
+   pure logical function is_rounding(system, x, tolerance) result(is_small)
       class(contact_system_t), intent(in) :: system
       real(rk), intent(in) :: x(:)  !< where the system was last evaluated [Pa]
       real(rk), intent(in) :: tolerance  !< relative to the stress scale [-]
-      logical :: is_small
       integer(ik) :: row
 
       is_small = .true.

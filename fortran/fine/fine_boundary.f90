@@ -16,7 +16,7 @@ module fine_boundary
 
    public :: add_point_force, add_side_springs, add_side_stress
    public :: add_side_traction, check_boundary, check_support, clamped_boundary, find_loose
-   public :: fine_boundary_t, free_boundary, hold_side, nearest_node, stand_on_springs
+   public :: fine_boundary_t, free_boundary, mark_side, nearest_node
 
    !> What is given on the outer boundary, or anywhere else; the values belong to the loads.
    type :: fine_boundary_t
@@ -47,38 +47,19 @@ contains
       boundary%sprung = boundary%prescribed
    end function free_boundary
 
-   !> Give a displacement component on one side of the body: 1 alone and 2 alone are rollers, both
-   !! are a clamp.
-   pure subroutine hold_side(fine, side, component, boundary)
+   !> Mark a displacement component of one side of the body: as prescribed, where 1 alone and 2
+   !! alone are rollers and both are a clamp, or as sprung.
+   pure subroutine mark_side(fine, side, component, is_marked)
       type(fine_mesh_t), intent(in) :: fine
       integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
       integer(ik), intent(in) :: component  !< 1: u_x, 2: u_y
-      type(fine_boundary_t), intent(inout) :: boundary
-
-      call mark_side(fine, side, boundary%prescribed(component, :))
-   end subroutine hold_side
-
-   !> Mark the nodes of a side as supported by springs, which are part of the elements' stiffness.
-   pure subroutine stand_on_springs(fine, side, component, boundary)
-      type(fine_mesh_t), intent(in) :: fine
-      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
-      integer(ik), intent(in) :: component  !< 1: u_x, 2: u_y
-      type(fine_boundary_t), intent(inout) :: boundary
-
-      call mark_side(fine, side, boundary%sprung(component, :))
-   end subroutine stand_on_springs
-
-   !> The nodes on a side.
-   pure subroutine mark_side(fine, side, is_marked)
-      type(fine_mesh_t), intent(in) :: fine
-      integer(ik), intent(in) :: side  !< as mesh_t%face_side numbers them
-      logical, intent(inout) :: is_marked(:)  !< (n_nodes)
+      logical, intent(inout) :: is_marked(:, :)  !< (2, n_nodes) of fine_boundary_t
       integer(ik) :: face
 
       do face = 1, size(fine%boundary_sides)
          if (fine%boundary_sides(face) /= side) cycle
-         is_marked(fine%boundary_faces(:, face)) = .true.
-         is_marked(fine%boundary_middles(face)) = .true.
+         is_marked(component, fine%boundary_faces(:, face)) = .true.
+         is_marked(component, fine%boundary_middles(face)) = .true.
       end do
    end subroutine mark_side
 

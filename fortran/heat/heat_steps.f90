@@ -177,7 +177,7 @@ contains
       correction = (half(2)%capacity*(half(2)%temperature - half(1)%temperature) &
                     - state%capacity*(half(1)%temperature - state%temperature) &
                     + 2.0_rk*remainder)/diagonal
-      call solve_scaled(heat, correction, error)
+      call heat%matrix%solve(correction, error)
    end subroutine find
 
    !> Solve for the temperatures after a half: the limited terms and the capacity that the matrix
@@ -206,24 +206,12 @@ contains
          remainder = excess*change
          last = added
          change = (rhs + added)/diagonal
-         call solve_scaled(heat, change, error)
+         call heat%matrix%solve(change, error)
          if (allocated(error)) return
       end do
       remainder = remainder - excess*change
       after = before + change
    end subroutine solve
-
-   !> Solve with the matrix of `factorize`.
-   subroutine solve_scaled(heat, x, error)
-      class(heat_model_t), intent(inout) :: heat
-      real(rk), intent(inout) :: x(:)  !< (unknowns) right-hand side over the diagonal, solution [K]
-      type(error_t), allocatable, intent(out) :: error
-      real(rk) :: columns(size(x), 1)
-
-      columns(:, 1) = x
-      call heat%matrix%solve(columns, error)
-      x = columns(:, 1)
-   end subroutine solve_scaled
 
    !> The share of the correction that keeps temperatures in their range.
    pure real(rk) function share_in_range(heat, state, temperature, correction) result(share)

@@ -10,7 +10,7 @@ module mechanics_faces
    use base_plane, only: norm2
    use base_tolerances, only: same_place
    use fine_boundary, only: add_point_force, add_side_stress, add_side_traction, fine_boundary_t, &
-                            free_boundary, hold_side, nearest_node, stand_on_springs
+                            free_boundary, mark_side, nearest_node
    use fine_element, only: collapsed_rule
    use fine_faces, only: face_conditions_t, face_contact, loaded_everywhere
    use fine_loads, only: add_in_situ_tractions, fine_loads_t, no_loads, set_in_situ_stress
@@ -158,9 +158,9 @@ contains
       do side = 1, size(sides, kind=ik)
          do axis = 1, 2
             if (sides(side)%displacement_given(axis)) then
-               call hold_side(fine, side, axis, boundary)
+               call mark_side(fine, side, axis, boundary%prescribed)
             else if (sides(side)%spring(axis) > 0.0_rk) then
-               call stand_on_springs(fine, side, axis, boundary)
+               call mark_side(fine, side, axis, boundary%sprung)
             end if
          end do
       end do

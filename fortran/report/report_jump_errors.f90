@@ -18,7 +18,7 @@ module report_jump_errors
    private
 
    public :: by_crossings, closure_error, error_of_largest, finite_elements, finite_volumes, &
-             jump_errors_t, jump_law_t, relative_jump_errors, unevenness
+             jump_errors_t, jump_law_t, last_of_zone, relative_jump_errors, unevenness
 
    !> Shares of a discretization, each times a cell's length over a distance [-].
    type :: jump_law_t
@@ -69,12 +69,7 @@ contains
       allocate (errors%reach(size(moves)), errors%kink(size(moves)), source=0.0_rk)
       first = 1
       do while (first <= fracture%n_cells)
-         last = first
-         do while (last < fracture%n_cells)
-            if (moves(last + 1) .neqv. moves(first)) exit
-            if (fracture%cell_fracture(last + 1) /= fracture%cell_fracture(first)) exit
-            last = last + 1
-         end do
+         last = last_of_zone(fracture, moves, first)
          if (moves(first)) call add_zone(fracture, moves, first, last, law, errors)
          first = last + 1
       end do
@@ -84,6 +79,21 @@ contains
       end associate
       errors%of_slip_sum = errors%of_sum - law%less
    end function relative_jump_errors
+
+   !> The last cell of a zone whose cells all move, or all do not. Cells are stored along each
+   !! fracture.
+   pure integer(ik) function last_of_zone(fracture, moves, first) result(last)
+      type(fracture_mesh_t), intent(in) :: fracture
+      logical, intent(in) :: moves(:)  !< (cells)
+      integer(ik), intent(in) :: first
+
+      last = first
+      do while (last < fracture%n_cells)
+         if (moves(last + 1) .neqv. moves(first)) return
+         if (fracture%cell_fracture(last + 1) /= fracture%cell_fracture(first)) return
+         last = last + 1
+      end do
+   end function last_of_zone
 
    !> Errors in a zone of adjacent cells.
    pure subroutine add_zone(fracture, moves, first, last, law, errors)
@@ -158,18 +168,11 @@ contains
       type(fracture_mesh_t), intent(in) :: fracture
       integer(ik), intent(in) :: first, last  !< cells
       real(rk) :: part(first:last)
-      real(rk) :: along(2, 2), lengths(2)
-      integer(ik) :: i, k
+      integer(ik) :: i
 
       part = 0.0_rk
       do i = first, last - 1
-         do k = 1, 2
-            associate (points => fracture%cell_points(:, i + k - 1))
-               along(:, k) = fracture%point_xy(:, points(2)) - fracture%point_xy(:, points(1))
-            end associate
-            lengths(k) = norm2(along(:, k))
-         end do
-         part(i) = abs(along(1, 1)*along(2, 2) - along(2, 1)*along(1, 2))/maxval(lengths)
+         part(i) = part_of_crossing(fracture, i, i + 1)
       end do
    end function kinks
 

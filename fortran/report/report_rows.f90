@@ -8,13 +8,13 @@ module report_rows
    implicit none(type, external)
    private
 
-   public :: chronicle_t, dof_block_t, event_arrest, event_bifurcation, event_growth
+   public :: chronicle_t, dof_block_t, event_t, event_arrest, event_bifurcation, event_growth
    public :: event_growth_jump, event_growth_uncertain, event_growth_onset, event_joint
    public :: event_opening, event_remesh, event_slip_onset, event_replay, event_step_cut
    public :: event_unstable, event_well, event_window, fracture_fields_t, fracture_errors_t
    public :: history_errors_t, history_row_t, intersection_fields_t, heat_row_t, matrix_fields_t
-   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_row_t, entry_errors_t
-   public :: entry_row_t, well_errors_t, well_row_t, window_fields_t
+   public :: probe_row_t, slip_errors_t, slip_event_t, summary_t, tip_errors_t, tip_row_t
+   public :: entry_errors_t, entry_row_t, well_errors_t, well_row_t, window_fields_t
 
    !> Fluid volumes per metre of thickness, from the start of the run on.
    type :: fluid_totals_t

@@ -31,7 +31,6 @@ module report_series
       procedure, private :: put_integer
       procedure, private :: put_text
       generic :: put => put_real, put_integer, put_text
-      procedure :: put_nothing
       procedure :: end_row
       procedure :: is_open
       procedure :: flush => flush_series
@@ -68,72 +67,54 @@ contains
       is_open = allocated(self%path)
    end function is_open
 
+   !> Put a value, or an empty one where a quantity does not apply (absent).
    subroutine put_real(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      real(rk), intent(in) :: value  !< [unit of the name]
-      character(len=number_width + 1) :: item  ! with a comma after it
+      real(rk), intent(in), optional :: value  !< [unit of the name]
+      character(len=number_width) :: item
       integer :: length
-      logical :: is_wanted
 
-      call next_column(self, name, is_wanted)
-      if (.not. is_wanted) return
-      call format_real(value, item(1:number_width), length)
-      item(length + 1:length + 1) = ","
-      call self%buffer%append(item(1:length + 1))
+      length = 0
+      if (present(value)) call format_real(value, item, length)
+      call put_item(self, name, item(:length))
    end subroutine put_real
 
    subroutine put_integer(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       integer(ik), intent(in) :: value
-      character(len=number_width + 1) :: item  ! with a comma after it
+      character(len=number_width) :: item
       integer :: length
-      logical :: is_wanted
 
-      call next_column(self, name, is_wanted)
-      if (.not. is_wanted) return
-      call format_integer(int(value, lk), item(1:number_width), length)
-      item(length + 1:length + 1) = ","
-      call self%buffer%append(item(1:length + 1))
+      call format_integer(int(value, lk), item, length)
+      call put_item(self, name, item(:length))
    end subroutine put_integer
 
    subroutine put_text(self, name, value)
       class(series_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       character(len=*), intent(in) :: value
+      character(len=:), allocatable :: item
       integer :: i
-      logical :: is_wanted
 
-      call next_column(self, name, is_wanted)
-      if (.not. is_wanted) return
-      if (scan(value, ',"'//achar(10)//achar(13)) == 0) then
-         call self%buffer%append(value)
-      else
-         call self%buffer%append('"')
+      item = value
+      if (scan(value, ',"'//achar(10)//achar(13)) > 0) then
+         item = '"'
          do i = 1, len(value)
-            if (value(i:i) == '"') call self%buffer%append('"')
-            call self%buffer%append(value(i:i))
+            if (value(i:i) == '"') item = item//'"'
+            item = item//value(i:i)
          end do
-         call self%buffer%append('"')
+         item = item//'"'
       end if
-      call self%buffer%append(",")
+      call put_item(self, name, item)
    end subroutine put_text
-
-   !> Put an empty value, where a quantity does not apply.
-   subroutine put_nothing(self, name)
-      class(series_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      logical :: is_wanted
-
-      call next_column(self, name, is_wanted)
-      if (is_wanted) call self%buffer%append(",")
-   end subroutine put_nothing
 
    !> End a row.
    subroutine end_row(self)
       class(series_t), intent(inout) :: self
 
+      if (.not. self%is_open()) return
       if (self%column < size(self%names)) call keep_fault(self, "ends")
       self%n_rows = self%n_rows + 1_lk
       self%column = 0
@@ -228,25 +209,26 @@ contains
       end if
    end subroutine flush_series
 
-   !> Go to the column of a value, which must be the next one.
-   subroutine next_column(self, name, is_wanted)
+   !> Put a value as it stands in the file into its column, which must be the next one. A table that
+   !! has not been opened takes no rows.
+   subroutine put_item(self, name, item)
       class(series_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      logical, intent(out) :: is_wanted  !< the column is written
+      character(len=*), intent(in) :: name, item
 
-      is_wanted = .false.
+      if (.not. self%is_open()) return
       if (self%column >= size(self%names)) then
          call keep_fault(self, "goes on with "//name)
       else if (self%names(self%column + 1)%text /= name) then
          call keep_fault(self, "has "//name)
       else
          self%column = self%column + 1
-         is_wanted = self%is_written(self%column)
-         if (.not. self%is_past(self%column)) return
-         is_wanted = .false.
-         call self%buffer%append(",")
+         if (self%is_past(self%column)) then
+            call self%buffer%append(",")
+         else if (self%is_written(self%column)) then
+            call self%buffer%append(item//",")
+         end if
       end if
-   end subroutine next_column
+   end subroutine put_item
 
    !> Keep the first fault.
    subroutine keep_fault(self, what)

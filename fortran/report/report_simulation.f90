@@ -6,7 +6,7 @@ module report_simulation
    use base_texts, only: text_t
    use base_timers, only: timers_t
    use contact_law, only: state_open, state_slip
-   use fine_tip_types, only: complete_errors
+   use fine_tip_types, only: complete_errors, intensity_t
    use growth_front, only: front_t
    use growth_law, only: growth_drive, growth_drive_t
    use growth_network, only: end_gain
@@ -17,7 +17,7 @@ module report_simulation
    use report_rows, only: chronicle_t, event_arrest, event_growth, event_joint, event_opening, &
                           event_remesh, event_slip_onset, fracture_fields_t, history_row_t, &
                           intersection_fields_t, matrix_fields_t, probe_row_t, summary_t, &
-                          tip_row_t, window_fields_t
+                          tip_errors_t, tip_row_t, window_fields_t
    use report_slip, only: slip_catalogue_t, slip_step_t
    use report_watch, only: watch_t
    use scene_plausible, only: doubts_of_scene
@@ -308,35 +308,27 @@ contains
             call complete_errors(shown%drive%crack_modulus, intensity)
          end if
          row%intensity = intensity
-         associate (error => row%error, modulus => shown%drive%crack_modulus)
-            call propagate(intensity%k1, intensity%k2, intensity%k1_error, intensity%k2_error, &
-                           modulus, error%keq, error%g, error%angle)
-         end associate
+         call propagate(intensity, shown%drive%crack_modulus, row%error)
       end associate
    end function row_of_tip
 
    !> Errors of K_eq, of the energy release rate and of the kink from those of K_I and K_II: the
    !! largest differences at the four corners of their range.
-   pure subroutine propagate(k1, k2, k1_error, k2_error, modulus, keq_error, g_error, angle_error)
-      real(rk), intent(in) :: k1, k2, k1_error, k2_error  !< [Pa m^1/2]
+   pure subroutine propagate(k, modulus, error)
+      type(intensity_t), intent(in) :: k
       real(rk), intent(in) :: modulus  !< E' [Pa]
-      real(rk), intent(out) :: keq_error  !< [Pa m^1/2]
-      real(rk), intent(out) :: g_error  !< [J/m2]
-      real(rk), intent(out) :: angle_error  !< [rad]
+      type(tip_errors_t), intent(inout) :: error
       type(growth_drive_t) :: corner, middle
       integer :: i, j
 
-      keq_error = 0.0_rk
-      g_error = 0.0_rk
-      angle_error = 0.0_rk
       if (.not. modulus > 0.0_rk) return
-      middle = growth_drive(k1, k2, modulus)
+      middle = growth_drive(k%k1, k%k2, modulus)
       do j = -1, 1, 2
          do i = -1, 1, 2
-            corner = growth_drive(k1 + i*k1_error, k2 + j*k2_error, modulus)
-            keq_error = max(keq_error, abs(corner%intensity - middle%intensity))
-            g_error = max(g_error, abs(corner%energy - middle%energy))
-            angle_error = max(angle_error, abs(corner%angle - middle%angle))
+            corner = growth_drive(k%k1 + i*k%k1_error, k%k2 + j*k%k2_error, modulus)
+            error%keq = max(error%keq, abs(corner%intensity - middle%intensity))
+            error%g = max(error%g, abs(corner%energy - middle%energy))
+            error%angle = max(error%angle, abs(corner%angle - middle%angle))
          end do
       end do
    end subroutine propagate

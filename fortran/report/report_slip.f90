@@ -24,7 +24,7 @@ module report_slip
    use contact_law, only: state_open, state_stick
    use mesh_geometry, only: fracture_cell_centre
    use mesh_types, only: fracture_mesh_t
-   use report_jump_errors, only: finite_volumes
+   use report_jump_errors, only: finite_volumes, last_of_zone
    use report_rows, only: slip_errors_t, slip_event_t
    implicit none(type, external)
    private
@@ -156,7 +156,7 @@ contains
             first = first + 1
             cycle
          end if
-         cell = last_of_patch(fracture, slides, first)
+         cell = last_of_zone(fracture, slides, first)
          associate (s => [fracture%cell_s(1, first), fracture%cell_s(2, cell)])
             patches = [patches, patch_t(fracture%cell_fracture(first), s)]
          end associate
@@ -172,20 +172,6 @@ contains
       call end_quiet(self)
       call self%last%keep(fracture, step%traction)
    end subroutine follow
-
-   !> The last cell of a patch. Cells are stored along each fracture.
-   pure integer(ik) function last_of_patch(fracture, slides, first) result(last)
-      type(fracture_mesh_t), intent(in) :: fracture
-      logical, intent(in) :: slides(:)  !< (cells)
-      integer(ik), intent(in) :: first
-
-      last = first
-      do while (last < fracture%n_cells)
-         if (.not. slides(last + 1)) return
-         if (fracture%cell_fracture(last + 1) /= fracture%cell_fracture(first)) return
-         last = last + 1
-      end do
-   end function last_of_patch
 
    !> Assign the last of the patches to an event: the first of those with common faces, with which
    !! the others are merged, or a new one.

@@ -187,6 +187,7 @@ contains
       type(mesh_t), intent(in) :: mesh
       type(matrix_fields_t), intent(in) :: fields
       type(material_t), intent(in) :: material
+      real(rk), allocatable :: permeability(:, :)
 
       if (allocated(fields%cell_nodes)) then
          call grid%begin(fields%node_xy, fields%cell_nodes, vtk_quadratic_triangle, time)
@@ -205,8 +206,10 @@ contains
          call grid%add("stress", stress_tensor(fields, material), tensor_components)
       end if
       if (allocated(fields%pressure)) then
-         call grid%add("permeability", permeability_tensor(fields, material, mesh), &
-            & tensor_components)
+         permeability = spread([material%permeability_xx, material%permeability_yy, &
+                                material%permeability_xy], 2, mesh%n_cells)
+         if (allocated(fields%permeability)) permeability = fields%permeability
+         call grid%add("permeability", in_plane(permeability), tensor_components)
       end if
       call grid%add("displacement_error", fields%displacement_error)
       call grid%add("pressure_error", fields%pressure_error)
@@ -327,10 +330,7 @@ contains
       real(rk) :: stress(6, size(fields%stress, 2))  !< xx, yy, zz, xy, yz, xz [Pa]
       real(rk), dimension(size(fields%stress, 2)) :: biot, poisson
 
-      stress(1:2, :) = fields%stress(1:2, :)
-      stress(3, :) = 0.0_rk
-      stress(4, :) = fields%stress(3, :)
-      stress(5:6, :) = 0.0_rk
+      stress = in_plane(fields%stress)
       if (material%plane_stress) return
       poisson = material%poisson
       biot = material%biot
@@ -342,23 +342,14 @@ contains
       end if
    end function stress_tensor
 
-   !> Permeability as a symmetric tensor; zz is 0, without flow out of the plane.
-   pure function permeability_tensor(fields, material, mesh) result(permeability)
-      type(matrix_fields_t), intent(in) :: fields
-      type(material_t), intent(in) :: material
-      type(mesh_t), intent(in) :: mesh
-      real(rk) :: permeability(6, mesh%n_cells)  !< xx, yy, zz, xy, yz, xz [m2]
+   !> A symmetric tensor in the plane with the other components, which are 0.
+   pure function in_plane(plane) result(tensor)
+      real(rk), intent(in) :: plane(:, :)  !< (xx yy xy, n_cells) [any unit]
+      real(rk) :: tensor(6, size(plane, 2))  !< xx, yy, zz, xy, yz, xz
 
-      permeability = 0.0_rk
-      if (allocated(fields%permeability)) then
-         permeability(1:2, :) = fields%permeability(1:2, :)
-         permeability(4, :) = fields%permeability(3, :)
-      else
-         permeability(1, :) = material%permeability_xx
-         permeability(2, :) = material%permeability_yy
-         permeability(4, :) = material%permeability_xy
-      end if
-   end function permeability_tensor
+      tensor = 0.0_rk
+      tensor([1, 2, 4], :) = plane
+   end function in_plane
 
    !> Begin a collection; it is on disk only once it has a file.
    subroutine open_collection(self, path, is_falling)

@@ -10,7 +10,7 @@ module report_tables
    use report_column, only: applies, column_t, well_count
    use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
                              probe_columns, slip_event_columns, tip_columns, well_columns
-   use report_rows, only: entry_row_t, fracture_fields_t, history_row_t, probe_row_t, &
+   use report_rows, only: entry_row_t, event_t, fracture_fields_t, history_row_t, probe_row_t, &
                           slip_event_t, tip_row_t, well_row_t
    use report_series, only: series_t
    use scene_types, only: name_length, scene_t
@@ -131,26 +131,24 @@ contains
          call table%put("connections_per_branch", row%connections_per_branch)
          call table%put("dimensionless_toughness", row%dimensionless_toughness)
          call table%put("dimensionless_leakoff", row%dimensionless_leakoff)
-         associate (error => row%error)
-            call table%put("injected_error_m2", error%injected)
-            call table%put("produced_error_m2", error%produced)
-            call table%put("leakoff_error_m2", error%leakoff)
-            call table%put("outflow_error_m2", error%outflow)
-            call table%put("fracture_fluid_error_m2", error%fracture_fluid)
-            call table%put("rock_fluid_error_m2", error%rock_fluid)
-            call table%put("rock_outflow_error_m2", error%rock_outflow)
-            call table%put("fracture_volume_error_m2", error%fracture_volume)
-            call table%put("max_slip_error_m", error%max_slip)
-            call table%put("max_opening_error_m", error%max_opening)
-            call table%put("seismic_moment_error_nm", error%seismic_moment)
-            call table%put("strain_energy_error_j", error%strain_energy)
-            call table%put("injection_rate_error_m2_s", error%injection_rate)
-            call table%put("injectivity_error_m2_s_pa", error%injectivity)
-            call table%put("stimulated_length_error_m", error%stimulated_length)
-            call table%put("connected_length_error_m", error%connected_length)
-            call table%put("connected_stimulated_error_m", error%connected_stimulated)
-            call table%put("max_slip_rate_error_m_s", error%max_slip_rate)
-         end associate
+         call table%put("injected_error_m2", row%error%injected)
+         call table%put("produced_error_m2", row%error%produced)
+         call table%put("leakoff_error_m2", row%error%leakoff)
+         call table%put("outflow_error_m2", row%error%outflow)
+         call table%put("fracture_fluid_error_m2", row%error%fracture_fluid)
+         call table%put("rock_fluid_error_m2", row%error%rock_fluid)
+         call table%put("rock_outflow_error_m2", row%error%rock_outflow)
+         call table%put("fracture_volume_error_m2", row%error%fracture_volume)
+         call table%put("max_slip_error_m", row%error%max_slip)
+         call table%put("max_opening_error_m", row%error%max_opening)
+         call table%put("seismic_moment_error_nm", row%error%seismic_moment)
+         call table%put("strain_energy_error_j", row%error%strain_energy)
+         call table%put("injection_rate_error_m2_s", row%error%injection_rate)
+         call table%put("injectivity_error_m2_s_pa", row%error%injectivity)
+         call table%put("stimulated_length_error_m", row%error%stimulated_length)
+         call table%put("connected_length_error_m", row%error%connected_length)
+         call table%put("connected_stimulated_error_m", row%error%connected_stimulated)
+         call table%put("max_slip_rate_error_m_s", row%error%max_slip_rate)
          call table%put("unknowns", row%n_unknowns)
          call table%put("heat_stored_j", row%heat%stored)
          call table%put("heat_by_wells_j", row%heat%by_wells)
@@ -165,7 +163,6 @@ contains
       class(tables_t), intent(inout) :: self
       type(tip_row_t), intent(in) :: row
 
-      if (.not. self%all(tips)%is_open()) return
       associate (table => self%all(tips), k => row%intensity)
          call table%put("time_s", row%time)
          call table%put("load_factor", row%time)
@@ -205,11 +202,12 @@ contains
       real(rk), intent(in) :: time  !< [s], or the load factor
       type(fracture_mesh_t), intent(in) :: mesh
       type(fracture_fields_t), intent(in) :: fields
+      character(len=:), allocatable :: state
       real(rk) :: centre(2)
       integer(ik) :: cell
 
-      if (.not. self%all(fractures)%is_open()) return
-      associate (table => self%all(fractures))
+      state = ""
+      associate (table => self%all(fractures), error => fields%error)
          do cell = 1, mesh%n_cells
             centre = fracture_cell_centre(mesh, cell)
             call table%put("time_s", time)
@@ -226,26 +224,21 @@ contains
             call put_if_there(table, "pressure_pa", fields%pressure, cell)
             call put_if_there(table, "void_m", fields%void, cell)
             call put_if_there(table, "flow_m2_s", fields%flow, cell)
-            if (allocated(fields%state)) then
-               call table%put("state", state_name(fields%state(cell)))
-            else
-               call table%put_nothing("state")
-            end if
+            if (allocated(fields%state)) state = state_name(fields%state(cell))
+            call table%put("state", state)
             call table%put("history_row", self%history_rows())
-            associate (error => fields%error)
-               if (allocated(fields%aperture)) then
-                  call put_if_there(table, "aperture_error_m", error%jump_n, cell)
-               else
-                  call table%put_nothing("aperture_error_m")
-               end if
-               call put_if_there(table, "jump_n_error_m", error%jump_n, cell)
-               call put_if_there(table, "jump_t_error_m", error%jump_t, cell)
-               call put_if_there(table, "traction_n_error_pa", error%traction_n, cell)
-               call put_if_there(table, "traction_t_error_pa", error%traction_t, cell)
-               call put_if_there(table, "pressure_error_pa", error%pressure, cell)
-               call put_if_there(table, "flow_error_m2_s", error%flow, cell)
-               call put_if_there(table, "temperature_k", fields%temperature, cell)
-            end associate
+            if (allocated(fields%aperture)) then
+               call put_if_there(table, "aperture_error_m", error%jump_n, cell)
+            else
+               call table%put("aperture_error_m")
+            end if
+            call put_if_there(table, "jump_n_error_m", error%jump_n, cell)
+            call put_if_there(table, "jump_t_error_m", error%jump_t, cell)
+            call put_if_there(table, "traction_n_error_pa", error%traction_n, cell)
+            call put_if_there(table, "traction_t_error_pa", error%traction_t, cell)
+            call put_if_there(table, "pressure_error_pa", error%pressure, cell)
+            call put_if_there(table, "flow_error_m2_s", error%flow, cell)
+            call put_if_there(table, "temperature_k", fields%temperature, cell)
             call table%end_row()
          end do
       end associate
@@ -258,7 +251,6 @@ contains
       type(probe_row_t), intent(in) :: row
       integer(ik) :: i
 
-      if (.not. self%all(probes)%is_open()) return
       associate (table => self%all(probes))
          call table%put("time_s", time)
          call table%put("load_factor", time)
@@ -280,28 +272,24 @@ contains
    end subroutine probe_row
 
    !> Add an event. Values that do not apply are empty.
-   subroutine event_row(self, time, kind, detail, fracture, xy)
+   subroutine event_row(self, event)
       class(tables_t), intent(inout) :: self
-      real(rk), intent(in) :: time  !< [s], or the load factor
-      character(len=*), intent(in) :: kind  !< event_slip_onset .. of report_rows
-      character(len=*), intent(in) :: detail  !< a few words with numbers and units
-      integer(ik), intent(in), optional :: fracture
-      real(rk), intent(in), optional :: xy(2)  !< [m]
-      real(rk), allocatable :: place(:)
+      type(event_t), intent(in) :: event
 
-      if (present(xy)) place = xy
       associate (table => self%all(events))
-         call table%put("time_s", time)
-         call table%put("load_factor", time)
-         call table%put("kind", kind)
-         if (present(fracture)) then
-            call table%put("fracture", fracture)
+         call table%put("time_s", event%time)
+         call table%put("load_factor", event%time)
+         call table%put("kind", event%kind)
+         if (event%has_place) then
+            call table%put("fracture", event%fracture)
+            call table%put("x_m", event%xy(1))
+            call table%put("y_m", event%xy(2))
          else
-            call table%put_nothing("fracture")
+            call table%put("fracture")
+            call table%put("x_m")
+            call table%put("y_m")
          end if
-         call put_if_there(table, "x_m", place, 1_ik)
-         call put_if_there(table, "y_m", place, 2_ik)
-         call table%put("detail", detail)
+         call table%put("detail", event%detail)
          call table%end_row()
       end associate
    end subroutine event_row
@@ -311,7 +299,6 @@ contains
       class(tables_t), intent(inout) :: self
       type(slip_event_t), intent(in) :: event
 
-      if (.not. self%all(slip_events)%is_open()) return
       associate (table => self%all(slip_events))
          call table%put("event", event%number)
          call table%put("time_s", event%time)
@@ -353,7 +340,6 @@ contains
       class(tables_t), intent(inout) :: self
       type(well_row_t), intent(in) :: row
 
-      if (.not. self%all(wells)%is_open()) return
       associate (table => self%all(wells))
          call table%put("time_s", row%time)
          call table%put("well", row%name)
@@ -467,7 +453,7 @@ contains
       if (allocated(values)) then
          call table%put(name, values(i))
       else
-         call table%put_nothing(name)
+         call table%put(name)
       end if
    end subroutine put_if_there
 

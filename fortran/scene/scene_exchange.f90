@@ -39,9 +39,15 @@ contains
       allocate (scene%probes(count_of(sheet, "probe")))
       allocate (scene%restraints(count_of(sheet, "restraint")))
       allocate (scene%point_loads(count_of(sheet, "point_load")))
-      if (sheet%has("region")) allocate (scene%regions(count_of(sheet, "region")))
       value = sheet%records(sheet%find("domain"))%value("shape")
       allocate (scene%parts(merge(0, count_of(sheet, "side"), value%text == "rectangle")))
+      if (sheet%has("region")) then
+         record = sheet%records(sheet%find("material"))
+         record%reading = .true.
+         call exchange_group(record, scene, 1)
+         allocate (scene%regions(count_of(sheet, "region")))
+         scene%regions%material = scene%material
+      end if
       n = 0
       do i = 1, sheet%length
          record = sheet%records(i)

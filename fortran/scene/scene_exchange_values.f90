@@ -15,7 +15,7 @@ module scene_exchange_values
 
    public :: exchange, exchange_domain, exchange_material, exchange_part, exchange_point_load
    public :: exchange_region, exchange_restraint, exchange_side, exchange_temperature, exchange_word
-   public :: not_given, set_names, set_text, to_degrees
+   public :: set_names, set_text, to_degrees
 
    !> Copy one value: if record%reading, from the sheet, where it is set, into the scene's
    !! component; else from the component into the sheet. A component that equals `nothing`, or a
@@ -28,9 +28,6 @@ module scene_exchange_values
       module procedure exchange_logical
       module procedure exchange_text
    end interface exchange
-
-   !> Marks a number of a region's rock that the region does not give; no rock has this value.
-   real(rk), parameter :: not_given = huge(1.0_rk)
 
 contains
 
@@ -236,8 +233,7 @@ contains
       call exchange(record, "storage", material%storage)
    end subroutine exchange_material
 
-   !> Group &region. Numbers of its rock that are not given become not_given; scene_namelist takes
-   !! those of &material instead.
+   !> Group &region. What its rock does not give is that of &material, its value before.
    pure subroutine exchange_region(record, region)
       type(record_t), intent(inout) :: record
       type(region_t), intent(inout) :: region
@@ -251,20 +247,11 @@ contains
       call exchange(record, "x_vertex", region%x_vertex)
       call exchange(record, "y_vertex", region%y_vertex)
       call exchange(record, "curvature", region%curvature)
-      associate (own => region%material)
-         if (record%reading) then
-            own%young = not_given
-            own%poisson = not_given
-            own%biot = not_given
-            own%porosity = not_given
-            own%density = not_given
-            own%toughness = not_given
-            own%heat_capacity = not_given
-            own%heat_conductivity = not_given
-            own%heat_expansion = not_given
-         end if
-         call exchange_rock(record, own)
-      end associate
+      if (record%reading .and. (record%is_set("permeability") .or. &
+                                record%is_set("permeability_xx"))) then
+         region%material%permeability_xy = 0.0_rk  ! where the tensor given here has none
+      end if
+      call exchange_rock(record, region%material)
    end subroutine exchange_region
 
    !> The numbers of a rock that regions may have too; its permeability is isotropic or a tensor.

@@ -6,7 +6,6 @@ module scene_namelist
    use base_number, only: integer_text
    use scene_check, only: check_scene, check_sheet
    use scene_exchange, only: sheet_to_scene
-   use scene_exchange_values, only: not_given
    use scene_fluid_law, only: has_law
    use scene_parameter_table, only: parameters
    use scene_parameters, only: applies, choice_name, choice_value, groups, need_always, &
@@ -16,7 +15,7 @@ module scene_namelist
    use scene_sheet, only: add_record, empty_record, group_index, parameter_index, refuse, sheet_t
    use scene_sides, only: normal_tractions
    use scene_sizes, only: choose_sizes
-   use scene_types, only: first_share, injection_t, material_t, name_length, region_t, scene_t
+   use scene_types, only: first_share, injection_t, name_length, scene_t
    use scene_values, only: default_value, shortened, value_t
    use scene_words, only: is_identifier
    implicit none(type, external)
@@ -258,7 +257,6 @@ contains
          end if
       end associate
       if (allocated(scene%injections)) call name_wells(scene%injections)
-      if (allocated(scene%regions)) call complete(scene%material, scene%regions)
       do i = 1, size(scene%fractures)
          if (scene%fractures(i)%law /= "slip") cycle
          call default(scene%fractures(i)%slip_taper, 0.5_rk*scene%fractures(i)%length())
@@ -289,42 +287,6 @@ contains
       if (.not. allocated(list)) return
       if (size(list) == 1) list = spread(list(1), 1, n)
    end subroutine repeat_value
-
-   !> Complete the rock of regions by the properties of the scene's rock that they do not give.
-   pure subroutine complete(material, regions)
-      type(material_t), intent(in) :: material  !< of the scene
-      type(region_t), intent(inout) :: regions(:)
-      type(material_t) :: own
-      integer :: i
-
-      do i = 1, size(regions)
-         own = regions(i)%material
-         regions(i)%material = material
-         associate (all => regions(i)%material)
-            call take(own%young, all%young)
-            call take(own%poisson, all%poisson)
-            call take(own%biot, all%biot)
-            call take(own%porosity, all%porosity)
-            call take(own%density, all%density)
-            call take(own%toughness, all%toughness)
-            call take(own%heat_capacity, all%heat_capacity)
-            call take(own%heat_conductivity, all%heat_conductivity)
-            call take(own%heat_expansion, all%heat_expansion)
-            if (.not. own%permeability_xx > 0.0_rk) cycle
-            all%permeability_xx = own%permeability_xx
-            all%permeability_yy = own%permeability_yy
-            all%permeability_xy = own%permeability_xy
-         end associate
-      end do
-   end subroutine complete
-
-   !> Replace a value by that of a region, if given.
-   pure subroutine take(own, value)
-      real(rk), intent(in) :: own  !< value of the region, or not_given [any unit]
-      real(rk), intent(inout) :: value  !< [unit of own]
-
-      if (own < not_given) value = own
-   end subroutine take
 
    !> Set the defaults of the tolerances, the smallest step and the interval of written fields,
    !! which without a step is a hundredth of the run.

@@ -283,8 +283,9 @@ contains
    pure real(rk) function largest_pressure(scene, fracture) result(largest)
       type(scene_t), intent(in) :: scene
       integer, intent(in) :: fracture  !< index into scene%fractures
-      integer :: i, k
+      integer :: i
       logical :: is_there
+      logical, allocatable :: is_upper(:)  ! (stages) and not the lower limit of a producer
 
       largest = -huge(1.0_rk)
       do i = 1, size(scene%injections)
@@ -293,13 +294,9 @@ contains
             is_there = well%fracture == fracture
             if (allocated(well%entries)) is_there = any(well%entries%fracture == fracture)
             if (.not. is_there) cycle
-            do k = 1, size(well%pressure)
-               if (well%pressure(k) >= no_limit) cycle
-               if (allocated(well%rate)) then
-                  if (.not. well%rate(k) > 0.0_rk) cycle  ! the lower limit of a producer
-               end if
-               largest = max(largest, well%pressure(k))
-            end do
+            is_upper = well%pressure < no_limit
+            if (allocated(well%rate)) is_upper = is_upper .and. well%rate > 0.0_rk
+            largest = max(largest, maxval(well%pressure, mask=is_upper))
          end associate
       end do
    end function largest_pressure

@@ -404,12 +404,8 @@ contains
       class(scene_t), intent(in) :: self
       integer(ik), intent(in) :: fracture
 
-      radius = self%discretization%rosette_radius
-      associate (usual => self%discretization%size_fracture)
-         if (self%fractures(fracture)%cell_size > 0.0_rk) then
-            radius = radius*(self%fractures(fracture)%cell_size/usual)
-         end if
-      end associate
+      radius = self%discretization%rosette_radius &
+               *(self%cell_size_of(fracture)/self%discretization%size_fracture)
    end function rosette_radius_of
 
    !> Smallest size of cells, or elements, along fractures [m].
@@ -417,10 +413,7 @@ contains
       class(scene_t), intent(in) :: self
       integer(ik) :: i
 
-      size = huge(1.0_rk)
-      do i = 1, ubound(self%fractures, 1)
-         size = min(size, self%cell_size_of(i))
-      end do
+      size = minval([(self%cell_size_of(i), i=1, ubound(self%fractures, 1))])
    end function smallest_cell
 
    !> Edge of the windows of a fracture's tips [m].
@@ -498,10 +491,8 @@ contains
       class(fracture_t), intent(in) :: self
       integer :: k
 
-      length = 0.0_rk
-      do k = 1, min(size(self%x), size(self%y)) - 1
-         length = length + norm2([self%x(k + 1) - self%x(k), self%y(k + 1) - self%y(k)])
-      end do
+      length = sum([(norm2([self%x(k + 1) - self%x(k), self%y(k + 1) - self%y(k)]), &
+                     k=1, min(size(self%x), size(self%y)) - 1)])
    end function fracture_length
 
 end module scene_types

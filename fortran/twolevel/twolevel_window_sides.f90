@@ -2,8 +2,8 @@
 module twolevel_window_sides
    use base_kinds, only: ik, rk
    use fine_boundary, only: add_point_force, add_side_springs, add_side_stress, &
-                            add_side_traction, fine_boundary_t, free_boundary, hold_side, &
-                            nearest_node, stand_on_springs
+                            add_side_traction, fine_boundary_t, free_boundary, mark_side, &
+                            nearest_node
    use fine_mesh, only: fine_mesh_t
    use scene_outline, only: sides_of_scene
    use scene_sides, only: boundary_side_t
@@ -73,10 +73,10 @@ contains
          do axis = 1, 2
             if (self%on_body(side) .and. .not. self%of(side)%displacement_given(axis)) then
                if (self%of(side)%spring(axis) > 0.0_rk) then
-                  call stand_on_springs(fine, side, axis, boundary)
+                  call mark_side(fine, side, axis, boundary%sprung)
                end if
             else
-               call hold_side(fine, side, axis, boundary)
+               call mark_side(fine, side, axis, boundary%prescribed)
             end if
          end do
       end do

@@ -5,7 +5,7 @@ program test_fine_boundary
    use exact_cracks, only: uniform_field
    use exact_fields, only: reactions
    use fine_boundary, only: add_point_force, add_side_springs, add_side_stress, &
-                            add_side_traction, fine_boundary_t, free_boundary, hold_side, &
+                            add_side_traction, fine_boundary_t, free_boundary, mark_side, &
                             nearest_node
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_jump, loaded_everywhere
@@ -66,8 +66,8 @@ contains
 
       call set_body(model)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, left, x, boundary)
-      call hold_side(model%mesh, bottom, y, boundary)
+      call mark_side(model%mesh, left, x, boundary%prescribed)
+      call mark_side(model%mesh, bottom, y, boundary%prescribed)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       call checks%no_error(error, "rollers are set up")
       loads = no_loads(model%mesh)
@@ -108,8 +108,8 @@ contains
       call add_side_springs(model%mesh, right, [spring(1), 0.0_rk], model%stiffness)
       call add_side_springs(model%mesh, top, [0.0_rk, spring(2)], model%stiffness)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, left, x, boundary)
-      call hold_side(model%mesh, bottom, y, boundary)
+      call mark_side(model%mesh, left, x, boundary%prescribed)
+      call mark_side(model%mesh, bottom, y, boundary%prescribed)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       call checks%no_error(error, "springs are set up")
       loads = no_loads(model%mesh)
@@ -177,9 +177,9 @@ contains
       mesh = cracked_rectangle([0.0_rk, 3.0_rk], [0.0_rk, height], [4_ik, 5_ik], 1_ik, 1_ik, 0_ik)
       call model%set_mesh(mesh, elasticity, error)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, left, x, boundary)
-      call hold_side(model%mesh, right, x, boundary)
-      call hold_side(model%mesh, bottom, y, boundary)
+      call mark_side(model%mesh, left, x, boundary%prescribed)
+      call mark_side(model%mesh, right, x, boundary%prescribed)
+      call mark_side(model%mesh, bottom, y, boundary%prescribed)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       loads = no_loads(model%mesh)
       loads%body_force = [0.0_rk, -weight]
@@ -207,9 +207,9 @@ contains
 
       call set_body(model)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, left, x, boundary)
-      call hold_side(model%mesh, right, x, boundary)
-      call hold_side(model%mesh, bottom, y, boundary)
+      call mark_side(model%mesh, left, x, boundary%prescribed)
+      call mark_side(model%mesh, right, x, boundary%prescribed)
+      call mark_side(model%mesh, bottom, y, boundary%prescribed)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       loads = no_loads(model%mesh)
       loads%body_force = [0.0_rk, -weight]
@@ -266,8 +266,8 @@ contains
 
       call set_body(model)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, bottom, x, boundary)
-      call hold_side(model%mesh, bottom, y, boundary)
+      call mark_side(model%mesh, bottom, x, boundary%prescribed)
+      call mark_side(model%mesh, bottom, y, boundary%prescribed)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       loads = no_loads(model%mesh)
       call add_point_force(model%mesh, place, push, loads%force)
@@ -300,8 +300,8 @@ contains
 
       call set_body(model)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, left, x, boundary)
-      call hold_side(model%mesh, right, x, boundary)
+      call mark_side(model%mesh, left, x, boundary%prescribed)
+      call mark_side(model%mesh, right, x, boundary%prescribed)
       boundary%prescribed(y, nearest_node(model%mesh, [0.0_rk, 0.0_rk])) = .true.
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       loads = no_loads(model%mesh)
@@ -335,8 +335,8 @@ contains
                                   [6_ik, 5_ik], 2_ik, 3_ik, 5_ik)
          call model%set_mesh(mesh, elasticity_t(stresses(i), 0.3_rk, 0.0_rk, .true.), error)
          boundary = free_boundary(model%mesh)
-         call hold_side(model%mesh, bottom, x, boundary)
-         call hold_side(model%mesh, bottom, y, boundary)
+         call mark_side(model%mesh, bottom, x, boundary%prescribed)
+         call mark_side(model%mesh, bottom, y, boundary%prescribed)
          call model%prepare(loaded_everywhere(model%mesh), error, boundary)
          loads = no_loads(model%mesh)
          call add_side_traction(model%mesh, top, [0.5_rk, 1.0_rk]*stresses(i), loads%force)
@@ -362,7 +362,7 @@ contains
       boundary = free_boundary(model%mesh)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       call checks%fails_with(error, "can move as a rigid body", "floating body")
-      call hold_side(model%mesh, left, x, boundary)
+      call mark_side(model%mesh, left, x, boundary%prescribed)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)
       call checks%fails_with(error, "can move as a rigid body", "body on rollers on one side")
       boundary = free_boundary(model%mesh)
@@ -374,8 +374,8 @@ contains
       mesh = cracked_rectangle([0.0_rk, 3.0_rk], [0.0_rk, 2.0_rk], [6_ik, 4_ik], 2_ik, 1_ik, 6_ik)
       call model%set_mesh(mesh, rock, error)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, bottom, x, boundary)
-      call hold_side(model%mesh, bottom, y, boundary)
+      call mark_side(model%mesh, bottom, x, boundary%prescribed)
+      call mark_side(model%mesh, bottom, y, boundary%prescribed)
       conditions = loaded_everywhere(model%mesh)
       call model%prepare(conditions, error, boundary)
       call checks%fails_with(error, "can move as a rigid body", "cut body")

@@ -5,7 +5,7 @@ program test_fine_contact
    use base_kinds, only: ik, pi, rk
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use exact_cracks, only: bent_crack, centre_crack, uniform_field
-   use fine_boundary, only: fine_boundary_t, free_boundary, hold_side
+   use fine_boundary, only: fine_boundary_t, free_boundary, mark_side
    use fine_contact, only: contact_t, new_contact
    use fine_elasticity, only: elasticity_t
    use fine_faces, only: face_conditions_t, face_contact, face_law_t, loaded_everywhere
@@ -315,8 +315,8 @@ contains
       mesh = cracked_rectangle([0.0_rk, 3.0_rk], [0.0_rk, 2.0_rk], [6_ik, 4_ik], 2_ik, 1_ik, 6_ik)
       call model%set_mesh(mesh, rock, error)
       boundary = free_boundary(model%mesh)
-      call hold_side(model%mesh, 3_ik, 1_ik, boundary)
-      call hold_side(model%mesh, 3_ik, 2_ik, boundary)
+      call mark_side(model%mesh, 3_ik, 1_ik, boundary%prescribed)
+      call mark_side(model%mesh, 3_ik, 2_ik, boundary%prescribed)
       conditions = loaded_everywhere(model%mesh)
       conditions%condition = face_contact
       conditions%law%contact%friction = 0.5_rk

@@ -4,7 +4,7 @@
 program test_fine_tip_plate
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, hold_side, &
+   use fine_boundary, only: add_side_traction, fine_boundary_t, free_boundary, mark_side, &
                             nearest_node
    use fine_elasticity, only: elasticity_t
    use fine_error, only: correct_intensity, energy_error_t, estimate_error, has_dual
@@ -159,8 +159,8 @@ contains
          call add_side_traction(model%mesh, 4_ik, [stress, 0.0_rk], loads%force)
       end select
       if (load == clamped) then
-         call hold_side(model%mesh, 3_ik, 1_ik, boundary)
-         call hold_side(model%mesh, 3_ik, 2_ik, boundary)
+         call mark_side(model%mesh, 3_ik, 1_ik, boundary%prescribed)
+         call mark_side(model%mesh, 3_ik, 2_ik, boundary%prescribed)
       else
          boundary%prescribed(:, nearest_node(model%mesh, [b, -b])) = .true.
          boundary%prescribed(1, nearest_node(model%mesh, [b, b])) = .true.

@@ -9,8 +9,9 @@ program test_report_run
    use mesh_types, only: mesh_t, network_t, point_boundary, point_joint_t, point_tip
    use report_files, only: make_directory, write_text_file
    use report_record, only: run_record_t, status_finished
-   use report_rows, only: event_slip_onset, event_step_cut, fracture_fields_t, history_row_t, &
-                          intersection_fields_t, matrix_fields_t, probe_row_t, tip_row_t
+   use report_rows, only: event_slip_onset, event_step_cut, event_t, fracture_fields_t, &
+                          history_row_t, intersection_fields_t, matrix_fields_t, probe_row_t, &
+                          tip_row_t
    use report_run, only: run_output_t
    use report_simulation, only: snapshot_t
    use scene_types, only: injection_t, scene_t
@@ -96,8 +97,10 @@ contains
          call output%network%step(2.0_rk*i, network, mesh%fracture)
       end do
       associate (tables => output%tables)
-         call tables%event_row(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, [0.25_rk, 0.5_rk])
-        call tables%event_row(2.0_rk, event_step_cut, "from 2 s to 1 s, as Newton did not converge")
+         call tables%event_row(event_t(2.0_rk, event_slip_onset, "slip 1.0e-5 m", 1_ik, .true., &
+                                       [0.25_rk, 0.5_rk]))
+         call tables%event_row(event_t(time=2.0_rk, kind=event_step_cut, &
+                                       detail="from 2 s to 1 s, as Newton did not converge"))
       end associate
       call output%log("two steps, ""quoted""")
       call output%tick(error)

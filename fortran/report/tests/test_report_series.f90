@@ -29,8 +29,8 @@ program test_report_series
 
    call put_row(1.0_rk, 'a "b", c')
    call table%put("time_s", 1.0e6_rk)
-   call table%put_nothing("absent")
-   call table%put_nothing("kind")
+   call table%put("absent")
+   call table%put("kind")
    call table%put("odd, name", 0.1_rk)
    call table%end_row()
    call checks%is_true(file_text(path) == start, "rows wait for a flush")
