@@ -148,6 +148,7 @@ MADE_AGAIN = {
         "map": _RULE,
         "faces": _RULE,
     },
+    "stated_errors_t": {"position": "set in each step"},
     "stepper_t": _each("longest shortest after_growth", "a setting of the scene")
     | {"tolerance": "a setting of the scene"},
     "loaded_body_t": {"turns": _RULE},

@@ -55,7 +55,7 @@ if (states_errors(self%scene%growth)) then
       & load_errors(self%scene, self%problem, self%now%coarse, self%value_errors, self%tip)
    call note_stated_errors(self%scene, self%front_state_t, self%problem, of_load, &
                            self%step%dt, self%now, self%notes)
-   self%position_error = self%now%stated_errors%tip
+   self%position_error = self%now%stated_errors%position
 end if
 if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
 call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row, &

@@ -84,7 +84,9 @@ module twolevel_errors
    type :: stated_errors_t
       real(rk) :: length = 0.0_rk  !< error of the length of all fractures [m]
       real(rk) :: pressure = 0.0_rk  !< error of the pressure at the wells [Pa]
-      real(rk), allocatable :: tip(:)  !< (tips) errors of the positions [m]
+      real(rk), allocatable :: tip(:)  !< (tips) errors of the positions in equilibrium [m]
+      !> (tips) the same, with what jumps, leads and the time of the onset leave uncertain [m]
+      real(rk), allocatable :: position(:)
       !> part of `length` by which leads exceed these errors [m]
       real(rk), private :: by_leads = 0.0_rk
       logical, private :: has_grown = .false.  !< a tip has grown
@@ -173,7 +175,8 @@ contains
       where (tips%grows) self%tip = max(tips%error/abs(tips%slope), tips%by_time) &
                                     + share*tips%cell*(1.0_rk + leaked) + error_of_bend(tips) &
                                     + tips%by_flow
-      self%length = sum(self%tip) + sum(tips%jump)
+      self%position = self%tip + tips%jump
+      self%length = sum(self%position)
       call age_time_error(self, step, leaked, age)
       before = self%time_error%error
       self%by_leads = 0.0_rk
@@ -214,18 +217,20 @@ contains
    !> Add to the errors of an accepted state the growth that may have begun before.
    pure subroutine await_growth(self, may_have_grown, grows, length, volume)
       class(stated_errors_t), intent(inout) :: self
-      logical, intent(in) :: may_have_grown  !< K_eq of a tip equals K_IC within its error
+      logical, intent(in) :: may_have_grown(:)  !< (tips) K_eq equals K_IC within its error
       logical, intent(in) :: grows  !< a tip has grown in the step
       real(rk), intent(in) :: length  !< of all fractures [m]
       real(rk), intent(in) :: volume  !< of all fractures [m2]
       real(rk) :: by_onset
 
       self%has_grown = self%has_grown .or. grows
-      if (may_have_grown .and. .not. self%may_have_grown) self%volume_then = self%volume
-      self%may_have_grown = may_have_grown
+      if (any(may_have_grown) .and. .not. self%may_have_grown) self%volume_then = self%volume
+      self%may_have_grown = any(may_have_grown)
       self%volume = volume
-      if (self%has_grown .or. .not. may_have_grown .or. .not. volume > self%volume_then) return
+      if (self%has_grown .or. .not. self%may_have_grown) return
+      if (.not. volume > self%volume_then) return
       by_onset = length*(1.0_rk - self%volume_then/volume)
+      where (may_have_grown) self%position = self%position + by_onset
       self%length = self%length + by_onset
       self%pressure = self%pressure + abs(self%slope)*by_onset
    end subroutine await_growth
@@ -237,6 +242,7 @@ contains
       real(rk) :: before
 
       before = self%by_leads
+      self%position = max(self%position, lead)
       ! Of two tips one would have the length that the other one has: counted once.
       self%by_leads = 0.5_rk*sum(max(0.0_rk, lead - self%tip))
       self%length = self%length + (self%by_leads - before)

@@ -216,6 +216,7 @@ contains
       real(rk), intent(in) :: dt  !< [s]
       type(levels_state_t), intent(inout) :: now
       type(notes_t), intent(inout) :: notes
+      real(rk), parameter :: noticeable = 1.01_rk  ! apparent toughness, over K_IC [-]
       type(tip_excess_t) :: tips(size(front%tip))
       real(rk) :: leaked, position_error(size(front%tip))
       integer(ik) :: i
@@ -230,7 +231,7 @@ contains
                       /(tip%scale_of(toughness)*tip%drive%resistance)
          tips%slope = now%segment%falling_slope()
          tips%cell = tip_cell_lengths(tip, problem)
-         where (tip%has_viscous_layer() .and. tips%grows .and. tips%cell > 0.0_rk) &
+         where (tip%viscous_rise > noticeable .and. tips%grows .and. tips%cell > 0.0_rk) &
             tips%by_flow = by_flow(tip%advance, tips%cell)
          position_error = 0.0_rk
          if (allocated(now%stated_errors%tip)) position_error = now%stated_errors%tip
@@ -247,8 +248,8 @@ contains
                                        leaked, now%coarse%time &
                                        - last_switch(scene, now%coarse%time - 0.5_rk*dt))
          if (.not. scene%growth%enabled) return
-         call now%stated_errors%await_growth(any(tip%is_loaded() .and. tip%excess(toughness) &
-                                                 + tips%error >= 0.0_rk), any(tips%grows), &
+         call now%stated_errors%await_growth(tip%is_loaded() .and. tip%excess(toughness) &
+                                             + tips%error >= 0.0_rk, any(tips%grows), &
                                              total_length(front%network), &
                                              sum(problem%model%condensed%length &
                                                  *now%coarse%aperture))

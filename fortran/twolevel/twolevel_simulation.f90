@@ -200,6 +200,9 @@ contains
    self%owes_state = .false.
    if (self%scene%growth%intensities) then
       if (may_grow .and. self%scene%growth%in_equilibrium()) then
+         call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
+                                         self%increments(), self%chronicle)
+         self%position_error = self%now%stated_errors%position
          call note_equilibrium(self, error)
       else
          call evaluate_tips(self, timers, error)
@@ -226,10 +229,6 @@ contains
       call self%count_unknowns()
       call self%heed_limits(error)
       if (allocated(error)) return
-   end if
-   if (may_grow .and. self%scene%growth%in_equilibrium()) then
-      call self%notes%note_separation(self%tip, self%now, self%rules%toughness, &
-                                      self%increments(), self%chronicle)
    end if
    if (self%now%coarse%time >= self%scene%time%end*(1.0_rk - same_time)) then
       if (.not. allocated(self%ending)) self%ending = at_end

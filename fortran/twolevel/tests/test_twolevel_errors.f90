@@ -80,16 +80,19 @@ contains
    subroutine test_onset()
       type(stated_errors_t) :: stated_errors
 
-      call stated_errors%await_growth(.false., .false., 20.0_rk, 6.0_rk)
+      stated_errors%position = [0.0_rk, 0.0_rk]
+      call stated_errors%await_growth([.false., .false.], .false., 20.0_rk, 6.0_rk)
       call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "no tip may have grown")
-      call stated_errors%await_growth(.true., .false., 20.0_rk, 8.0_rk)
+      call stated_errors%await_growth([.true., .false.], .false., 20.0_rk, 8.0_rk)
       call checks%is_close(stated_errors%length, 5.0_rk, 1.0e-12_rk, "one may have grown")
+      call checks%is_close(stated_errors%position(1), 5.0_rk, 1.0e-12_rk, "this tip")
+      call checks%is_close(stated_errors%position(2), 0.0_rk, 0.0_rk, "the other tip")
       stated_errors%length = 0.0_rk
-      call stated_errors%await_growth(.false., .false., 20.0_rk, 10.0_rk)
-      call stated_errors%await_growth(.true., .false., 20.0_rk, 10.0_rk)
+      call stated_errors%await_growth([.false., .false.], .false., 20.0_rk, 10.0_rk)
+      call stated_errors%await_growth([.true., .false.], .false., 20.0_rk, 10.0_rk)
       call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "another start, no fluid since")
-      call stated_errors%await_growth(.true., .true., 20.5_rk, 12.0_rk)
-      call stated_errors%await_growth(.true., .false., 20.5_rk, 14.0_rk)
+      call stated_errors%await_growth([.true., .false.], .true., 20.5_rk, 12.0_rk)
+      call stated_errors%await_growth([.true., .false.], .false., 20.5_rk, 14.0_rk)
       call checks%is_close(stated_errors%length, 0.0_rk, 0.0_rk, "after growth")
    end subroutine test_onset
 

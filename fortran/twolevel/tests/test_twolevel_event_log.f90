@@ -207,6 +207,7 @@ contains
          groups%is_alone = [.false., .false.]
       end associate
       simulation%now%stated_errors%tip = [error, error]
+      simulation%now%stated_errors%position = [error, error]
       call note(simulation, increment)
       simulation%now%groups%kind = [1_ik, 2_ik]
       if (present(other)) then
@@ -237,6 +238,9 @@ contains
          call checks%is_close(simulation%now%stated_errors%length, &
                               max(0.0_rk, abs(gain(1) - gain(2)) - error), 1.0e-15_rk, &
                               "the lead beyond the errors of the positions")
+         call checks%is_close(minval(simulation%now%stated_errors%position), &
+                              max(error, abs(gain(1) - gain(2))), 1.0e-15_rk, &
+                              "the error of the tip that is behind, too")
       end if
    end function n_separations
 
