@@ -60,9 +60,8 @@ module report_columns
          "Sum over all cells of shear modulus times slip so far times length", &
          "seismic_moment_error_nm"), &
       column_t("fracture_length_error_m", "m", with_fluid, &
-        "Estimated error of fracture_length_m if tips have grown, without jumps still to come, "// &
-         "whose times events.csv has with their errors (growth_jump); -1 with law = 'paris' "// &
-         "(no estimate)", an_error), &
+  "Estimated error of fracture_length_m if tips have grown, without jumps to come (growth_jump "// &
+         "of events.csv has their times); -1 with law = 'paris' (no estimate)", an_error), &
       column_t("well_pressure_error_pa", "Pa", with_fluid, &
          "Estimated error of the well pressure, with several wells of their mean; -1 with "// &
          "law = 'paris'", an_error), &

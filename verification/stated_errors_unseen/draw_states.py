@@ -245,4 +245,29 @@ def growing(draw: Draw) -> Scene:
     return scene
 
 
+def driven(draw: Draw) -> Scene:
+    """Wings, some in hot rock, at faults that weaken, or next to a stiff region."""
+    scene = growing(draw)
+    material = scene["material"]
+    if draw.among(True, False):
+        del scene["growth"]["increment"]
+    if draw.among(True, False, False):
+        material.update({"heat_capacity": 2.2e6, "heat_conductivity": 2.6})
+        material["heat_expansion"] = draw.among(1e-5, 2.4e-5)
+        scene["fluid"]["heat_capacity"] = 4.2e6
+        scene["heat"] = {"temperature": 400.0}
+        scene["injection"][0]["temperature"] = draw.among(380.0, 350.0)
+    if draw.among(True, False, False):
+        for fracture in scene["fracture"]:
+            fracture["friction_residual"] = 0.6 * fracture["friction"]
+            fracture["weakening_slip"] = draw.decades(1e-4, 3e-3)
+    if draw.among(True, False, False):
+        w = scene["domain"]["x_max"]
+        stiff = {"young": 2.0 * material["young"], "poisson": material["poisson"]}
+        stiff["toughness"] = material["toughness"] * draw.among(0.5, 2.0)
+        outline = {"x": [0.05 * w, 0.6 * w, 0.6 * w, 0.05 * w], "y": [-w / 2, -w / 2, w / 2, w / 2]}
+        scene["region"] = [{"name": "stiff", **outline, **stiff}]
+    return scene
+
+
 FAMILIES = {"body": body, "injected": injected, "placed": placed, "growing": growing}
