@@ -116,6 +116,12 @@ contains
       call checks%is_close(drop(uptake%theta, 0.0_rk, 0.5_rk*way, n, [0.0_rk, 1.0_rk]), exact, &
                            0.03_rk*exact, "way to an outlet")
       call checks%is_true(error < 0.1_rk, "its error")
+      ! theta grows with the fourth root of s: the flow in time is exact.
+      associate (s_of_theta => effective_s(1.0_rk, .false.))
+         exact = 0.5_rk*uptake%theta/(s_of_theta**0.25_rk*gamma(0.75_rk))
+      end associate
+      call checks%is_close(flow, exact, 0.01_rk*exact, "flow into the line in time")
+      call checks%is_close(fall, 0.25_rk, 1.0e-3_rk, "its power of the time")
       ! Where the rock's front is within the cell the way may be longer: cells of the rock lack it.
       do i = -8, 8
          do k = -8, 8
