@@ -54,7 +54,7 @@ def test_a_bad_condition_is_warned_of(tmp_path: Path) -> None:
 def test_growth_before_the_first_step_is_warned_of(tmp_path: Path) -> None:
     """Friction 0.2 bears less than the 5 MPa of shear under 15 MPa less the fluid's pressure."""
     changes = ("friction = 0.5", "friction = 0.2"), ("intensities = .true.", "enabled = .true.")
-    _, _, _, warnings = run(tmp_path, varied(*changes, ("start = 3600.0, end = 14400.0", "")))
+    _, _, _, warnings = run(tmp_path, varied(*changes, ("end = 18000.0", "end = 3600.0")))
     value = first_value(warnings[-1], "K_eq over K_IC in the initial state ")
     pressure = numbers(tmp_path / "out" / "history.csv", "well_pressure_pa")[0]
     k2 = (5e6 - 0.2 * (15e6 - pressure)) * math.sqrt(math.pi * 0.05)
