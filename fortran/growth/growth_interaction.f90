@@ -176,20 +176,24 @@ contains
       preference_of = preference(self%measured(group, group), spread(1.0_rk, 1, size(group)))
    end function preference_of
 
-   !> Interaction matrix of the groups of tips. Without a measurement the diagonal term is a usual
-   !! slope.
+   !> Interaction matrix of the groups of tips, with the slopes that the last search has found.
+   !! Without a measurement the diagonal term is a usual slope.
    pure function matrix_for(self, group, kind, segment) result(matrix)
       class(interaction_t), intent(in) :: self
       integer(ik), intent(in) :: group(:)  !< tip numbers
       integer(ik), intent(in) :: kind(:)  !< group of each tip, from 1
       type(segment_t), intent(in) :: segment(:)  !< (groups)
       real(rk) :: matrix(size(segment), size(segment))  !< d(K_eq,k/K_IC)/da_l [1/m]
+      !> bounds of a slope that a search has found, over the measured one [-]
+      real(rk), parameter :: flattest = 0.25_rk, steepest = 2.0_rk
       integer :: k
 
       matrix = matrix_of_groups(kind, self%matrix(group, group))
       do k = 1, size(segment)
          if (.not. all(pack(self%is_known(group), kind == k))) then
             matrix(k, k) = segment(k)%falling_slope()
+         else if (segment(k)%slope < 0.0_rk .and. matrix(k, k) < 0.0_rk) then
+            matrix(k, :) = max(flattest, min(steepest, segment(k)%slope/matrix(k, k)))*matrix(k, :)
          end if
       end do
    end function matrix_for

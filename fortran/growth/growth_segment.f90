@@ -33,7 +33,7 @@ module growth_segment
       procedure :: restart
       procedure :: set_out
       procedure :: set_out_to
-      procedure :: beyond_end
+      procedure :: farther
       procedure :: keep_pace
       procedure :: pace
       procedure :: falling_slope
@@ -152,15 +152,15 @@ contains
       self%reached = self%within(-excess/self%slope)
    end subroutine set_out
 
-   !> Distance beyond the end of the segment to which the speed of the tip in the last step would
-   !! take it in a step of length dt [m].
-   elemental real(rk) function beyond_end(self, dt)
+   !> Distance by which the speed of the tip in the last step would take it farther in a step of
+   !! length dt in which it has advanced so far [m].
+   elemental real(rk) function farther(self, dt, advance)
       class(segment_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
+      real(rk), intent(in) :: advance  !< [m]
 
-      beyond_end = self%speed*dt
-      if (self%is_open) beyond_end = beyond_end + self%lowest() - self%length
-   end function beyond_end
+      farther = self%speed*dt - advance
+   end function farther
 
    !> Put the tip at a distance from the start of the segment, within the admissible range.
    elemental subroutine set_out_to(self, distance)

@@ -293,7 +293,13 @@ contains
       call self%tape%keep("joins", joins)
       call self%tape%keep("wants", wants)
       if (.not. (trial%has_joined .or. trial%jumps)) then
-         trial%time_error = self%step_error(search%dt)
+         ! Growth through a new segment is in equilibrium at the end of the step, however sudden it
+         ! is: the error is at most that of the first try, in which tips have not begun one.
+         if (any(search%begun > 0)) then
+            trial%time_error = min(trial%time_error, self%step_error(search%dt))
+         else
+            trial%time_error = self%step_error(search%dt)
+         end if
       end if
       if (any(joins)) then
          call join(self, search, joins, trial)
@@ -326,6 +332,7 @@ contains
          return
       end if
       search%is_over = .true.
+      trial%has_begun = any(search%begun > 0)
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
                                                self%increments())/paces(self)])
       call self%pace%see_end(self%tape, self%tip%excess(self%rules%toughness), &
@@ -350,7 +357,7 @@ contains
    pure function paces(self)
       class(two_levels_t), intent(in) :: self
       real(rk) :: paces(size(self%tip))
-      real(rk), parameter :: part = 0.35_rk
+      real(rk), parameter :: part = 0.175_rk
 
       associate (length => self%now%segment%length, increment => self%increments())
          paces = merge(min(length, increment), increment, length > 0.0_rk)
@@ -404,9 +411,11 @@ contains
                                   self%increments())
       where (self%now%segment%accepted > 0.0_rk) self%tip%kink = 0.0_rk  ! straight segments
       ! Behind a sharp kink a path begins by a jump: its length says nothing of the next step.
-      call self%now%segment%pace(self%tip%advance, dt, &
-                                 self%tip%excess(self%rules%toughness) >= -tolerance .and. &
-                                 abs(self%tip%kink) < sharp)
+      associate (segment => self%now%segment)
+         call segment%pace(self%tip%advance, dt, &
+                           (self%tip%excess(self%rules%toughness) >= -tolerance .or. &
+                            segment%reached > segment%lowest()) .and. abs(self%tip%kink) < sharp)
+      end associate
       self%now%segment%gain = self%now%segment%gain + self%tip%advance
       call self%now%groups%accept(self%tip%excess(self%rules%toughness), &
                                   self%tip%advance, self%increments())

@@ -11,7 +11,7 @@ module twolevel_levels_state
    use heat_state, only: heat_state_t
    use mesh_types, only: network_t
    use twolevel_errors, only: stated_errors_t
-   use twolevel_trend, only: trend_t
+   use twolevel_trend, only: rates_t, trend_t
    use twolevel_windows_state, only: windows_state_t
    implicit none(type, external)
    private
@@ -43,7 +43,7 @@ module twolevel_levels_state
       type(tip_groups_t) :: groups  !< tip groups
       type(windows_state_t) :: windows
       type(windows_state_t) :: reference  !< state of the body as one window
-      type(trend_t) :: trend  !< rates of the last accepted step
+      type(trend_t) :: trend  !< rates of accepted steps
       type(stated_errors_t) :: stated_errors  !< estimated errors of lengths and pressures
       type(fluid_totals_t) :: fluid
       type(heat_state_t) :: heat
@@ -197,10 +197,19 @@ contains
    pure type(part_t) function trend_part(trend) result(part)
       type(trend_t), intent(in) :: trend
 
-      part = part_t("rates", [trend%dt, numbers(trend%rock), numbers(trend%fracture), &
-                              flat(trend%jump), some_truths(trend%knows_rock), &
-                              some_truths(trend%knows_fracture), trend%pressure, trend%jumps, &
+      part = part_t("rates", [rates(trend%last), rates(trend%quiet), trend%pressure, trend%jumps, &
                               trend%least_pressure, trend%least_jump])
+
+   contains
+
+      pure function rates(of) result(all)
+         type(rates_t), intent(in) :: of
+         real(rk), allocatable :: all(:)
+
+         all = [of%dt, numbers(of%rock), numbers(of%fracture), flat(of%jump), &
+                some_truths(of%knows_rock), some_truths(of%knows_fracture)]
+      end function rates
+
    end function trend_part
 
    pure type(part_t) function certainty_part(stated_errors) result(part)

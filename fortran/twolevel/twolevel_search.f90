@@ -9,6 +9,7 @@ module twolevel_search
    use growth_targets, only: target_none
    use twolevel_moves, only: arrivals, at_joints, excess_max, keep_together, onset, overshoots, &
                              set_out, tolerance
+   use twolevel_places, only: advances
    use twolevel_probe, only: previous_try_t
    use twolevel_refinement, only: again_max, find_refinements, is_uncertain
    use twolevel_segments, only: begin_segments, join_targets
@@ -19,9 +20,9 @@ module twolevel_search
 
    public :: begin_early, begin_wanted, join, search_t, see_overshoot, stop_gained
 
-   !> New segments that a tip may begin in a step without a jump. The step control aims at less than
-   !! one; a step that is a little longer need not be tried again.
-   integer, parameter :: segments_max = 2
+   !> New segments that a tip may begin in a step without a jump. The step control aims at one and a
+   !! half at most; a step that is a little longer need not be tried again.
+   integer, parameter :: segments_max = 3
 
    !> State of the tries of a step.
    type :: search_t
@@ -197,7 +198,8 @@ contains
       real(rk) :: beyond(size(self%tip)), excess(size(self%tip))
       integer(ik) :: i
 
-      beyond = self%now%segment%beyond_end(search%dt)
+      beyond = self%now%segment%farther(search%dt, advances(self%front_state_t, self%start, &
+                                                            self%now%segment, self%increments()))
       associate (toughness => self%rules%toughness, far => are_beyond(self))
          if (self%step%refined < again_max .and. &
              any([(wants(i) .and. is_uncertain(self%tip(i), self%now%segment(i), self%network, &
@@ -231,7 +233,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(wants)
          if (.not. wants(i)) cycle
-         if (self%tip(i)%is_viscous() .and. .not. search%may_jump) then
+         if ((beyond(i) > 0.0_rk .or. self%tip(i)%is_viscous()) .and. .not. search%may_jump) then
             call self%now%segment(i)%set_out_to(beyond(i))
          else
             call set_out(self%now%segment(i), excess(i), search%may_jump, &

@@ -354,8 +354,8 @@ contains
                                                   least_volume(self, dt)))
          end if
          ! Rates jump where a well is switched: the length of the step before does not count.
-         if (self%step%is_after_switch .and. trend%dt > dt) then
-            error = 0.5_rk*(1.0_rk + trend%dt/dt)*error
+         if (self%step%is_after_switch .and. trend%last%dt > dt) then
+            error = 0.5_rk*(1.0_rk + trend%last%dt/dt)*error
          end if
       end associate
    end function step_error

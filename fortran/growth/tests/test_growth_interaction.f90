@@ -137,8 +137,9 @@ contains
                                   mask=evaluated), 0.0_rk, 1.0e-14_rk, "the others are updated")
    end subroutine test_not_evaluated
 
-   !> Interaction of groups: the sum over their tips, or the slope of a segment where a tip has not
-   !! been measured.
+   !> Interaction of groups: the sum over their tips, times the slope that the last search has found
+   !! over the measured one, within bounds; or the slope of a segment where a tip has not been
+   !! measured.
    subroutine test_matrix()
       type(interaction_t) :: interaction
       type(segment_t) :: segment(n)
@@ -146,12 +147,18 @@ contains
 
       all_of_it = truth()
       segment = pieces()
-      segment%slope = -7.0_rk
+      segment%slope = 0.0_rk
       call measure(interaction, segment)
       single = interaction%matrix_for(all_tips, spread(1_ik, 1, n), segment(1:1))
       call checks%is_close(single(1, 1), sum(all_of_it)/n, 1.0e-14_rk, "one kind")
       matrix = interaction%matrix_for(all_tips, [1_ik, 1_ik, 2_ik, 2_ik], segment([1, 3]))
       call checks%is_close(matrix(1, 2), sum(all_of_it(:2, 3:))/2, 1.0e-14_rk, "two kinds")
+      segment%slope = [0.5_rk, 0.0_rk, 100.0_rk, 0.0_rk]*sum(all_of_it)/n
+      single = interaction%matrix_for(all_tips, spread(1_ik, 1, n), segment(1:1))
+      call checks%is_close(single(1, 1), 0.5_rk*sum(all_of_it)/n, 1.0e-14_rk, "half as steep")
+      single = interaction%matrix_for(all_tips, spread(1_ik, 1, n), segment(3:3))
+      call checks%is_close(single(1, 1), 2.0_rk*sum(all_of_it)/n, 1.0e-14_rk, "at most twice")
+      segment%slope = -7.0_rk
       call interaction%begin(n)
       matrix = interaction%matrix_for(all_tips, [1_ik, 1_ik, 2_ik, 2_ik], segment([1, 3]))
       call checks%is_close(maxval(abs(matrix - reshape([-7.0_rk, 0.0_rk, 0.0_rk, -7.0_rk], &

@@ -207,10 +207,10 @@ contains
       call checks%is_close(dt, begun, 0.021_rk*begun, "where it is")
    end subroutine test_sudden
 
-   !> In equilibrium a tip advances by at most three quarters of a segment in a step.
+   !> In equilibrium a tip advances by at most one and a half segments in a step.
    subroutine test_advance()
       type(stepper_t) :: stepper
-      real(rk), parameter :: far = 0.9_rk, half = 0.5_rk
+      real(rk), parameter :: far = 1.8_rk, half = 1.0_rk
 
       call stepper%begin(chosen)
       call stepper%step_done(trial_t(converged=.true., advance=far), 40.0_rk)
@@ -361,7 +361,7 @@ contains
       call checks%is_close(dt, 8.0_rk, 1.0e-12_rk, "as usual beyond")
       dt = 64.0_rk
       call stepper%cut(too_far, dt, is_too_short)
-      call stepper%step_done(trial_t(converged=.true., advance=0.3_rk), dt)
+      call stepper%step_done(trial_t(converged=.true., advance=0.6_rk), dt)
       call checks%is_close(stepper%next, 64.0_rk, 1.0e-12_rk, "growth limits steps by itself")
       dt = 64.0_rk
       call stepper%cut(too_far, dt, is_too_short)
