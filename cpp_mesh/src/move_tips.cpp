@@ -14,14 +14,14 @@ namespace cpp_mesh {
 namespace {
 
 // A piece may become so many times longer, or shorter.
-constexpr double largest_ratio = 3.0;
+constexpr double largest_stretch = 3.0;
 
 // It may turn by up to this [rad].
 constexpr double largest_turn = 0.3;
 
 // Cells may get smaller angles than they have, down to this one [rad], and those that have smaller
 // ones keep this share of its sine.
-constexpr double fair_angle = 0.3;
+constexpr double fair_moved_angle = 0.3;
 constexpr double kept_shape = 0.9;
 
 // Displacements are as good as this share of the largest.
@@ -126,7 +126,7 @@ private:
         }
         const double ratio = move.ratio();
         const double turn = angle_between(move.from - move.start, move.to - move.start);
-        if (!(ratio <= largest_ratio && ratio >= 1.0 / largest_ratio && turn <= largest_turn))
+        if (!(ratio <= largest_stretch && ratio >= 1.0 / largest_stretch && turn <= largest_turn))
             throw MeshError("a tip has moved too far");
         const int node = made_.split.points[tip->point].plane_node;
         if (old_.xy[node] != move.from)
@@ -231,7 +231,7 @@ private:
     }
 
     void check_shapes() const {
-        const double fair = std::sin(fair_angle);
+        const double fair = std::sin(fair_moved_angle);
         for (const Triangle& cell : old_.cells) {
             const auto shape = [&](const std::vector<Vec2>& xy) {
                 return sine_of_smallest_angle(xy[cell[0]], xy[cell[1]], xy[cell[2]]);

@@ -2,6 +2,7 @@
 
 #include "boundary.hpp"
 #include "check_mesh.hpp"
+#include "flat_cells.hpp"
 #include "gmsh_session.hpp"
 #include "lone_sectors.hpp"
 #include "patch_rim.hpp"
@@ -45,8 +46,9 @@ std::vector<Triangle> new_cells(const PatchStyle& style, const Skeleton& skeleto
         // As at the outer boundary: cells start from the length of short edges there.
         limit_sizes_at_short_edges(task.old_mesh.specification.domain, region.loops[0], task.xy,
                                    task.made.size);
-        const std::vector<Triangle> triangles =
+        std::vector<Triangle> triangles =
             GmshSession::shared()->triangulate(region, task.made.size, task.xy);
+        turn_flat_cells(task.xy, region.embedded, triangles);
         cells.insert(cells.end(), triangles.begin(), triangles.end());
     }
     for (std::size_t k = 0; k < skeleton.rings.size(); ++k)

@@ -12,8 +12,10 @@ namespace cpp_mesh {
 
 namespace {
 
-constexpr double margin_in_cells = 2.0;
-constexpr double largest_ratio = 2.0;
+// The second margin is tried where the first leads to no valid mesh.
+constexpr double first_margin = 2.0;
+constexpr double second_margin = 4.0;
+constexpr double largest_size_ratio = 2.0;
 
 void check_request(const Mesh& old_mesh, double radius, double size) {
     if (!(size > 0.0 && std::isfinite(size) && radius >= 0.0 && std::isfinite(radius)))
@@ -95,11 +97,8 @@ bool has_joints(const Graph& graph) {
            });
 }
 
-} // namespace
-
-Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2>& centres,
-            double radius, double size) {
-    check_request(old_mesh, radius, size);
+Mesh remesh_within(double margin_in_cells, const Mesh& old_mesh, const Network& network,
+                   const std::vector<Vec2>& centres, double radius, double size) {
     Tolerances tolerances = tolerances_for(old_mesh.specification.domain.box(), size);
     tolerances.near_miss *= nearer;
     PatchTask task(old_mesh, network, tolerances);
@@ -108,7 +107,7 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
     PatchRequest request;
     request.marked = cells_in_discs(old_mesh.plane, centres, radius);
     request.margin_in_cells = margin_in_cells;
-    request.largest_ratio = largest_ratio;
+    request.largest_ratio = largest_size_ratio;
     for (const GraphEdge& edge : task.graph.edges) {
         if (edge.old_cell >= 0)
             continue;
@@ -129,6 +128,18 @@ Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2
     Mesh mesh = mesh_patch(style, task, patch);
     mesh.map = map_of_patch(old_mesh.plane, patch.is_made_anew, mesh.plane);
     return mesh;
+}
+
+} // namespace
+
+Mesh remesh(const Mesh& old_mesh, const Network& network, const std::vector<Vec2>& centres,
+            double radius, double size) {
+    check_request(old_mesh, radius, size);
+    try {
+        return remesh_within(first_margin, old_mesh, network, centres, radius, size);
+    } catch (const MeshError&) {
+        return remesh_within(second_margin, old_mesh, network, centres, radius, size);
+    }
 }
 
 } // namespace cpp_mesh

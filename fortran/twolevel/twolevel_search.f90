@@ -82,7 +82,7 @@ contains
       type(search_t), intent(in) :: search
       logical, intent(in) :: far(:)  !< (tips)
       type(trial_t), intent(inout) :: trial
-      real(rk), parameter :: aim = 0.75_rk*excess_max
+      real(rk), parameter :: aim = 0.75_rk*excess_max, many = 7.5_rk
 
       trial%goes_too_far = .true.
       associate (before => self%last%front%tip%excess(self%rules%toughness), &
@@ -92,9 +92,10 @@ contains
          trial%onset = onset(before, after, far)
          trial%admissible = minval([1.0_rk, pack((aim - before)/(after - before), &
                                                  far .and. after > aim .and. before < aim)])
-         ! Growth that raises K_eq is a jump, in a step of any length.
-         if (any(far .and. search%begun > 0 .and. &
-                 self%tip%excess(self%rules%toughness) > after)) then
+         ! Growth that raises K_eq, or by which it falls so slowly that it would go on for more than
+         ! `many` segments, is a jump, in a step of any length.
+         if (any(far .and. search%begun > 0 .and. self%tip%excess(self%rules%toughness) &
+                 > after*(1.0_rk - search%begun/many))) then
             trial%admissible = min(trial%admissible, search%moment/search%dt)
          end if
       end associate
