@@ -85,10 +85,14 @@ contains
       type(archive_t), intent(inout) :: archive
       character(len=*), intent(in) :: name
       type(trend_t), intent(inout) :: trend
+      integer(lk) :: has_quiet
 
       call archive%enter(name)
       call visit_rates(archive, "last", trend%last)
-      call visit_rates(archive, "quiet", trend%quiet)
+      has_quiet = merge(1_lk, -1_lk, allocated(trend%quiet))
+      call archive%count("quiet", has_quiet)
+      if (archive%is_loading .and. has_quiet > 0_lk) allocate (trend%quiet)
+      if (has_quiet > 0_lk) call visit_rates(archive, "quiet", trend%quiet)
       call archive%item("pressure", trend%pressure)
       call archive%item("jumps", trend%jumps)
       call archive%item("least_pressure", trend%least_pressure)

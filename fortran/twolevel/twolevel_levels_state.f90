@@ -197,8 +197,9 @@ contains
    pure type(part_t) function trend_part(trend) result(part)
       type(trend_t), intent(in) :: trend
 
-      part = part_t("rates", [rates(trend%last), rates(trend%quiet), trend%pressure, trend%jumps, &
+      part = part_t("rates", [rates(trend%last), trend%pressure, trend%jumps, &
                               trend%least_pressure, trend%least_jump])
+      if (allocated(trend%quiet)) part%value = [part%value, rates(trend%quiet)]
 
    contains
 

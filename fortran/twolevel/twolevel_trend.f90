@@ -35,7 +35,8 @@ module twolevel_trend
    !> Rates of accepted steps, and ranges of the quantities.
    type :: trend_t
       type(rates_t) :: last  !< of the last step
-      type(rates_t) :: quiet  !< of the last step in which no tip began a segment
+      !> of the last step in which no tip began a segment, if that is an earlier one
+      type(rates_t), allocatable :: quiet
       real(rk) :: pressure(2) = 0.0_rk  !< lowest and highest so far [Pa]
       real(rk) :: jumps(2) = 0.0_rk  !< lowest and highest so far [m]
       real(rk) :: least_pressure = 0.0_rk  !< least range of the pressure [Pa]
@@ -66,7 +67,6 @@ contains
             allocate (last%rock(n), last%fracture(m), last%jump(2, m), source=0.0_rk)
             allocate (last%knows_rock(n), last%knows_fracture(m), source=at_rest)
          end associate
-         self%quiet = self%last
       end associate
       self%least_pressure = least*pressure_scale
       self%least_jump = self%least_pressure*length/stiffness
@@ -104,8 +104,11 @@ contains
       call see(seen, after)
       associate (pressure => max(self%least_pressure, width(seen%pressure)), &
                  jump => max(self%least_jump, width(seen%jumps)))
-         step_error = min(error_by(self%last, before, after, dt, area, length, pressure, jump), &
-                          error_by(self%quiet, before, after, dt, area, length, pressure, jump))
+         step_error = error_by(self%last, before, after, dt, area, length, pressure, jump)
+         if (allocated(self%quiet)) then
+            step_error = min(step_error, error_by(self%quiet, before, after, dt, area, length, &
+                                                  pressure, jump))
+         end if
       end associate
    end function step_error
 
@@ -158,6 +161,11 @@ contains
       logical, intent(in) :: has_begun  !< a tip began a segment in the step
       integer(ik) :: n
 
+      if (.not. has_begun) then
+         if (allocated(self%quiet)) deallocate (self%quiet)
+      else if (.not. allocated(self%quiet) .and. self%last%dt > 0.0_rk) then
+         self%quiet = self%last
+      end if
       associate (last => self%last)
          n = size(last%rock, kind=ik)
          last%rock = (after%unknowns(3, :n) - before%unknowns(3, :n))/dt
@@ -168,7 +176,6 @@ contains
          last%knows_fracture = .true.
          last%dt = dt
       end associate
-      if (.not. (has_begun .and. self%quiet%dt > 0.0_rk)) self%quiet = self%last
       call see(self, after)
    end subroutine accept
 
@@ -178,7 +185,7 @@ contains
       type(mesh_map_t), intent(in) :: map
 
       call transfer_rates(self%last, map)
-      call transfer_rates(self%quiet, map)
+      if (allocated(self%quiet)) call transfer_rates(self%quiet, map)
    end subroutine transfer
 
    pure subroutine transfer_rates(rates, map)
