@@ -172,7 +172,7 @@ contains
          return
       end if
       if (is_first .and. .not. search%is_last) then
-         trial%time_error = self%step_error(search%dt)
+         trial%time_error = self%step_error(search%dt, has_begun=.false.)
          search%is_over = self%errs(trial%time_error/much)
          call self%tape%keep("over", search%is_over)
          if (search%is_over) return
@@ -293,13 +293,7 @@ contains
       call self%tape%keep("joins", joins)
       call self%tape%keep("wants", wants)
       if (.not. (trial%has_joined .or. trial%jumps)) then
-         ! Growth through a new segment is in equilibrium at the end of the step, however sudden it
-         ! is: the error is at most that of the first try, in which tips have not begun one.
-         if (any(search%begun > 0)) then
-            trial%time_error = min(trial%time_error, self%step_error(search%dt))
-         else
-            trial%time_error = self%step_error(search%dt)
-         end if
+         trial%time_error = self%step_error(search%dt, any(search%begun > 0))
       end if
       if (any(joins)) then
          call join(self, search, joins, trial)

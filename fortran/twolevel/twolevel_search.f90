@@ -22,7 +22,7 @@ module twolevel_search
 
    !> New segments that a tip may begin in a step without a jump. The step control aims at one and a
    !! half at most; a step that is a little longer need not be tried again.
-   integer, parameter :: segments_max = 3
+   integer, parameter :: segments_max = 2
 
    !> State of the tries of a step.
    type :: search_t
@@ -131,7 +131,7 @@ contains
       begins = [(all(begins .or. search%kind /= search%kind(i)), i=1, size(wants))]
       call self%tape%keep("early", begins)
       if (.not. any(begins)) return
-      trial%time_error = self%step_error(search%dt)
+      trial%time_error = self%step_error(search%dt, any(search%begun > 0))
       call begin_wanted(self, search, begins, timers, trial, error)
    end subroutine begin_early
 

@@ -330,9 +330,10 @@ contains
    end subroutine explain
 
    !> Relative time error of a step of length dt to the present state [-].
-   function step_error(self, dt) result(error)
+   function step_error(self, dt, has_begun) result(error)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
+      logical, intent(in) :: has_begun  !< a tip began a segment in the step
       real(rk) :: error
       real(rk) :: area(self%problem%mesh%n_cells)
       integer(ik) :: c
@@ -341,12 +342,13 @@ contains
          do c = 1, self%problem%mesh%n_cells
             area(c) = cell_area(self%problem%mesh, c)
          end do
-         error = trend%step_error(self%before, self%now%coarse, dt, area, model%condensed%length)
+         error = trend%step_error(self%before, self%now%coarse, dt, area, &
+                                  model%condensed%length, has_begun)
          ! The pressure that heat causes may be confined to a small part of the rock.
          if (allocated(model%rock%temperature)) then
             error = max(error, trend%step_error(self%before, self%now%coarse, dt, &
                                                 area*abs(model%rock%temperature), &
-                                                model%condensed%length))
+                                                model%condensed%length, has_begun))
          end if
          if (model%wells%n_all > 0 .and. trend%is_known()) then
             error = max(error, trend%volume_error(self%before%well_flow, &

@@ -259,7 +259,7 @@ contains
          if (allocated(error)) return
          if (is_settled) exit
       end do
-      trial%time_error = self%step_error(self%step%dt)
+      trial%time_error = self%step_error(self%step%dt, has_begun=.false.)
       if (.not. is_last) then
          call share_before_switch(self, self%step%dt, punctual, trial%switch, timers, error)
       end if

@@ -8,8 +8,8 @@
 !! jump however short the step is.
 !!
 !! Where tips run through a segment in one step and wait in the next, rates differ from step to step
-!! however short the steps are: the rates of the last step in which no tip began a segment are
-!! known too, and the smaller of the two errors counts.
+!! however short the steps are. In a step in which no tip begins a segment the rates of the last such
+!! step count too, if they give the smaller error.
 module twolevel_trend
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
@@ -91,12 +91,13 @@ contains
 
    !> Time error of a step from `before` to `after`, relative to the ranges; 0 where no rate is
    !! known [-].
-   pure real(rk) function step_error(self, before, after, dt, area, length)
+   pure real(rk) function step_error(self, before, after, dt, area, length, has_begun)
       class(trend_t), intent(in) :: self
       type(state_t), intent(in) :: before, after
       real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: area(:)  !< areas of the cells [m2]
       real(rk), intent(in) :: length(:)  !< lengths of the fracture cells [m]
+      logical, intent(in) :: has_begun  !< a tip began a segment in the step
       type(trend_t) :: seen
 
       seen%pressure = self%pressure
@@ -105,7 +106,7 @@ contains
       associate (pressure => max(self%least_pressure, width(seen%pressure)), &
                  jump => max(self%least_jump, width(seen%jumps)))
          step_error = error_by(self%last, before, after, dt, area, length, pressure, jump)
-         if (allocated(self%quiet)) then
+         if (allocated(self%quiet) .and. .not. has_begun) then
             step_error = min(step_error, error_by(self%quiet, before, after, dt, area, length, &
                                                   pressure, jump))
          end if
