@@ -112,6 +112,9 @@ contains
       call archive%list("jump", rates%jump, "2, fcells")
       call archive%list("knows_rock", rates%knows_rock, "cells")
       call archive%list("knows_fracture", rates%knows_fracture, "fcells")
+      call archive%agree(name, [allocated(rates%rock), allocated(rates%fracture), &
+                                allocated(rates%jump), allocated(rates%knows_rock), &
+                                allocated(rates%knows_fracture)])
       call archive%leave()
    end subroutine visit_rates
 
@@ -205,9 +208,10 @@ contains
       call archive%list("linear", followed%linear, of)
       call archive%list("error", followed%error, of)
       associate (f => followed)
-         call archive%agree(name, [allocated(f%first), allocated(f%value), allocated(f%rate), &
-                                   allocated(f%largest), allocated(f%of_step), allocated(f%sum), &
-                                   allocated(f%linear), allocated(f%error)])
+         call archive%agree(name, [allocated(f%first), allocated(f%turn), allocated(f%varied), &
+                                   allocated(f%value), allocated(f%rate), allocated(f%largest), &
+                                   allocated(f%of_step), allocated(f%sum), allocated(f%linear), &
+                                   allocated(f%error)])
       end associate
       call archive%leave()
    end subroutine visit_followed
