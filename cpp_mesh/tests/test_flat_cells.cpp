@@ -29,8 +29,9 @@ int main() {
         turn_flat_cells(xy, {}, cells);
         checks.is_true(std::abs(total_area(cells) - 3.0) < 1e-15, "the cells cover the triangle");
         for (const Triangle& cell : cells)
-            checks.is_true(std::abs(0.5 * twice_area(xy[cell[0]], xy[cell[1]], xy[cell[2]]) - 1.5) < 1e-15,
-                  "each covers a half of it");
+            checks.is_true(std::abs(0.5 * twice_area(xy[cell[0]], xy[cell[1]], xy[cell[2]]) - 1.5) <
+                               1e-15,
+                           "each covers a half of it");
     }
     std::vector<Triangle> cells = left;
     turn_flat_cells(xy, {{0, 1}}, cells);

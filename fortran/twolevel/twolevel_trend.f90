@@ -8,8 +8,8 @@
 !! jump however short the step is.
 !!
 !! Where tips run through a segment in one step and wait in the next, rates differ from step to step
-!! however short the steps are. In a step in which no tip begins a segment the rates of the last such
-!! step count too, if they give the smaller error.
+!! however short the steps are. In a step in which no tip begins a segment the rates of the last
+!! such step count too, if they give the smaller error.
 module twolevel_trend
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
@@ -197,14 +197,14 @@ contains
       associate (old => map%cell_old)
          rates%knows_rock = [(old(i) > 0, i=1, size(old, kind=ik))]
          rates%rock = [(merge(rates%rock(max(1_ik, old(i))), 0.0_rk, old(i) > 0), &
-                       i=1, size(old, kind=ik))]
+                        i=1, size(old, kind=ik))]
       end associate
       associate (old => map%fracture_cell_old)
          rates%knows_fracture = [(old(i) > 0, i=1, size(old, kind=ik))]
          rates%fracture = [(merge(rates%fracture(max(1_ik, old(i))), 0.0_rk, old(i) > 0), &
-                           i=1, size(old, kind=ik))]
+                            i=1, size(old, kind=ik))]
          rates%jump = reshape([(merge(rates%jump(:, max(1_ik, old(i))), 0.0_rk, old(i) > 0), &
-                               i=1, size(old, kind=ik))], [2, size(old)])
+                                i=1, size(old, kind=ik))], [2, size(old)])
       end associate
    end subroutine transfer_rates
 

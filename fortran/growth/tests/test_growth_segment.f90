@@ -55,7 +55,7 @@ contains
       call segment%keep_pace(10.0_rk)
       call checks%is_close(segment%reached, 1.0_rk, 0.0_rk, "no farther than the piece")
       call checks%is_close(segment%farther(10.0_rk, 0.7_rk), 0.8_rk, 1.0e-15_rk, "it would go on")
-      call checks%is_close(segment%farther(1.0_rk, 0.7_rk), -0.55_rk, 1.0e-15_rk, "does not reach it")
+    call checks%is_close(segment%farther(1.0_rk, 0.7_rk), -0.55_rk, 1.0e-15_rk, "does not reach it")
       call segment%set_out_to(0.8_rk)
       call checks%is_close(segment%reached, 0.8_rk, 0.0_rk, "that far")
       call segment%set_out_to(-0.55_rk)

@@ -42,7 +42,7 @@ contains
                            3.0_rk*h**2/100.0_rk, round_off, "opening")
    end subroutine test_parabola
 
-   !> A step in which a tip runs through a segment has other rates, and so has the step after it: the
+   !> A step in which a tip runs through a segment has other rates, as has the step after it: the
    !! rates of the last quiet step count too. Without a quiet step those of any step do.
    subroutine test_bursts()
       type(trend_t) :: trend
@@ -107,7 +107,7 @@ contains
       call checks%is_true(all(trend%last%knows_rock .eqv. [.true., .false., .true.]), "cells")
       call checks%is_true(all(trend%last%knows_fracture .eqv. [.false., .true., .true., .true.]), &
                           "fracture cells")
-      call checks%is_close(maxval(abs(trend%last%rock - [2.0_rk, 0.0_rk, 1.0_rk])), 0.0_rk, 0.0_rk, &
+     call checks%is_close(maxval(abs(trend%last%rock - [2.0_rk, 0.0_rk, 1.0_rk])), 0.0_rk, 0.0_rk, &
                            "rates of cells")
       call checks%is_close(maxval(abs(trend%last%fracture - [0.0_rk, 5.0_rk, 3.0_rk, 4.0_rk])), &
                            0.0_rk, 0.0_rk, "rates of fracture cells")
