@@ -13,6 +13,10 @@
 !! alone there would be no inflow, and the aperture of each single cell delays the front by a
 !! fraction of a cell.
 !!
+!! The derivative of a flow's equation by the opening is that of a secant, `opening_drive`: with the
+!! derivative itself, resistances ~ 1/a^3 become negative in the linear equation where a fracture
+!! opens by a third of its aperture, and Newton's iteration cycles where fractures close.
+!!
 !! The equations of the fluid at the joints of fractures, in the system of one time step.
 !!
 !! The flow of each branch, from the middle of its last cell to the joint, follows the cubic law
@@ -32,6 +36,7 @@ module coarse_fracture_flow
    private
 
    public :: fill_balance, fill_branch, fill_equilibrium, fill_exchange, fill_flow, fill_joint
+   public :: opening_drive
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides of a cell
 
@@ -146,13 +151,13 @@ contains
    end subroutine fill_equilibrium
 
    !> Flow from the first to the second cell of pair k by the cubic law between their middles, and
-   !! its terms in the balances of both.
+   !! its terms in the balances of both. The residual has what a fluid law adds to the pressures.
    pure subroutine fill_flow(k, x, eq)
       integer(ik), intent(in) :: k
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
       type(cell_fluid_t) :: fluid(2)
-      real(rk) :: aperture, length(2), opening, resistance, slope, weight(2)
+      real(rk) :: aperture(2), drive, length(2), opening, resistance(2), slope(2), weight(2)
       integer(ik) :: at(2), cells(2), end, jumps(2), m, other, row
 
       row = eq%layout%at_flow(k)
@@ -164,18 +169,25 @@ contains
          fluid(end) = eq%fluid_at(x, cells(end))
          opening = opening + weight(end)*eq%opening(x, cells(end))
       end do
-      eq%residual(row) = fluid(2)%pressure - fluid(1)%pressure
       do end = 1, 2
          call conducting_aperture(eq%cells%residual_aperture(cells(end)), &
-                                  eq%cells%roughness(cells(end)), opening, aperture, slope)
-         resistance = 12.0_rk*eq%viscosity_at(cells(end))*length(end)/aperture**3*eq%unit/eq%dt
-         eq%residual(row) = eq%residual(row) + resistance*x(row)
-         call eq%slopes%add(row, row, resistance)
+                                  eq%cells%roughness(cells(end)), opening, aperture(end), &
+                                  slope(end))
+         resistance(end) = 12.0_rk*eq%viscosity_at(cells(end))*length(end)/aperture(end)**3 &
+                           *eq%unit/eq%dt
+      end do
+      associate (drop => fluid(1)%pressure - fluid(2)%pressure - eq%residual(row), &
+                 loss => sum(resistance)*x(row))
+         drive = opening_drive(loss, drop)/sum(resistance)
+         eq%residual(row) = loss - drop
+      end associate
+      do end = 1, 2
+         call eq%slopes%add(row, row, resistance(end))
          do other = 1, 2
             jumps = eq%layout%at_jump(cells(other), both)
             do m = 1, 2
-               call eq%slopes%add(row, jumps(m), -1.5_rk*resistance*x(row)/aperture*slope &
-                                  *weight(other)/eq%stiffness)
+               call eq%slopes%add(row, jumps(m), -1.5_rk*resistance(end)*drive/aperture(end) &
+                                  *slope(end)*weight(other)/eq%stiffness)
             end do
          end do
          associate (sign => real(2*end - 3, rk))
@@ -185,6 +197,23 @@ contains
          end associate
       end do
    end subroutine fill_flow
+
+   !> What stands for the loss R q of pressure in -3 R q/a, the derivative of R q by a conducting
+   !! aperture a, R ~ 1/a^3: the linear equation then has the aperture at which the loss equals the
+   !! drop of pressure. At the solution both are equal, and the derivative is exact. Where they have
+   !! different signs no aperture makes them equal, and the derivative is zero [Pa].
+   elemental real(rk) function opening_drive(loss, drop) result(drive)
+      real(rk), intent(in) :: loss  !< R q [Pa]
+      real(rk), intent(in) :: drop  !< of pressure along the flow [Pa]
+      real(rk), parameter :: third = 1.0_rk/3.0_rk
+      real(rk) :: a, b
+
+      drive = 0.0_rk
+      if (.not. (loss > 0.0_rk .eqv. drop > 0.0_rk)) return
+      a = abs(loss)**third
+      b = abs(drop)**third
+      drive = sign(third*b*(a**2 + a*b + b**2), loss)
+   end function opening_drive
 
    !> Flow path from the middle of each of two neighbours to their common point: an equivalent
    !! length with the opening at this point, and this opening as a sum over the mean openings of
@@ -254,7 +283,7 @@ contains
    end subroutine fill_joint
 
    !> Flow of branch b into its joint, and its terms in the balances of the cell and, except at an
-   !! outlet, of the joint, which must be set already.
+   !! outlet, of the joint, which must be set already. The residual has what a fluid law adds.
    pure subroutine fill_branch(b, x, eq)
       integer(ik), intent(in) :: b
       real(rk), intent(in) :: x(:)  !< [Pa]
@@ -283,10 +312,12 @@ contains
                                   opening, aperture, slope)
          resistance = 12.0_rk*eq%viscosity_at(cell)*length/aperture**3*eq%unit/eq%dt
          by_pressure = [1.0_rk, -fluid%pressure_slope]
-         by_jump = -1.5_rk*resistance*x(row)/aperture*slope*weight/eq%stiffness
          ends_in_joint = .not. eq%paths%joints%is_outlet(eq%paths%joints%joint(b))
-         eq%residual(row) = x(joint) + eq%paths%joints%excess(b) - fluid%pressure &
-                            + resistance*x(row)
+         associate (drop => fluid%pressure - x(joint) - eq%paths%joints%excess(b) &
+                    - eq%residual(row), loss => resistance*x(row))
+            by_jump = -1.5_rk*opening_drive(loss, drop)/aperture*slope*weight/eq%stiffness
+            eq%residual(row) = loss - drop
+         end associate
          eq%residual(at) = eq%residual(at) + x(row)
          if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
       end if

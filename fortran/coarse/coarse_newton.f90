@@ -328,6 +328,7 @@ contains
 
       call self%find_forces(x)
       call self%slopes%clear(self%layout%count())
+      self%residual = 0.0_rk
       pressure = 0.0_rk
       do i = 1, self%layout%n_cells
          do end = 1, 2
@@ -341,6 +342,9 @@ contains
          end if
          pressure = max(pressure, abs(x(self%layout%at_pressure(i))))
       end do
+      if (allocated(self%paths%settings%fluid_law) .and. .not. self%paths%settings%equilibrate) then
+         call add_fluid_law(x, self%paths%settings%fluid_law, self)
+      end if
       do k = 1, self%layout%n_flows
          call fill_flow(k, x, self)
       end do
@@ -353,9 +357,6 @@ contains
       do k = 1, self%paths%wells%n
          call fill_well(k, x, self)
       end do
-      if (allocated(self%paths%settings%fluid_law) .and. .not. self%paths%settings%equilibrate) then
-         call add_fluid_law(x, self%paths%settings%fluid_law, self)
-      end if
       self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
       if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
    end subroutine evaluate
