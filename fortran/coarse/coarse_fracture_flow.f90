@@ -13,9 +13,12 @@
 !! alone there would be no inflow, and the aperture of each single cell delays the front by a
 !! fraction of a cell.
 !!
-!! The derivative of a flow's equation by the opening is that of a secant, `opening_drive`: with the
+!! The derivative of a flow's equation by the opening is that of a secant, `loss_slope`: with the
 !! derivative itself, resistances ~ 1/a^3 become negative in the linear equation where a fracture
-!! opens by a third of its aperture, and Newton's iteration cycles where fractures close.
+!! opens by a third of its aperture, and Newton's iteration cycles where fractures close. Where the
+!! fluid that flows into a cell in the step opens it several times, the loss falls as the flow
+!! rises, and any derivative may point away from the solution. With conductances that lag by an
+!! iteration the flows rise from one to the next, until they nearly fulfil their equations.
 !!
 !! The equations of the fluid at the joints of fractures, in the system of one time step.
 !!
@@ -36,7 +39,7 @@ module coarse_fracture_flow
    private
 
    public :: fill_balance, fill_branch, fill_equilibrium, fill_exchange, fill_flow, fill_joint
-   public :: opening_drive
+   public :: loss_slope
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides of a cell
 
@@ -157,7 +160,7 @@ contains
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
       type(cell_fluid_t) :: fluid(2)
-      real(rk) :: aperture(2), drive, length(2), opening, resistance(2), slope(2), weight(2)
+      real(rk) :: aperture(2), drop, length(2), opening, resistance(2), slope(2), unused, weight(2)
       integer(ik) :: at(2), cells(2), end, jumps(2), m, other, row
 
       row = eq%layout%at_flow(k)
@@ -171,23 +174,21 @@ contains
       end do
       do end = 1, 2
          call conducting_aperture(eq%cells%residual_aperture(cells(end)), &
-                                  eq%cells%roughness(cells(end)), opening, aperture(end), &
-                                  slope(end))
+                                  eq%cells%roughness(cells(end)), opening, aperture(end), unused)
          resistance(end) = 12.0_rk*eq%viscosity_at(cells(end))*length(end)/aperture(end)**3 &
                            *eq%unit/eq%dt
       end do
-      associate (drop => fluid(1)%pressure - fluid(2)%pressure - eq%residual(row), &
-                 loss => sum(resistance)*x(row))
-         drive = opening_drive(loss, drop)/sum(resistance)
-         eq%residual(row) = loss - drop
-      end associate
+      drop = fluid(1)%pressure - fluid(2)%pressure - eq%residual(row)
+      eq%residual(row) = sum(resistance)*x(row) - drop
+      slope = loss_slope(resistance*x(row), resistance/sum(resistance)*drop, aperture, &
+                         eq%cells%residual_aperture(cells) - eq%cells%roughness(cells) + opening, &
+                         eq%lags)
       do end = 1, 2
          call eq%slopes%add(row, row, resistance(end))
          do other = 1, 2
             jumps = eq%layout%at_jump(cells(other), both)
             do m = 1, 2
-               call eq%slopes%add(row, jumps(m), -1.5_rk*resistance(end)*drive/aperture(end) &
-                                  *slope(end)*weight(other)/eq%stiffness)
+               call eq%slopes%add(row, jumps(m), 0.5_rk*slope(end)*weight(other)/eq%stiffness)
             end do
          end do
          associate (sign => real(2*end - 3, rk))
@@ -198,22 +199,31 @@ contains
       end do
    end subroutine fill_flow
 
-   !> What stands for the loss R q of pressure in -3 R q/a, the derivative of R q by a conducting
-   !! aperture a, R ~ 1/a^3: the linear equation then has the aperture at which the loss equals the
-   !! drop of pressure. At the solution both are equal, and the derivative is exact. Where they have
-   !! different signs no aperture makes them equal, and the derivative is zero [Pa].
-   elemental real(rk) function opening_drive(loss, drop) result(drive)
+   !> Derivative by the opening of the loss of pressure R q of a flow, R ~ 1/a^3, as the slope of
+   !! the secant to the aperture at which the loss equals the drop of pressure. At the solution both
+   !! are equal, and it is the derivative itself. Where they have different signs no aperture makes
+   !! them equal, and it is zero, as where the least aperture conducts and is too wide [Pa/m].
+   elemental real(rk) function loss_slope(loss, drop, aperture, open, lags) result(slope)
       real(rk), intent(in) :: loss  !< R q [Pa]
       real(rk), intent(in) :: drop  !< of pressure along the flow [Pa]
+      real(rk), intent(in) :: aperture  !< a, which conducts [m]
+      real(rk), intent(in) :: open  !< less than a where the least aperture conducts [m]
+      logical, intent(in) :: lags  !< zero unless both are nearly equal
       real(rk), parameter :: third = 1.0_rk/3.0_rk
+      real(rk), parameter :: near = 1.0e-3_rk  ! of their third roots [-]
       real(rk) :: a, b
 
-      drive = 0.0_rk
+      slope = 0.0_rk
       if (.not. (loss > 0.0_rk .eqv. drop > 0.0_rk)) return
       a = abs(loss)**third
       b = abs(drop)**third
-      drive = sign(third*b*(a**2 + a*b + b**2), loss)
-   end function opening_drive
+      if (lags .and. (open < aperture .or. abs(a - b) > near*a)) return
+      if (.not. open < aperture) then
+         slope = -sign(b*(a**2 + a*b + b**2)/aperture, loss)
+      else if (a > b) then
+         slope = -sign((abs(loss) - abs(drop))*b/(aperture*a - open*b), loss)
+      end if
+   end function loss_slope
 
    !> Flow path from the middle of each of two neighbours to their common point: an equivalent
    !! length with the opening at this point, and this opening as a sum over the mean openings of
@@ -288,8 +298,8 @@ contains
       integer(ik), intent(in) :: b
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, by_jump(2), by_pressure(2), length, opening, resistance, slope
-      real(rk) :: weight(2)
+      real(rk) :: aperture, by_jump(2), by_pressure(2), drop, length, opening, resistance
+      real(rk) :: unused, weight(2)
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, cell, cells(2), end, joint, jumps(2), k, row
       logical :: ends_in_joint
@@ -309,15 +319,15 @@ contains
          fluid = eq%fluid_at(x, cell)
          opening = weight(1)*eq%opening(x, cells(1)) + weight(2)*eq%opening(x, cells(2))
          call conducting_aperture(eq%cells%residual_aperture(cell), eq%cells%roughness(cell), &
-                                  opening, aperture, slope)
+                                  opening, aperture, unused)
          resistance = 12.0_rk*eq%viscosity_at(cell)*length/aperture**3*eq%unit/eq%dt
          by_pressure = [1.0_rk, -fluid%pressure_slope]
          ends_in_joint = .not. eq%paths%joints%is_outlet(eq%paths%joints%joint(b))
-         associate (drop => fluid%pressure - x(joint) - eq%paths%joints%excess(b) &
-                    - eq%residual(row), loss => resistance*x(row))
-            by_jump = -1.5_rk*opening_drive(loss, drop)/aperture*slope*weight/eq%stiffness
-            eq%residual(row) = loss - drop
-         end associate
+         drop = fluid%pressure - x(joint) - eq%paths%joints%excess(b) - eq%residual(row)
+         eq%residual(row) = resistance*x(row) - drop
+         by_jump = 0.5_rk*loss_slope(resistance*x(row), drop, aperture, &
+                                     eq%cells%residual_aperture(cell) - eq%cells%roughness(cell) &
+                                     + opening, eq%lags)*weight/eq%stiffness
          eq%residual(at) = eq%residual(at) + x(row)
          if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
       end if

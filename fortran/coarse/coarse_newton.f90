@@ -64,32 +64,30 @@ contains
       type(iteration_report_t) :: found
       type(iteration_settings_t) :: how
       real(rk), allocatable :: start(:), x(:)
-      integer(ik) :: spent
+      logical :: knows, perseveres
 
       call prepare(problem%condensed, problem%cells, paths, dt, g, state, eq)
       eq%factors => problem%factors
       how = iteration_settings_t(tolerance=paths%settings%tolerance, &
                                  iterations_max=paths%settings%iterations_max, &
-                                 with_condition=.true., allows_rounding=.true.)
+                                 with_condition=.true., allows_rounding=.true., perseveres=.false.)
       call find_start(eq, state, start)
-      x = start
       eq%start = start
-      spent = 0
-      if (state%guess%is_known(size(start, kind=ik)) .and. &
-          .not. paths%settings%equilibrate) then
-         x = state%guess%from(start, dt)
-         how%perseveres = .false.
-         call iterate(eq, x, how, found)
-         how%perseveres = .not. dt > share_to_persevere*state%guess%dt
-         if (found%outcome /= outcome_converged) then
-            spent = found%iterations
-            x = start
-            eq%state = reshape(state%contact, [size(eq%state)])
-            eq%slip_sign = 0
-         end if
+      knows = state%guess%is_known(size(start, kind=ik)) .and. .not. paths%settings%equilibrate
+      perseveres = .not. knows
+      if (knows) then
+         perseveres = .not. dt > share_to_persevere*state%guess%dt
+         call attempt(state%guess%from(start, dt))
       end if
-      if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
-      found%iterations = found%iterations + spent
+      if (.not. paths%settings%equilibrate) then
+         call attempt(start)
+         eq%lags = .true.
+         if (knows) call attempt(state%guess%from(start, dt))
+         if (.not. knows) call attempt(start)
+         eq%lags = .false.
+      end if
+      how%perseveres = .true.
+      if (perseveres) call attempt(start)
       if (found%outcome == outcome_converged .and. .not. paths%settings%equilibrate) then
          call state%guess%remember(dt, start, x)
       end if
@@ -111,6 +109,24 @@ contains
          report%cell = worst_cell(eq, x)
       end select
       if (report%converged) call accept(eq, x, state, report)
+
+   contains
+
+      !> Iterate from a guess, unless the step is solved.
+      subroutine attempt(from)
+         real(rk), intent(in) :: from(:)  !< [Pa]
+         integer(ik) :: spent
+
+         if (found%outcome == outcome_converged) return
+         spent = found%iterations
+         found = iteration_report_t()
+         x = from
+         eq%state = reshape(state%contact, [size(eq%state)])
+         eq%slip_sign = 0
+         call iterate(eq, x, how, found)
+         found%iterations = found%iterations + spent
+      end subroutine attempt
+
    end subroutine solve_fractures
 
    !> The cell with the largest residual at x; 0: none.
