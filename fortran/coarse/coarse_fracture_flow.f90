@@ -13,12 +13,10 @@
 !! alone there would be no inflow, and the aperture of each single cell delays the front by a
 !! fraction of a cell.
 !!
-!! The derivative of a flow's equation by the opening is that of a secant, `loss_slope`: with the
-!! derivative itself, resistances ~ 1/a^3 become negative in the linear equation where a fracture
-!! opens by a third of its aperture, and Newton's iteration cycles where fractures close. Where the
-!! fluid that flows into a cell in the step opens it several times, the loss falls as the flow
-!! rises, and any derivative may point away from the solution. With conductances that lag by an
-!! iteration the flows rise from one to the next, until they nearly fulfil their equations.
+!! The slope of a flow's equation by the opening is not always the derivative (`loss_slope`): where
+!! fractures open or close, resistances ~ 1/a^3 may become negative in the linear equation, and
+!! Newton's iteration cycles. Where the fluid that flows into a cell in the step opens it several
+!! times, the loss falls as the flow rises, and the derivative may point away from the solution.
 !!
 !! The equations of the fluid at the joints of fractures, in the system of one time step.
 !!
@@ -182,7 +180,7 @@ contains
       eq%residual(row) = sum(resistance)*x(row) - drop
       slope = loss_slope(resistance*x(row), resistance/sum(resistance)*drop, aperture, &
                          eq%cells%residual_aperture(cells) - eq%cells%roughness(cells) + opening, &
-                         eq%lags)
+                         eq%is_flat)
       do end = 1, 2
          call eq%slopes%add(row, row, resistance(end))
          do other = 1, 2
@@ -199,29 +197,29 @@ contains
       end do
    end subroutine fill_flow
 
-   !> Derivative by the opening of the loss of pressure R q of a flow, R ~ 1/a^3, as the slope of
-   !! the secant to the aperture at which the loss equals the drop of pressure. At the solution both
-   !! are equal, and it is the derivative itself. Where they have different signs no aperture makes
-   !! them equal, and it is zero, as where the least aperture conducts and is too wide [Pa/m].
-   elemental real(rk) function loss_slope(loss, drop, aperture, open, lags) result(slope)
+   !> Slope by the opening of the loss of pressure R q of a flow, R ~ 1/a^3: the less steep one of
+   !! the tangent and the secant to the aperture at which the loss equals the drop of pressure. At
+   !! the solution both are the derivative. Where loss and drop have different signs no aperture
+   !! makes them equal, and it is zero, as where the least aperture conducts and is too wide [Pa/m].
+   elemental real(rk) function loss_slope(loss, drop, aperture, open, is_flat) result(slope)
       real(rk), intent(in) :: loss  !< R q [Pa]
       real(rk), intent(in) :: drop  !< of pressure along the flow [Pa]
       real(rk), intent(in) :: aperture  !< a, which conducts [m]
       real(rk), intent(in) :: open  !< less than a where the least aperture conducts [m]
-      logical, intent(in) :: lags  !< zero unless both are nearly equal
+      logical, intent(in) :: is_flat  !< the tangent is flatter, the less the loss is
       real(rk), parameter :: third = 1.0_rk/3.0_rk
-      real(rk), parameter :: near = 1.0e-3_rk  ! of their third roots [-]
       real(rk) :: a, b
 
       slope = 0.0_rk
       if (.not. (loss > 0.0_rk .eqv. drop > 0.0_rk)) return
-      a = abs(loss)**third
-      b = abs(drop)**third
-      if (lags .and. (open < aperture .or. abs(a - b) > near*a)) return
-      if (.not. open < aperture) then
-         slope = -sign(b*(a**2 + a*b + b**2)/aperture, loss)
-      else if (a > b) then
+      if (abs(loss) > abs(drop)) then
+         a = abs(loss)**third
+         b = abs(drop)**third
          slope = -sign((abs(loss) - abs(drop))*b/(aperture*a - open*b), loss)
+         if (.not. open < aperture) slope = -sign(b*(a**2 + a*b + b**2)/aperture, loss)
+      else if (.not. open < aperture) then
+         slope = -3.0_rk*loss/aperture
+         if (is_flat .and. abs(loss) > 0.0_rk) slope = slope*(loss/drop)
       end if
    end function loss_slope
 
@@ -327,7 +325,7 @@ contains
          eq%residual(row) = resistance*x(row) - drop
          by_jump = 0.5_rk*loss_slope(resistance*x(row), drop, aperture, &
                                      eq%cells%residual_aperture(cell) - eq%cells%roughness(cell) &
-                                     + opening, eq%lags)*weight/eq%stiffness
+                                     + opening, eq%is_flat)*weight/eq%stiffness
          eq%residual(at) = eq%residual(at) + x(row)
          if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
       end if

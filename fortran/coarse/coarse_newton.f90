@@ -46,6 +46,8 @@ module coarse_newton
    !! iteration fails: a step cut to half mostly converges in a few iterations [-].
    real(rk), parameter :: share_to_persevere = 0.3_rk
 
+   integer(ik), parameter :: brief = 15  !< iterations from a guess: most take five
+
    real(rk), parameter :: contact_residual_max = 1.0e-8_rk  !< of an accepted step, relative
 
 contains
@@ -64,29 +66,27 @@ contains
       type(iteration_report_t) :: found
       type(iteration_settings_t) :: how
       real(rk), allocatable :: start(:), x(:)
-      logical :: knows, perseveres
+      logical :: perseveres
 
       call prepare(problem%condensed, problem%cells, paths, dt, g, state, eq)
       eq%factors => problem%factors
       how = iteration_settings_t(tolerance=paths%settings%tolerance, &
                                  iterations_max=paths%settings%iterations_max, &
-                                 with_condition=.true., allows_rounding=.true., perseveres=.false.)
+                                 with_condition=.true., allows_rounding=.true.)
       call find_start(eq, state, start)
       eq%start = start
-      knows = state%guess%is_known(size(start, kind=ik)) .and. .not. paths%settings%equilibrate
-      perseveres = .not. knows
-      if (knows) then
+      perseveres = .true.
+      if (state%guess%is_known(size(start, kind=ik)) .and. .not. paths%settings%equilibrate) then
          perseveres = .not. dt > share_to_persevere*state%guess%dt
+         how%perseveres = .false.
+         how%iterations_max = min(how%iterations_max, brief)
          call attempt(state%guess%from(start, dt))
-      end if
-      if (.not. paths%settings%equilibrate) then
+         how%iterations_max = paths%settings%iterations_max
+         eq%is_flat = .true.
          call attempt(start)
-         eq%lags = .true.
-         if (knows) call attempt(state%guess%from(start, dt))
-         if (.not. knows) call attempt(start)
-         eq%lags = .false.
+         eq%is_flat = .false.
+         how%perseveres = .true.
       end if
-      how%perseveres = .true.
       if (perseveres) call attempt(start)
       if (found%outcome == outcome_converged .and. .not. paths%settings%equilibrate) then
          call state%guess%remember(dt, start, x)
