@@ -215,8 +215,11 @@ contains
       if (abs(loss) > abs(drop)) then
          a = abs(loss)**third
          b = abs(drop)**third
-         slope = -sign((abs(loss) - abs(drop))*b/(aperture*a - open*b), loss)
-         if (.not. open < aperture) slope = -sign(b*(a**2 + a*b + b**2)/aperture, loss)
+         if (open < aperture) then
+            slope = -sign((abs(loss) - abs(drop))*b/(aperture*a - open*b), loss)
+         else
+            slope = -sign(b*(a**2 + a*b + b**2)/aperture, loss)
+         end if
       else if (.not. open < aperture) then
          slope = -3.0_rk*loss/aperture
          if (is_flat .and. abs(loss) > 0.0_rk) slope = slope*(loss/drop)

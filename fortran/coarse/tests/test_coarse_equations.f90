@@ -279,8 +279,8 @@ contains
       call compare_step(eq, jacobian, row_scale)
    end subroutine compare_slopes
 
-   !> Flows along fractures and to joints that fulfil their equations: there the slopes of secants
-   !! are the derivatives.
+   !> Flows along fractures and to joints that fulfil their equations: there their slopes are the
+   !! derivatives.
    subroutine fulfil_flows(eq, x)
       type(equations_t), intent(inout) :: eq
       real(rk), intent(inout) :: x(:)
