@@ -13,6 +13,11 @@
 !! alone there would be no inflow, and the aperture of each single cell delays the front by a
 !! fraction of a cell.
 !!
+!! The slope of a flow's equation by the opening is not always the derivative (`loss_slope`): where
+!! fractures open or close, resistances ~ 1/a^3 may become negative in the linear equation, and
+!! Newton's iteration cycles. Where the fluid that flows into a cell in the step opens it several
+!! times, the loss falls as the flow rises, and the derivative may point away from the solution.
+!!
 !! The equations of the fluid at the joints of fractures, in the system of one time step.
 !!
 !! The flow of each branch, from the middle of its last cell to the joint, follows the cubic law
@@ -32,6 +37,7 @@ module coarse_fracture_flow
    private
 
    public :: fill_balance, fill_branch, fill_equilibrium, fill_exchange, fill_flow, fill_joint
+   public :: loss_slope
 
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< ends or sides of a cell
 
@@ -146,13 +152,13 @@ contains
    end subroutine fill_equilibrium
 
    !> Flow from the first to the second cell of pair k by the cubic law between their middles, and
-   !! its terms in the balances of both.
+   !! its terms in the balances of both. The residual has what a fluid law adds to the pressures.
    pure subroutine fill_flow(k, x, eq)
       integer(ik), intent(in) :: k
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
       type(cell_fluid_t) :: fluid(2)
-      real(rk) :: aperture, length(2), opening, resistance, slope, weight(2)
+      real(rk) :: aperture(2), drop, length(2), opening, resistance(2), slope(2), unused, weight(2)
       integer(ik) :: at(2), cells(2), end, jumps(2), m, other, row
 
       row = eq%layout%at_flow(k)
@@ -164,18 +170,23 @@ contains
          fluid(end) = eq%fluid_at(x, cells(end))
          opening = opening + weight(end)*eq%opening(x, cells(end))
       end do
-      eq%residual(row) = fluid(2)%pressure - fluid(1)%pressure
       do end = 1, 2
          call conducting_aperture(eq%cells%residual_aperture(cells(end)), &
-                                  eq%cells%roughness(cells(end)), opening, aperture, slope)
-         resistance = 12.0_rk*eq%viscosity_at(cells(end))*length(end)/aperture**3*eq%unit/eq%dt
-         eq%residual(row) = eq%residual(row) + resistance*x(row)
-         call eq%slopes%add(row, row, resistance)
+                                  eq%cells%roughness(cells(end)), opening, aperture(end), unused)
+         resistance(end) = 12.0_rk*eq%viscosity_at(cells(end))*length(end)/aperture(end)**3 &
+                           *eq%unit/eq%dt
+      end do
+      drop = fluid(1)%pressure - fluid(2)%pressure - eq%residual(row)
+      eq%residual(row) = sum(resistance)*x(row) - drop
+      slope = loss_slope(resistance*x(row), resistance/sum(resistance)*drop, aperture, &
+                         eq%cells%residual_aperture(cells) - eq%cells%roughness(cells) + opening, &
+                         eq%is_flat)
+      do end = 1, 2
+         call eq%slopes%add(row, row, resistance(end))
          do other = 1, 2
             jumps = eq%layout%at_jump(cells(other), both)
             do m = 1, 2
-               call eq%slopes%add(row, jumps(m), -1.5_rk*resistance*x(row)/aperture*slope &
-                                  *weight(other)/eq%stiffness)
+               call eq%slopes%add(row, jumps(m), 0.5_rk*slope(end)*weight(other)/eq%stiffness)
             end do
          end do
          associate (sign => real(2*end - 3, rk))
@@ -185,6 +196,35 @@ contains
          end associate
       end do
    end subroutine fill_flow
+
+   !> Slope by the opening of the loss of pressure R q of a flow, R ~ 1/a^3: the less steep one of
+   !! the tangent and the secant to the aperture at which the loss equals the drop of pressure. At
+   !! the solution both are the derivative. Where loss and drop have different signs no aperture
+   !! makes them equal, and it is zero, as where the least aperture conducts and is too wide [Pa/m].
+   elemental real(rk) function loss_slope(loss, drop, aperture, open, is_flat) result(slope)
+      real(rk), intent(in) :: loss  !< R q [Pa]
+      real(rk), intent(in) :: drop  !< of pressure along the flow [Pa]
+      real(rk), intent(in) :: aperture  !< a, which conducts [m]
+      real(rk), intent(in) :: open  !< less than a where the least aperture conducts [m]
+      logical, intent(in) :: is_flat  !< the tangent is flatter, the less the loss is
+      real(rk), parameter :: third = 1.0_rk/3.0_rk
+      real(rk) :: a, b
+
+      slope = 0.0_rk
+      if (.not. (loss > 0.0_rk .eqv. drop > 0.0_rk)) return
+      if (abs(loss) > abs(drop)) then
+         a = abs(loss)**third
+         b = abs(drop)**third
+         if (open < aperture) then
+            slope = -sign((abs(loss) - abs(drop))*b/(aperture*a - open*b), loss)
+         else
+            slope = -sign(b*(a**2 + a*b + b**2)/aperture, loss)
+         end if
+      else if (.not. open < aperture) then
+         slope = -3.0_rk*loss/aperture
+         if (is_flat .and. abs(loss) > 0.0_rk) slope = slope*(loss/drop)
+      end if
+   end function loss_slope
 
    !> Flow path from the middle of each of two neighbours to their common point: an equivalent
    !! length with the opening at this point, and this opening as a sum over the mean openings of
@@ -254,13 +294,13 @@ contains
    end subroutine fill_joint
 
    !> Flow of branch b into its joint, and its terms in the balances of the cell and, except at an
-   !! outlet, of the joint, which must be set already.
+   !! outlet, of the joint, which must be set already. The residual has what a fluid law adds.
    pure subroutine fill_branch(b, x, eq)
       integer(ik), intent(in) :: b
       real(rk), intent(in) :: x(:)  !< [Pa]
       class(fracture_system_t), intent(inout) :: eq
-      real(rk) :: aperture, by_jump(2), by_pressure(2), length, opening, resistance, slope
-      real(rk) :: weight(2)
+      real(rk) :: aperture, by_jump(2), by_pressure(2), drop, length, opening, resistance
+      real(rk) :: unused, weight(2)
       type(cell_fluid_t) :: fluid
       integer(ik) :: at, cell, cells(2), end, joint, jumps(2), k, row
       logical :: ends_in_joint
@@ -280,13 +320,15 @@ contains
          fluid = eq%fluid_at(x, cell)
          opening = weight(1)*eq%opening(x, cells(1)) + weight(2)*eq%opening(x, cells(2))
          call conducting_aperture(eq%cells%residual_aperture(cell), eq%cells%roughness(cell), &
-                                  opening, aperture, slope)
+                                  opening, aperture, unused)
          resistance = 12.0_rk*eq%viscosity_at(cell)*length/aperture**3*eq%unit/eq%dt
          by_pressure = [1.0_rk, -fluid%pressure_slope]
-         by_jump = -1.5_rk*resistance*x(row)/aperture*slope*weight/eq%stiffness
          ends_in_joint = .not. eq%paths%joints%is_outlet(eq%paths%joints%joint(b))
-         eq%residual(row) = x(joint) + eq%paths%joints%excess(b) - fluid%pressure &
-                            + resistance*x(row)
+         drop = fluid%pressure - x(joint) - eq%paths%joints%excess(b) - eq%residual(row)
+         eq%residual(row) = resistance*x(row) - drop
+         by_jump = 0.5_rk*loss_slope(resistance*x(row), drop, aperture, &
+                                     eq%cells%residual_aperture(cell) - eq%cells%roughness(cell) &
+                                     + opening, eq%is_flat)*weight/eq%stiffness
          eq%residual(at) = eq%residual(at) + x(row)
          if (ends_in_joint) eq%residual(joint) = eq%residual(joint) - x(row)
       end if

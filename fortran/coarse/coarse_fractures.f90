@@ -64,6 +64,7 @@ module coarse_fractures
       real(rk), allocatable :: force(:)  !< (6 n) condensed forces S q - g [N/m], volumes [m2]
       logical :: has_failed = .false.  !< whether a solution with the factors of the body has failed
       type(slopes_t) :: slopes  !< derivatives of the residuals where last evaluated
+      logical :: is_flat = .false.  !< of the slopes by apertures (coarse_fracture_flow)
       real(rk), allocatable :: start(:)  !< unknowns where the step starts [Pa]
       !> (2, n) of the volume through side +, - by the pressure there; where a tip needs it [m2/Pa]
       real(rk), allocatable :: volume_slope(:, :)

@@ -46,6 +46,8 @@ module coarse_newton
    !! iteration fails: a step cut to half mostly converges in a few iterations [-].
    real(rk), parameter :: share_to_persevere = 0.3_rk
 
+   integer(ik), parameter :: brief = 15  !< iterations from a guess: most take five
+
    real(rk), parameter :: contact_residual_max = 1.0e-8_rk  !< of an accepted step, relative
 
 contains
@@ -64,7 +66,7 @@ contains
       type(iteration_report_t) :: found
       type(iteration_settings_t) :: how
       real(rk), allocatable :: start(:), x(:)
-      integer(ik) :: spent
+      logical :: perseveres
 
       call prepare(problem%condensed, problem%cells, paths, dt, g, state, eq)
       eq%factors => problem%factors
@@ -72,24 +74,20 @@ contains
                                  iterations_max=paths%settings%iterations_max, &
                                  with_condition=.true., allows_rounding=.true.)
       call find_start(eq, state, start)
-      x = start
       eq%start = start
-      spent = 0
-      if (state%guess%is_known(size(start, kind=ik)) .and. &
-          .not. paths%settings%equilibrate) then
-         x = state%guess%from(start, dt)
+      perseveres = .true.
+      if (state%guess%is_known(size(start, kind=ik)) .and. .not. paths%settings%equilibrate) then
+         perseveres = .not. dt > share_to_persevere*state%guess%dt
          how%perseveres = .false.
-         call iterate(eq, x, how, found)
-         how%perseveres = .not. dt > share_to_persevere*state%guess%dt
-         if (found%outcome /= outcome_converged) then
-            spent = found%iterations
-            x = start
-            eq%state = reshape(state%contact, [size(eq%state)])
-            eq%slip_sign = 0
-         end if
+         how%iterations_max = min(how%iterations_max, brief)
+         call attempt(state%guess%from(start, dt))
+         how%iterations_max = paths%settings%iterations_max
+         eq%is_flat = .true.
+         call attempt(start)
+         eq%is_flat = .false.
+         how%perseveres = .true.
       end if
-      if (found%outcome /= outcome_converged) call iterate(eq, x, how, found)
-      found%iterations = found%iterations + spent
+      if (perseveres) call attempt(start)
       if (found%outcome == outcome_converged .and. .not. paths%settings%equilibrate) then
          call state%guess%remember(dt, start, x)
       end if
@@ -111,6 +109,24 @@ contains
          report%cell = worst_cell(eq, x)
       end select
       if (report%converged) call accept(eq, x, state, report)
+
+   contains
+
+      !> Iterate from a guess, unless the step is solved.
+      subroutine attempt(from)
+         real(rk), intent(in) :: from(:)  !< [Pa]
+         integer(ik) :: spent
+
+         if (found%outcome == outcome_converged) return
+         spent = found%iterations
+         found = iteration_report_t()
+         x = from
+         eq%state = reshape(state%contact, [size(eq%state)])
+         eq%slip_sign = 0
+         call iterate(eq, x, how, found)
+         found%iterations = found%iterations + spent
+      end subroutine attempt
+
    end subroutine solve_fractures
 
    !> The cell with the largest residual at x; 0: none.
@@ -328,6 +344,7 @@ contains
 
       call self%find_forces(x)
       call self%slopes%clear(self%layout%count())
+      self%residual = 0.0_rk
       pressure = 0.0_rk
       do i = 1, self%layout%n_cells
          do end = 1, 2
@@ -341,6 +358,9 @@ contains
          end if
          pressure = max(pressure, abs(x(self%layout%at_pressure(i))))
       end do
+      if (allocated(self%paths%settings%fluid_law) .and. .not. self%paths%settings%equilibrate) then
+         call add_fluid_law(x, self%paths%settings%fluid_law, self)
+      end if
       do k = 1, self%layout%n_flows
          call fill_flow(k, x, self)
       end do
@@ -353,9 +373,6 @@ contains
       do k = 1, self%paths%wells%n
          call fill_well(k, x, self)
       end do
-      if (allocated(self%paths%settings%fluid_law) .and. .not. self%paths%settings%equilibrate) then
-         call add_fluid_law(x, self%paths%settings%fluid_law, self)
-      end if
       self%stress_scale = max(maxval(abs(self%traction)), pressure, self%load_stress, 1.0_rk)
       if (self%has_failed) self%residual = ieee_value(1.0_rk, ieee_quiet_nan)
    end subroutine evaluate
