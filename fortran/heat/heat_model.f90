@@ -22,6 +22,7 @@ module heat_model
    use coarse_regions, only: find_regions, regions_t
    use coarse_rock, only: new_rock, rock_t
    use heat_links, only: external_t, link_t
+   use heat_slopes, only: new_slopes, slopes_t
    use heat_state, only: heat_state_t
    use mesh_geometry, only: cell_area, cell_centre, face_length, fracture_cell_centre, &
                             outward_normal
@@ -60,12 +61,14 @@ module heat_model
       ! Conduction: flow into unknown row of each entry's value times the temperature of col.
       integer(ik), allocatable :: row(:), col(:)
       real(rk), allocatable :: conduction(:)  !< [W/(m K)]
+      type(slopes_t) :: slopes  !< along faces with layers
       real(rk), allocatable :: known(:)  !< (unknowns) flow out of them that the sides give [W/m]
       type(link_t), allocatable :: links(:)  !< faces, nodes of layers, fracture cells, branches
       type(mumps_t) :: matrix
       type(external_t), allocatable :: externals(:)  !< of the present step
    contains
       procedure :: set_mesh
+      procedure :: along_faces
       procedure :: begin
       procedure :: scalars
       procedure :: cell_means
@@ -212,7 +215,7 @@ contains
       logical :: is_given(size(self%sides))
       real(rk) :: given(size(self%sides))  ! [K] or [W/m2]
       real(rk) :: offset(2, self%mesh%n_cells)  ! [m]
-      integer(ik) :: a, b, info, m, n, r
+      integer(ik) :: a, b, end, info, layer, m, n, r, s
 
       offset = self%place(:, :self%mesh%n_cells) &
                - reshape([(cell_centre(self%mesh, a), a=1, self%mesh%n_cells)], shape(offset))
@@ -220,6 +223,11 @@ contains
       given = merge(self%sides%temperature, -self%sides%heat_flux, is_given)
       n = sum([(self%regions%scalar_count(r)**2, r=1, self%regions%n_regions)])
       allocate (self%row(n), self%col(n), self%conduction(n))
+      self%slopes = new_slopes(self%mesh)
+      associate (slopes => self%slopes)
+         allocate (slopes%row(n), slopes%layer(n), slopes%conduction(n))
+      end associate
+      s = 0
       allocate (self%known(self%n), source=0.0_rk)
       n = 0
       do r = 1, self%regions%n_regions
@@ -232,18 +240,27 @@ contains
          end if
          around = around_vertex(self, r)
          m = size(around, kind=ik)
-         do b = 1, m
-            if (around(b) == 0) cycle
-            self%known(around(b)) = self%known(around(b)) + share%known(b)
-            do a = 1, m
-               if (around(a) == 0) cycle
+         do a = 1, m
+            if (around(a) == 0) cycle
+            self%known(around(a)) = self%known(around(a)) + share%known(a)
+            call layer_end(self, r, a, layer, end)
+            do b = 1, m
+               if (around(b) == 0) cycle
                n = n + 1
                self%row(n) = around(b)
                self%col(n) = around(a)
                self%conduction(n) = share%matrix(a, b)
+               if (layer == 0) cycle
+               s = s + 1
+               self%slopes%row(s) = around(b)
+               self%slopes%layer(s) = layer
+               self%slopes%conduction(s) = (2*end - 3)*share%matrix(a, b)
             end do
          end do
       end do
+      self%slopes%row = self%slopes%row(:s)
+      self%slopes%layer = self%slopes%layer(:s)
+      self%slopes%conduction = self%slopes%conduction(:s)
       self%row = self%row(:n)
       self%col = self%col(:n)
       self%conduction = self%conduction(:n)
@@ -267,6 +284,21 @@ contains
       end do
    end subroutine place_sources
 
+   !> The layer, or 0, and the end of its face that a scalar around a vertex belongs to.
+   pure subroutine layer_end(self, region, a, layer, end)
+      class(heat_model_t), intent(in) :: self
+      integer(ik), intent(in) :: region, a
+      integer(ik), intent(out) :: layer, end
+
+      layer = 0
+      if (.not. allocated(self%regions%scalars)) return
+      associate (scalar => self%regions%scalars%at(region, a))
+         layer = (scalar + 2)/3 - self%mesh%n_cells
+         end = scalar - at_component(self%mesh%n_cells + layer, 0_ik)
+      end associate
+      if (layer < 1 .or. layer > self%layers%n .or. end > 2) layer = 0
+   end subroutine layer_end
+
    !> The unknowns around a vertex.
    pure function around_vertex(self, region) result(around)
       class(heat_model_t), intent(in) :: self
@@ -279,6 +311,16 @@ contains
          around = self%of_scalar(at_component(self%regions%blocks%of(region), 3_ik))
       end if
    end function around_vertex
+
+   !> Heat that the slopes of the temperature along faces bring into the unknowns [W/m].
+   pure function along_faces(self, temperature) result(into)
+      class(heat_model_t), intent(in) :: self
+      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
+      real(rk) :: into(self%n)
+
+      into = self%slopes%heat_flows(self%slopes%ends(self%layers, self%first_node, temperature), &
+                                    self%n)
+   end function along_faces
 
    !> Temperatures among which the multi-point fluxes find those around a vertex.
    pure function scalars(self, temperature) result(values)
