@@ -215,7 +215,7 @@ contains
       logical :: is_given(size(self%sides))
       real(rk) :: given(size(self%sides))  ! [K] or [W/m2]
       real(rk) :: offset(2, self%mesh%n_cells)  ! [m]
-      integer(ik) :: a, b, end, info, layer, m, n, r, s
+      integer(ik) :: a, b, info, m, n, r
 
       offset = self%place(:, :self%mesh%n_cells) &
                - reshape([(cell_centre(self%mesh, a), a=1, self%mesh%n_cells)], shape(offset))
@@ -223,11 +223,7 @@ contains
       given = merge(self%sides%temperature, -self%sides%heat_flux, is_given)
       n = sum([(self%regions%scalar_count(r)**2, r=1, self%regions%n_regions)])
       allocate (self%row(n), self%col(n), self%conduction(n))
-      self%slopes = new_slopes(self%mesh)
-      associate (slopes => self%slopes)
-         allocate (slopes%row(n), slopes%layer(n), slopes%conduction(n))
-      end associate
-      s = 0
+      self%slopes = new_slopes(self%mesh, n)
       allocate (self%known(self%n), source=0.0_rk)
       n = 0
       do r = 1, self%regions%n_regions
@@ -243,24 +239,18 @@ contains
          do a = 1, m
             if (around(a) == 0) cycle
             self%known(around(a)) = self%known(around(a)) + share%known(a)
-            call layer_end(self, r, a, layer, end)
             do b = 1, m
                if (around(b) == 0) cycle
                n = n + 1
                self%row(n) = around(b)
                self%col(n) = around(a)
                self%conduction(n) = share%matrix(a, b)
-               if (layer == 0) cycle
-               s = s + 1
-               self%slopes%row(s) = around(b)
-               self%slopes%layer(s) = layer
-               self%slopes%conduction(s) = (2*end - 3)*share%matrix(a, b)
+               if (.not. allocated(self%regions%scalars)) cycle
+               call self%slopes%add(self%mesh, self%regions%scalars%at(r, a), around(b), &
+                                    share%matrix(a, b))
             end do
          end do
       end do
-      self%slopes%row = self%slopes%row(:s)
-      self%slopes%layer = self%slopes%layer(:s)
-      self%slopes%conduction = self%slopes%conduction(:s)
       self%row = self%row(:n)
       self%col = self%col(:n)
       self%conduction = self%conduction(:n)
@@ -283,21 +273,6 @@ contains
          self%known(c) = self%known(c) - self%heat%source_power(i)
       end do
    end subroutine place_sources
-
-   !> The layer, or 0, and the end of its face that a scalar around a vertex belongs to.
-   pure subroutine layer_end(self, region, a, layer, end)
-      class(heat_model_t), intent(in) :: self
-      integer(ik), intent(in) :: region, a
-      integer(ik), intent(out) :: layer, end
-
-      layer = 0
-      if (.not. allocated(self%regions%scalars)) return
-      associate (scalar => self%regions%scalars%at(region, a))
-         layer = (scalar + 2)/3 - self%mesh%n_cells
-         end = scalar - at_component(self%mesh%n_cells + layer, 0_ik)
-      end associate
-      if (layer < 1 .or. layer > self%layers%n .or. end > 2) layer = 0
-   end subroutine layer_end
 
    !> The unknowns around a vertex.
    pure function around_vertex(self, region) result(around)

@@ -21,25 +21,29 @@ module heat_slopes
       integer(ik), allocatable :: next(:, :)  !< (2, layers) next to both ends of the face; 0: none
       real(rk), allocatable :: apart(:, :)  !< (2, layers) distance of their middles [m]
       real(rk), allocatable :: reach(:)  !< (layers) from the middle to where an end is seen [m]
+      integer(ik) :: n = 0  !< entries of what follows
       ! Heat into unknown row for each kelvin that the second end of a layer is above its middle:
       integer(ik), allocatable :: row(:), layer(:)
       real(rk), allocatable :: conduction(:)  !< [W/(m K)]
    contains
+      procedure :: add
       procedure :: ends
       procedure :: heat_flows
    end type slopes_t
 
 contains
 
-   !> The slopes of a mesh, whose entries of conduction are still to be set.
-   pure function new_slopes(mesh) result(slopes)
+   !> The slopes of a mesh, without entries of conduction.
+   pure function new_slopes(mesh, most) result(slopes)
       type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: most  !< entries
       type(slopes_t) :: slopes
       integer(ik) :: at(mesh%n_nodes), e, l, node
 
       allocate (slopes%next(2, mesh%n_layers), source=0_ik)
       allocate (slopes%apart(2, mesh%n_layers), source=1.0_rk)
       allocate (slopes%reach(mesh%n_layers))
+      allocate (slopes%row(most), slopes%layer(most), slopes%conduction(most))
       at = 0
       do l = 1, mesh%n_layers
          slopes%reach(l) = face_length(mesh, mesh%layer_face(l))/6.0_rk
@@ -68,15 +72,33 @@ contains
                along(:, i) = mesh%xy(:, mesh%face_nodes(3 - ends(i), faces(i))) - mesh%xy(:, node)
             end do
          end associate
-         if (dot_product(along(:, 1), along(:, 2)) > straight*norm2(along(:, 1))*norm2(along(:, 2))) &
-         & return
+         associate (length => norm2(along, dim=1))
+            if (dot_product(along(:, 1), along(:, 2)) > straight*product(length)) return
+            slopes%apart(ends(1), a) = 0.5_rk*sum(length)
+            slopes%apart(ends(2), b) = 0.5_rk*sum(length)
+         end associate
          slopes%next(ends(1), a) = b
          slopes%next(ends(2), b) = a
-         slopes%apart(ends(1), a) = 0.5_rk*(norm2(along(:, 1)) + norm2(along(:, 2)))
-         slopes%apart(ends(2), b) = slopes%apart(ends(1), a)
       end subroutine join
 
    end function new_slopes
+
+   !> Add the heat into an unknown by a scalar that the multi-point fluxes see, if it is the end of
+   !! a layer.
+   pure subroutine add(self, mesh, scalar, row, conduction)
+      class(slopes_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+      integer(ik), intent(in) :: scalar, row
+      real(rk), intent(in) :: conduction  !< [W/(m K)]
+
+      associate (layer => (scalar + 2)/3 - mesh%n_cells, end => modulo(scalar - 1, 3_ik) + 1)
+         if (layer < 1 .or. layer > mesh%n_layers .or. end > 2) return
+         self%n = self%n + 1
+         self%row(self%n) = row
+         self%layer(self%n) = layer
+         self%conduction(self%n) = (2*end - 3)*conduction
+      end associate
+   end subroutine add
 
    !> What the second end of each layer has above its middle [K].
    pure function ends(self, layers, first_node, temperature) result(rise)
@@ -141,7 +163,7 @@ contains
       integer(ik) :: k
 
       into = 0.0_rk
-      do k = 1, size(self%row, kind=ik)
+      do k = 1, self%n
          associate (i => self%row(k))
             into(i) = into(i) + self%conduction(k)*rise(self%layer(k))
          end associate

@@ -35,7 +35,7 @@ module heat_steps
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: boundary_outflow
-   use heat_links, only: coefficients, limited, link_t
+   use heat_links, only: coefficients, limited_terms
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    implicit none(type, external)
@@ -228,7 +228,9 @@ contains
       change = 0.0_rk
       last = huge(1.0_rk)
       do k = 1, iterations
-         added = limited_terms(heat, half%dt, before + change) + excess*change
+         added = excess*change + half%dt &
+                 *limited_terms(heat%links, heat%externals, heat%first_cell, heat%first_joint, &
+                                before + change)
          if (all(abs(added - last) <= converged*diagonal)) exit
          remainder = excess*change
          last = added
@@ -347,62 +349,6 @@ contains
       end do
       into = dt*into
    end function supplied
-
-   !> What the limited temperatures add to the upwind flow along fractures [J/m].
-   pure function limited_terms(heat, dt, temperature) result(added)
-      class(heat_model_t), intent(in) :: heat
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
-      real(rk) :: added(heat%n)
-      real(rk) :: ahead, beyond(2, heat%n), into(2, heat%n), passed
-      integer(ik) :: k, next, own
-
-      added = 0.0_rk
-      if (.not. any(heat%links%is_limited)) return
-      into = 0.0_rk
-      beyond = 0.0_rk
-      do k = 1, size(heat%links, kind=ik)
-         associate (link => heat%links(k))
-            if (.not. link%is_limited) cycle
-            call find_direction(link, own, next)
-            into(:, next) = into(:, next) + abs(link%flow)*[1.0_rk, temperature(own)]
-            beyond(:, own) = beyond(:, own) + abs(link%flow)*[1.0_rk, temperature(next)]
-         end associate
-      end do
-      do k = 1, size(heat%externals, kind=ik)
-         associate (external => heat%externals(k))
-            if (external%unknown < heat%first_cell .or. external%flow < 0.0_rk) cycle
-            into(:, external%unknown) = into(:, external%unknown) &
-                                        + external%flow*[1.0_rk, external%temperature]
-         end associate
-      end do
-      do k = 1, size(heat%links, kind=ik)
-         associate (link => heat%links(k))
-            if (.not. link%is_limited) cycle
-            call find_direction(link, own, next)
-            if (own >= heat%first_joint .or. .not. into(1, own) > 0.0_rk) cycle
-            associate (before => into(2, own)/into(1, own), here => temperature(own))
-               ahead = temperature(next)
-               if (next >= heat%first_joint) then
-                  ! The cells behind the joint; at an outlet the temperature goes on as before.
-                  ahead = 2.0_rk*here - before
-                  if (beyond(1, next) > 0.0_rk) ahead = beyond(2, next)/beyond(1, next)
-               end if
-               passed = dt*abs(link%flow)*limited(before, here, ahead)
-            end associate
-            added([own, next]) = added([own, next]) + passed*[-1.0_rk, 1.0_rk]
-         end associate
-      end do
-   end function limited_terms
-
-   !> The unknown that a link takes fluid from, and the other one.
-   pure subroutine find_direction(link, own, next)
-      type(link_t), intent(in) :: link
-      integer(ik), intent(out) :: own, next
-
-      own = link%ends(merge(1, 2, link%flow >= 0.0_rk))
-      next = sum(link%ends) - own
-   end subroutine find_direction
 
    !> Error of a substep relative to the heat that has moved since the start, and at least to what
    !! rounding moves where the initial temperature is not uniform [-].

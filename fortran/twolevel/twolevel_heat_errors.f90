@@ -1,10 +1,10 @@
-!> Errors by the mean temperatures of the cells: rock shrinks, and fluid is pressed out of its pores,
-!! where the heat is, which may be a front far thinner than a cell. Each step is solved a second time
-!! with temperatures that are blurred over one cell more, the heat being the same, from the result of
-!! the second solution of the step before; on a new mesh from the state itself. What this changes is
-!! of the size of what the first blurring, that over the cells, has changed: in a row of equilateral
-!! triangles of the height h at a cooled face the first moves heat by h/3, the second by .296 h. Twice
-!! this change is stated (with 1 too few held in scenes drawn by a seed, verification/heat_unseen).
+!> Errors by the mean temperatures of the cells: rock shrinks, and fluid is pressed out of its
+!! pores, where the heat is, which may be a front far thinner than a cell. Each step is solved a
+!! second time with temperatures that are blurred over one cell more, the heat being the same, from
+!! the result of the second solution of the step before; on a new mesh from the state itself. What
+!! this changes is of the size of what the first blurring, that over the cells, has changed: in a
+!! row of equilateral triangles of the height h at a cooled face the first moves heat by h/3, the
+!! second by .296 h. Twice this change is stated (verification/cooled_plate).
 !!
 !! Fluid that is pressed out at a drained face leaves at once, but in the model only as far as the
 !! pressure of the mean temperature diffuses: up to that of the heat which the blurring moves out of
@@ -86,13 +86,22 @@ contains
       type(error_t), allocatable :: error
       real(rk), allocatable :: means(:)
 
-      if (.not. allocated(self%injected)) allocate (self%injected(size(scene%injections)), &
-                                                    source=0.0_rk)
+      if (.not. allocated(self%injected)) allocate (self%injected(0))
+      if (size(self%injected) /= size(scene%injections)) then
+         ! At the start, and after a restart with other wells.
+         self%injected = spread(0.0_rk, 1, size(scene%injections))
+         if (allocated(self%state)) deallocate (self%state)
+      end if
       if (.not. (allocated(problem%model%rock%temperature) .and. state%time > before%time)) then
          if (allocated(self%state)) deallocate (self%state)
          return
       end if
-      if (.not. allocated(self%state) .or. is_new_mesh) self%state = before
+      if (allocated(self%state)) then
+         if (is_new_mesh .or. size(self%state%unknowns) /= size(before%unknowns)) then
+            deallocate (self%state)
+         end if
+      end if
+      if (.not. allocated(self%state)) self%state = before
       means = problem%model%rock%temperature
       problem%model%rock%temperature = blurred(problem%mesh, means)
       call find_pressed_out(problem, means, self%at_faces, self%at_sides)
@@ -151,7 +160,7 @@ contains
       call archive%enter("blurred")
       call archive%item("leaked", self%leaked)
       call archive%item("outflow", self%outflow)
-      call archive%list("injected", self%injected, "wells ?")
+      call archive%list("injected", self%injected, "all_wells ?")
       call archive%item("at_faces", self%at_faces)
       call archive%item("at_sides", self%at_sides)
       is_known = allocated(self%state)
