@@ -33,6 +33,7 @@ STORED = {
     "shear_t": ("report_slip_archive:visit_shear",),
     "levels_state_t": ("twolevel_archive:visit_levels", "twolevel_restart:visit"),
     "heat_state_t": ("heat_state:visit",),
+    "blurred_t": ("twolevel_heat_errors:visit",),
     "state_t": ("coarse_archive:visit_state",),
     "guess_t": ("coarse_archive:visit_state",),
     "step_report_t": ("coarse_archive:visit_report",),

@@ -15,7 +15,7 @@ module heat_links
    implicit none(type, external)
    private
 
-   public :: coefficients, external_t, limited, link_t
+   public :: coefficients, external_t, limited, limited_terms, link_t
 
    !> Two unknowns between which heat passes.
    type :: link_t
@@ -78,5 +78,64 @@ contains
          if (into*out > 0.0_rk) beyond = into*out/(into + out)
       end associate
    end function limited
+
+   !> What the limited temperatures add to the upwind flow along fractures [W/m].
+   pure function limited_terms(links, externals, first_cell, first_joint, temperature) &
+      & result(added)
+      type(link_t), intent(in) :: links(:)
+      type(external_t), intent(in) :: externals(:)
+      integer(ik), intent(in) :: first_cell, first_joint  !< unknowns of fracture cells, joints
+      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
+      real(rk) :: added(size(temperature))
+      real(rk) :: ahead, passed
+      real(rk), dimension(2, size(temperature)) :: beyond, into
+      integer(ik) :: k, next, own
+
+      added = 0.0_rk
+      if (.not. any(links%is_limited)) return
+      into = 0.0_rk
+      beyond = 0.0_rk
+      do k = 1, size(links, kind=ik)
+         associate (link => links(k))
+            if (.not. link%is_limited) cycle
+            call find_direction(link, own, next)
+            into(:, next) = into(:, next) + abs(link%flow)*[1.0_rk, temperature(own)]
+            beyond(:, own) = beyond(:, own) + abs(link%flow)*[1.0_rk, temperature(next)]
+         end associate
+      end do
+      do k = 1, size(externals, kind=ik)
+         associate (external => externals(k))
+            if (external%unknown < first_cell .or. external%flow < 0.0_rk) cycle
+            into(:, external%unknown) = into(:, external%unknown) &
+                                        + external%flow*[1.0_rk, external%temperature]
+         end associate
+      end do
+      do k = 1, size(links, kind=ik)
+         associate (link => links(k))
+            if (.not. link%is_limited) cycle
+            call find_direction(link, own, next)
+            if (own >= first_joint .or. .not. into(1, own) > 0.0_rk) cycle
+            associate (before => into(2, own)/into(1, own), here => temperature(own))
+               ahead = temperature(next)
+               if (next >= first_joint) then
+                  ! The cells behind the joint; at an outlet the temperature goes on as before.
+                  ahead = 2.0_rk*here - before
+                  if (beyond(1, next) > 0.0_rk) ahead = beyond(2, next)/beyond(1, next)
+               end if
+               passed = abs(link%flow)*limited(before, here, ahead)
+            end associate
+            added([own, next]) = added([own, next]) + passed*[-1.0_rk, 1.0_rk]
+         end associate
+      end do
+   end function limited_terms
+
+   !> The unknown that a link takes fluid from, and the other one.
+   pure subroutine find_direction(link, own, next)
+      type(link_t), intent(in) :: link
+      integer(ik), intent(out) :: own, next
+
+      own = link%ends(merge(1, 2, link%flow >= 0.0_rk))
+      next = sum(link%ends) - own
+   end subroutine find_direction
 
 end module heat_links

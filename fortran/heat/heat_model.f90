@@ -22,6 +22,7 @@ module heat_model
    use coarse_regions, only: find_regions, regions_t
    use coarse_rock, only: new_rock, rock_t
    use heat_links, only: external_t, link_t
+   use heat_slopes, only: new_slopes, slopes_t
    use heat_state, only: heat_state_t
    use mesh_geometry, only: cell_area, cell_centre, face_length, fracture_cell_centre, &
                             outward_normal
@@ -60,12 +61,14 @@ module heat_model
       ! Conduction: flow into unknown row of each entry's value times the temperature of col.
       integer(ik), allocatable :: row(:), col(:)
       real(rk), allocatable :: conduction(:)  !< [W/(m K)]
+      type(slopes_t) :: slopes  !< along faces with layers
       real(rk), allocatable :: known(:)  !< (unknowns) flow out of them that the sides give [W/m]
       type(link_t), allocatable :: links(:)  !< faces, nodes of layers, fracture cells, branches
       type(mumps_t) :: matrix
       type(external_t), allocatable :: externals(:)  !< of the present step
    contains
       procedure :: set_mesh
+      procedure :: along_faces
       procedure :: begin
       procedure :: scalars
       procedure :: cell_means
@@ -220,6 +223,7 @@ contains
       given = merge(self%sides%temperature, -self%sides%heat_flux, is_given)
       n = sum([(self%regions%scalar_count(r)**2, r=1, self%regions%n_regions)])
       allocate (self%row(n), self%col(n), self%conduction(n))
+      self%slopes = new_slopes(self%mesh, n)
       allocate (self%known(self%n), source=0.0_rk)
       n = 0
       do r = 1, self%regions%n_regions
@@ -232,15 +236,18 @@ contains
          end if
          around = around_vertex(self, r)
          m = size(around, kind=ik)
-         do b = 1, m
-            if (around(b) == 0) cycle
-            self%known(around(b)) = self%known(around(b)) + share%known(b)
-            do a = 1, m
-               if (around(a) == 0) cycle
+         do a = 1, m
+            if (around(a) == 0) cycle
+            self%known(around(a)) = self%known(around(a)) + share%known(a)
+            do b = 1, m
+               if (around(b) == 0) cycle
                n = n + 1
                self%row(n) = around(b)
                self%col(n) = around(a)
                self%conduction(n) = share%matrix(a, b)
+               if (.not. allocated(self%regions%scalars)) cycle
+               call self%slopes%add(self%mesh, self%regions%scalars%at(r, a), around(b), &
+                                    share%matrix(a, b))
             end do
          end do
       end do
@@ -279,6 +286,16 @@ contains
          around = self%of_scalar(at_component(self%regions%blocks%of(region), 3_ik))
       end if
    end function around_vertex
+
+   !> Heat that the slopes of the temperature along faces bring into the unknowns [W/m].
+   pure function along_faces(self, temperature) result(into)
+      class(heat_model_t), intent(in) :: self
+      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
+      real(rk) :: into(self%n)
+
+      into = self%slopes%heat_flows(self%slopes%ends(self%layers, self%first_node, temperature), &
+                                    self%n)
+   end function along_faces
 
    !> Temperatures among which the multi-point fluxes find those around a vertex.
    pure function scalars(self, temperature) result(values)

@@ -18,6 +18,10 @@
 !! second order, damps what is stiff (by (1 + y - y^2)/(1 + y)^3, y half a substep over the time of
 !! a decay). If c would take a temperature out of its range, only a share of it counts everywhere.
 !!
+!! The heat that slopes along faces move (heat_slopes) is that at the beginning of each half, and
+!! in c with the other sign: that in the middle of the substep. Where temperatures would leave their
+!! range, the substep has none.
+!!
 !! One factorization, that of the second half, serves both halves and c. In the first half the
 !! capacity that M has too much is iterated on the right-hand side. The heat r that the iteration
 !! leaves over is taken from the second half and 2 r is added to that of c, so that both T_2 and c
@@ -31,7 +35,7 @@ module heat_steps
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: boundary_outflow
-   use heat_links, only: coefficients, limited, link_t
+   use heat_links, only: coefficients, limited_terms
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    implicit none(type, external)
@@ -44,8 +48,10 @@ module heat_steps
       real(rk) :: dt = 0.0_rk  !< [s]
       real(rk), allocatable :: capacity(:)  !< (unknowns) after it [J/(m K)]
       real(rk), allocatable :: temperature(:)  !< (unknowns) after it [K]
+      real(rk), allocatable :: along(:)  !< (unknowns) heat by the slopes along faces [J/m]
    end type half_t
 
+   real(rk), parameter :: beyond = 1.0e-7_rk  !< by which temperatures may leave their range [-]
    real(rk), parameter :: most = 2.0_rk, least = 0.2_rk  !< change of the length of substeps [-]
 
 contains
@@ -86,6 +92,7 @@ contains
                           merge(state%next, 0.0_rk, left <= 0.0_rk .and. ratio > 1.0_rk))
          share = share_in_range(heat, state, half(2)%temperature, correction)
          after = half(2)%temperature - share*correction
+         half(2)%along = half(2)%along + share*(half(2)%along - half(1)%along)
          ! Linear, so that of its time integral is the integral of what leaves the body.
          half(1)%temperature = 0.5_rk*((1.0_rk + share)*half(1)%temperature &
                                        + (1.0_rk - share)*half(2)%temperature - share*correction)
@@ -163,45 +170,67 @@ contains
       real(rk), parameter :: converged = 1.0e-10_rk  ! change of iterated terms over the range
       real(rk) :: diagonal(heat%n), excess(heat%n)
       real(rk) :: nothing(heat%n), remainder(heat%n), rest(heat%n)
+      integer :: k
 
       call factorize(heat, state%capacity, half, diagonal, error)
       if (allocated(error)) return
       excess = half(1)%capacity - state%capacity
       nothing = 0.0_rk
-      call solve(heat, half(1)%dt, converged*(state%range(2) - state%range(1)), diagonal, &
-                 state%temperature, excess, nothing, half(1)%temperature, remainder, error)
-      if (allocated(error)) return
-      call solve(heat, half(2)%dt, converged*(state%range(2) - state%range(1)), diagonal, &
-                 half(1)%temperature, nothing, remainder, half(2)%temperature, rest, error)
-      if (allocated(error)) return
+      do k = 1, 2
+         half(1)%along = half(1)%dt*heat%along_faces(state%temperature)
+         if (k == 2) half(1)%along = nothing
+         call solve(heat, converged*(state%range(2) - state%range(1)), diagonal, &
+                    state%temperature, excess, nothing, half(1), remainder, error)
+         if (allocated(error)) return
+         half(2)%along = half(2)%dt*heat%along_faces(half(1)%temperature)
+         if (k == 2) half(2)%along = nothing
+         call solve(heat, converged*(state%range(2) - state%range(1)), diagonal, &
+                    half(1)%temperature, nothing, remainder, half(2), rest, error)
+         if (allocated(error)) return
+         ! Slopes of the beginning may take a front that has moved on out of its range.
+         if (in_range(heat, state, half(1)) .and. in_range(heat, state, half(2))) exit
+      end do
       correction = (half(2)%capacity*(half(2)%temperature - half(1)%temperature) &
                     - state%capacity*(half(1)%temperature - state%temperature) &
-                    + 2.0_rk*remainder)/diagonal
+                    + 2.0_rk*(remainder - half(2)%along + half(1)%along))/diagonal
       call heat%matrix%solve(correction, error)
    end subroutine find
 
+   !> Whether the temperatures after a half are in their range.
+   pure logical function in_range(heat, state, half)
+      class(heat_model_t), intent(in) :: heat
+      type(heat_state_t), intent(in) :: state
+      type(half_t), intent(in) :: half
+      real(rk) :: slack
+
+      slack = beyond*(state%range(2) - state%range(1))
+      in_range = minval(half%temperature) >= state%range(1) - slack .and. &
+                 maxval(half%temperature) <= state%range(2) + slack .or. has_sources(heat)
+   end function in_range
+
    !> Solve for the temperatures after a half: the limited terms and the capacity that the matrix
    !! has too much are iterated.
-   subroutine solve(heat, dt, converged, diagonal, before, excess, taken, after, remainder, error)
+   subroutine solve(heat, converged, diagonal, before, excess, taken, half, remainder, error)
       class(heat_model_t), intent(inout) :: heat
-      real(rk), intent(in) :: dt  !< [s]
       real(rk), intent(in) :: converged  !< change of the iterated terms [K]
       real(rk), intent(in) :: diagonal(:)  !< (unknowns) of the matrix [J/(m K)]
       real(rk), intent(in) :: before(:)  !< (unknowns) [K]
       real(rk), intent(in) :: excess(:)  !< (unknowns) of capacity in the matrix [J/(m K)]
       real(rk), intent(in) :: taken(:)  !< (unknowns) heat [J/m]
-      real(rk), allocatable, intent(out) :: after(:)  !< (unknowns) [K]
+      type(half_t), intent(inout) :: half
       real(rk), intent(out) :: remainder(:)  !< (unknowns) heat too much in the result [J/m]
       type(error_t), allocatable, intent(out) :: error
       integer, parameter :: iterations = 25
       real(rk), dimension(heat%n) :: added, change, last, rhs
       integer :: k
 
-      rhs = supplied(heat, dt, before) - taken
+      rhs = supplied(heat, half%dt, before) + half%along - taken
       change = 0.0_rk
       last = huge(1.0_rk)
       do k = 1, iterations
-         added = limited_terms(heat, dt, before + change) + excess*change
+         added = excess*change + half%dt &
+                 *limited_terms(heat%links, heat%externals, heat%first_cell, heat%first_joint, &
+                                before + change)
          if (all(abs(added - last) <= converged*diagonal)) exit
          remainder = excess*change
          last = added
@@ -210,7 +239,7 @@ contains
          if (allocated(error)) return
       end do
       remainder = remainder - excess*change
-      after = before + change
+      half%temperature = before + change
    end subroutine solve
 
    !> The share of the correction that keeps temperatures in their range.
@@ -218,7 +247,6 @@ contains
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
       real(rk), intent(in) :: temperature(:), correction(:)  !< (unknowns) [K]
-      real(rk), parameter :: beyond = 1.0e-7_rk  ! of the range
       integer(ik) :: i
 
       share = 1.0_rk
@@ -322,74 +350,21 @@ contains
       into = dt*into
    end function supplied
 
-   !> What the limited temperatures add to the upwind flow along fractures [J/m].
-   pure function limited_terms(heat, dt, temperature) result(added)
-      class(heat_model_t), intent(in) :: heat
-      real(rk), intent(in) :: dt  !< [s]
-      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
-      real(rk) :: added(heat%n)
-      real(rk) :: ahead, beyond(2, heat%n), into(2, heat%n), passed
-      integer(ik) :: k, next, own
-
-      added = 0.0_rk
-      if (.not. any(heat%links%is_limited)) return
-      into = 0.0_rk
-      beyond = 0.0_rk
-      do k = 1, size(heat%links, kind=ik)
-         associate (link => heat%links(k))
-            if (.not. link%is_limited) cycle
-            call find_direction(link, own, next)
-            into(:, next) = into(:, next) + abs(link%flow)*[1.0_rk, temperature(own)]
-            beyond(:, own) = beyond(:, own) + abs(link%flow)*[1.0_rk, temperature(next)]
-         end associate
-      end do
-      do k = 1, size(heat%externals, kind=ik)
-         associate (external => heat%externals(k))
-            if (external%unknown < heat%first_cell .or. external%flow < 0.0_rk) cycle
-            into(:, external%unknown) = into(:, external%unknown) &
-                                        + external%flow*[1.0_rk, external%temperature]
-         end associate
-      end do
-      do k = 1, size(heat%links, kind=ik)
-         associate (link => heat%links(k))
-            if (.not. link%is_limited) cycle
-            call find_direction(link, own, next)
-            if (own >= heat%first_joint .or. .not. into(1, own) > 0.0_rk) cycle
-            associate (before => into(2, own)/into(1, own), here => temperature(own))
-               ahead = temperature(next)
-               if (next >= heat%first_joint) then
-                  ! The cells behind the joint; at an outlet the temperature goes on as before.
-                  ahead = 2.0_rk*here - before
-                  if (beyond(1, next) > 0.0_rk) ahead = beyond(2, next)/beyond(1, next)
-               end if
-               passed = dt*abs(link%flow)*limited(before, here, ahead)
-            end associate
-            added([own, next]) = added([own, next]) + passed*[-1.0_rk, 1.0_rk]
-         end associate
-      end do
-   end function limited_terms
-
-   !> The unknown that a link takes fluid from, and the other one.
-   pure subroutine find_direction(link, own, next)
-      type(link_t), intent(in) :: link
-      integer(ik), intent(out) :: own, next
-
-      own = link%ends(merge(1, 2, link%flow >= 0.0_rk))
-      next = sum(link%ends) - own
-   end subroutine find_direction
-
-   !> Error of a substep relative to the heat that has moved since the start [-].
+   !> Error of a substep relative to the heat that has moved since the start, and at least to what
+   !! rounding moves where the initial temperature is not uniform [-].
    pure real(rk) function step_error(heat, state, half, correction) result(error)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
       type(half_t), intent(in) :: half
       real(rk), intent(in) :: correction(:)  !< (unknowns) [K]
       real(rk), parameter :: remaining = 0.2_rk  ! of the correction
+      real(rk), parameter :: rounding = 1.0e-9_rk  ! of the heat
       real(rk) :: moved
 
       error = 0.0_rk
       if (.not. allocated(state%rate)) return
-      moved = sum(half%capacity*abs(half%temperature - heat%initial))
+      moved = max(sum(half%capacity*abs(half%temperature - heat%initial)), &
+                  rounding*sum(half%capacity*abs(heat%initial)))
       if (.not. moved > 0.0_rk) return
       error = remaining*sum(half%capacity*abs(correction))/moved
    end function step_error
@@ -407,7 +382,8 @@ contains
 
       by_wells = 0.0_rk
       by_sides = -dt*boundary_outflow(heat%mesh, heat%regions, heat%regions%flux, &
-                                      heat%scalars(half(1)%temperature))
+                                      heat%scalars(half(1)%temperature)) &
+                 + sum(half(1)%along) + sum(half(2)%along)
       if (allocated(heat%heat%source_power)) then
          by_sides = by_sides + dt*sum(heat%heat%source_power)
       end if

@@ -60,6 +60,9 @@ end if
 if (self%is_initial) call self%value_errors%begin(self%scene, self%problem, self%now%coarse)
 call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row, &
                                   self%now%stated_errors, facts_of(self))
+call self%blurred%solve(self%scene, self%problem, self%before, self%now%coarse, &
+                        self%step%report, self%shows_growth)
+call self%blurred%add_to_row(self%problem, self%before, self%now%coarse, self%value_errors%row)
 call note_well_rows(self)
 call watch_errors(self)
 self%summary%heat = row%heat
@@ -161,6 +164,9 @@ subroutine note_well_rows(self)
                                merge(0.0_rk, self%step%dt, self%is_initial), rows)
    call self%value_errors%note_wells(self%scene, self%problem, self%now%coarse, rows, &
                                      self%now%stated_errors, facts_of(self))
+   call self%blurred%add_to_wells(self%scene, self%problem, self%before%time, self%now%coarse, &
+                                  rows, self%value_errors%row)
+   self%value_errors%of_wells = rows%error%pressure
    if (allocated(self%problem%heat)) rows%temperature = self%problem%heat%heat%temperature &
                                                         + self%now%heat%well_temperature
    self%chronicle%wells = [self%chronicle%wells, rows]

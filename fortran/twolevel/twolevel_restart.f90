@@ -68,7 +68,10 @@ contains
    if (archive%is_loading) call check_places(archive, self%front_state_t, self%now)
    ! The next step begins with the present state: of the one before only its time is needed.
    call archive%item("before_time", self%before%time)
-   if (allocated(self%scene%heat)) call self%now%heat%visit(archive)
+   if (allocated(self%scene%heat)) then
+      call self%now%heat%visit(archive)
+      call self%blurred%visit(archive)
+   end if
    if (archive%is_loading .and. .not. allocated(archive%fault)) then
       call follow_sides(self%scene, self%now%coarse%time, self%before%time)
    end if

@@ -16,6 +16,7 @@ module twolevel_state
    use report_simulation, only: snapshot_t
    use twolevel_field_errors, only: add_rock_errors, find_fracture_errors
    use twolevel_heat, only: act, add_heat_fields, heat_row, predict_heat
+   use twolevel_heat_errors, only: blurred_t
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_pace, only: pace_t
@@ -87,6 +88,7 @@ module twolevel_state
       type(stimulation_t) :: stimulation
       type(well_results_t) :: well_results
       type(value_errors_t) :: value_errors  !< of the accepted state
+      type(blurred_t) :: blurred  !< the accepted step with blurred temperatures
       real(rk) :: seismic_moment = 0.0_rk  !< per metre of thickness [N m]
       !> unknowns of the windows when they were last compared with those of the body
       integer(ik) :: compared_unknowns = 0
@@ -498,9 +500,11 @@ contains
       row%length_error = self%now%stated_errors%length
       row%well_pressure_error = self%now%stated_errors%pressure
       if (.not. allocated(self%value_errors%of_wells)) return
-      associate (first => self%value_errors%undrained(self%scene, self%problem))
-         row%well_pressure_error = min(row%well_pressure_error + maxval([0.0_rk, first]), &
-                                       maxval(self%value_errors%of_wells))
+      associate (first => self%value_errors%undrained(self%scene, self%problem), &
+                 largest => maxval(self%value_errors%of_wells))
+         row%well_pressure_error = min(row%well_pressure_error + maxval([0.0_rk, first]), largest)
+         ! The error of the steps is that of wells in fractures.
+         if (any(self%scene%injections%fracture == 0)) row%well_pressure_error = largest
       end associate
    end function history
 
@@ -513,6 +517,7 @@ contains
       call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
       if (allocated(error)) return
       call note_probes(self%value_errors, self%time(), self%now%trend%pressure_rise(), row)
+      call self%blurred%add_to_probes(self%scene, self%problem, row)
    end subroutine probes
 
    !> Fields of the last accepted state, if there is one.
@@ -527,6 +532,7 @@ contains
       if (self%problem%mesh%fracture%n_cells > 0) then
          call find_fracture_errors(self%scene, self%problem, self%now%coarse, self%value_errors, &
                                    fields%fracture)
+         call self%blurred%add_to_fractures(self%scene, self%problem, fields%fracture)
       end if
       fields%intersection%pressure_error = spread(self%value_errors%pressure_error(), 1, &
                                                   size(fields%intersection%pressure))
