@@ -33,7 +33,7 @@ SCENE = """\
 &time end = 1.0e7 /
 &coarse size_fracture = 2.0, size_boundary = 40.0 /
 &fine window = 100.0 /
-&growth enabled = .true., stop_gain = 0.3 /
+&growth enabled = .true., stop_gain = 0.25 /
 &output vtu = .false. /
 """
 
@@ -75,7 +75,11 @@ def given(program: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     ids=["1.25 m", "82 km"],
 )
 def test_growth_in_other_units(tmp_path: Path, given: Path, units: Units) -> None:
-    """Factors that are powers of 4 change rounding alone: nothing absolute is in the results."""
+    """Factors that are powers of 4 change rounding alone: nothing absolute is in the results.
+
+    The run ends at a gain of 0.25 m: at 0.28 m an advance, which is rounded to 1e-7 of the segment,
+    is on either side of such a number, and the pressures differ by 4e-8 from there on.
+    """
     out = run(tmp_path, in_units(SCENE, units))
     for name in ("history.csv", "tips.csv"):
         wanted, found = table(given / name), table(out / name, units)
@@ -95,7 +99,7 @@ def test_growth_by_cold_water_in_other_units(tmp_path: Path) -> None:
         ("1.5e6", "1.5e7, heat_capacity = 2.2e6, heat_conductivity = 2.6, heat_expansion = 2.4e-5"),
         ("viscosity = 3.0e-4", "viscosity = 3.0e-4, heat_capacity = 4.2e6"),
         ("rate = 1.0e-5 /", "rate = 1.0e-5, temperature = 350.0 /\n&heat temperature = 400.0 /"),
-        ("stop_gain = 0.3", "stop_gain = 0.005"),
+        ("stop_gain = 0.25", "stop_gain = 0.005"),
     ):
         assert old in text
         text = text.replace(old, new)
