@@ -69,3 +69,19 @@ def test_a_jump_is_reported_with_its_length(tmp_path: Path) -> None:
     assert ended["growth_jumps"] == len(jumps)
     assert ended["longest_growth_jump_m"] == pytest.approx(longest, rel=1e-3)
     assert f"grows by {len(jumps)} jump" in done.stderr + done.stdout
+
+
+def test_a_jump_is_found_with_any_tolerance(tmp_path: Path) -> None:
+    """In leaking rock growth is smooth in long steps and jumps in short ones: after the jump."""
+    text = ONE_TIP.replace("stop_gain = 0.15", "stop_gain = 0.3")
+    at = []
+    for tolerance in ("0.01", "0.003"):
+        end = f"end = 195.0, tolerance = {tolerance}"
+        (tmp_path / "one.nml").write_text(text.replace("end = 320.0", end))
+        call(tmp_path, "run", "one.nml", "--out", tolerance, "--no-plot")
+        assert record(tmp_path / tolerance)["growth_jumps"] > 0
+        at.append(rows(tmp_path / tolerance / "history.csv")[-1])
+    lengths = [float(row["fracture_length_m"]) for row in at]
+    assert min(lengths) > 0.46  # smooth: 0.45; steps of .2 s, cells of 10 mm: 0.48 to 0.495
+    errors = [float(row["fracture_length_error_m"]) for row in at]
+    assert abs(lengths[1] - lengths[0]) <= sum(errors)
