@@ -79,7 +79,7 @@ def test_a_jump_is_found_with_any_tolerance(tmp_path: Path) -> None:
         end = f"end = 195.0, tolerance = {tolerance}"
         (tmp_path / "one.nml").write_text(text.replace("end = 320.0", end))
         call(tmp_path, "run", "one.nml", "--out", tolerance, "--no-plot")
-        assert record(tmp_path / tolerance)["growth_jumps"] > 0
+        assert record(tmp_path / tolerance)["growth_jumps"] != 0
         at.append(rows(tmp_path / tolerance / "history.csv")[-1])
     lengths = [float(row["fracture_length_m"]) for row in at]
     assert min(lengths) > 0.46  # smooth: 0.45; steps of .2 s, cells of 10 mm: 0.48 to 0.495
