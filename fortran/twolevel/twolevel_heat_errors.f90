@@ -73,7 +73,8 @@ contains
       end do
    end function blurred
 
-   !> Solve an accepted step a second time; if it is not solved, the next one begins anew.
+   !> Solve an accepted step a second time; if it is not solved, the next one begins
+   !! from the state itself.
    subroutine solve(self, scene, problem, before, state, report, is_new_mesh)
       class(blurred_t), intent(inout) :: self
       type(scene_t), intent(inout) :: scene

@@ -189,6 +189,7 @@ contains
       if (allocated(self%quiet)) call transfer_rates(self%quiet, map)
    end subroutine transfer
 
+   !> The same for the rates of one step.
    pure subroutine transfer_rates(rates, map)
       type(rates_t), intent(inout) :: rates
       type(mesh_map_t), intent(in) :: map
