@@ -292,9 +292,7 @@ contains
       wants = wants .and. self%tip%path_target == target_none
       call self%tape%keep("joins", joins)
       call self%tape%keep("wants", wants)
-      if (.not. (trial%has_joined .or. trial%jumps)) then
-         trial%time_error = self%step_error(search%dt, any(search%begun > 0))
-      end if
+      if (.not. (trial%has_joined .or. trial%jumps)) call search%see_error(self, trial)
       if (any(joins)) then
          call join(self, search, joins, trial)
       else if (any(wants)) then

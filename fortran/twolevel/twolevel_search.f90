@@ -38,9 +38,22 @@ module twolevel_search
       type(advances_t) :: advances  !< search for the positions of the tips on their segments
       integer :: settlings = 0  !< tries with the flows of the last one, which moved other heat
       logical :: is_over = .false.  !< the tries have ended
+   contains
+      procedure :: see_error
    end type search_t
 
 contains
+
+   !> Time error of the step with the present growth. Where the time of a jump within the step does
+   !! not matter, that of the first try remains, which has the growth that was expected.
+   subroutine see_error(self, levels, trial)
+      class(search_t), intent(in) :: self
+      class(two_levels_t), intent(in) :: levels
+      type(trial_t), intent(inout) :: trial
+
+      if (self%dt <= self%moment) return
+      trial%time_error = levels%step_error(self%dt, has_begun=any(self%begun > 0))
+   end subroutine see_error
 
    !> End the tries after the first one, where a tip would have to begin a segment but exceeds its
    !! toughness by so much that the growth of the others cannot change it: the step goes too far.
@@ -131,7 +144,7 @@ contains
       begins = [(all(begins .or. search%kind /= search%kind(i)), i=1, size(wants))]
       call self%tape%keep("early", begins)
       if (.not. any(begins)) return
-      trial%time_error = self%step_error(search%dt, any(search%begun > 0))
+      call search%see_error(self, trial)
       call begin_wanted(self, search, begins, timers, trial, error)
    end subroutine begin_early
 
