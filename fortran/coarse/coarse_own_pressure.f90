@@ -22,12 +22,11 @@ contains
 
    !> Pressure at nodes: the mean of the adjacent cells plus the smaller of two extrapolations
    !! (minmod), one with the gradient of the cells' means, one that contains the fluid's pressure at
-   !! faces. Tips are drained. Exact for linear pressures.
-   pure function own_pressure(mesh, means, extrapolated, fluid) result(values)
+   !! faces. Exact for linear pressures.
+   pure function own_pressure(mesh, means, extrapolated) result(values)
       type(mesh_t), intent(in) :: mesh
       real(rk), intent(in) :: means(:)  !< (n_cells) [Pa]
       real(rk), intent(in) :: extrapolated(:)  !< (n_nodes) of coarse_nodes [Pa]
-      real(rk), intent(in) :: fluid(:)  !< (fracture cells) [Pa]
       real(rk), allocatable :: values(:)  !< (n_nodes) [Pa]
       real(rk), allocatable :: gradients(:, :), plain(:), weight(:)
       integer(ik) :: c, k, v
@@ -45,46 +44,7 @@ contains
       end do
       plain = plain/weight
       values = plain + minmod(values/weight, extrapolated - plain)
-      call drain_tips(mesh, fluid, values)
    end function own_pressure
-
-   !> Around a tip, undrained rock has a pressure that is singular there, but the fluid on the faces
-   !! drains it, however thin the layer: on the faces of the last cell the rock's pressure differs
-   !! from the fluid's by as much as it does two cells behind, on both sides alike.
-   pure subroutine drain_tips(mesh, fluid, values)
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: fluid(:)  !< (fracture cells) [Pa]
-      real(rk), intent(inout) :: values(:)  !< (n_nodes) of the rock [Pa]
-      integer(ik) :: at, behind, k, last(4), nodes(4), step, tip
-      real(rk) :: jump, middle(2), way(2)
-
-      associate (here => mesh%fracture)
-         do tip = 1, here%n_tips
-            at = findloc(here%cell_fracture == here%tip_fracture(tip) .and. &
-                         here%cell_points(here%tip_end(tip), :) == here%tip_point(tip), &
-                         .true., dim=1)
-            if (at == 0) cycle
-            step = merge(1_ik, -1_ik, here%tip_end(tip) == 1)
-            behind = at
-            do k = 1, 2
-               if (behind + step < 1 .or. behind + step > here%n_cells) exit
-               if (here%cell_fracture(behind + step) /= here%tip_fracture(tip)) exit
-               behind = behind + step
-            end do
-            if (behind == at) cycle
-            last = reshape(mesh%face_nodes(:, here%cell_faces(:, at)), [4])
-            nodes = reshape(mesh%face_nodes(:, here%cell_faces(:, behind)), [4])
-            jump = fluid(behind) - 0.25_rk*sum(values(nodes))
-            middle = 0.25_rk*sum(mesh%xy(:, last), dim=2)
-            way = 0.25_rk*sum(mesh%xy(:, nodes), dim=2) - middle
-            do k = 1, 4
-               values(last(k)) = fluid(at) - jump + (fluid(behind) - fluid(at)) &
-                                 *dot_product(mesh%xy(:, last(k)) - middle, way) &
-                                 /dot_product(way, way)
-            end do
-         end do
-      end associate
-   end subroutine drain_tips
 
    !> Gradient in each cell, by least squares through the cells that share a node with it.
    pure function gradients_of_means(mesh, means) result(gradients)

@@ -137,6 +137,7 @@ contains
       call archive%item("has_sudden_onset", stepper%has_sudden_onset)
       call archive%item("error_before", stepper%error_before)
       call archive%item("arrival_cuts", stepper%arrival_cuts)
+      call archive%item("late", stepper%late)
       call archive%item("at_switches", stepper%at_switches)
       call archive%item("without_headway", stepper%without_headway)
       call archive%item("slow_steps", stepper%slow_steps)
@@ -219,11 +220,19 @@ contains
    subroutine visit_values(archive, name, values)
       type(archive_t), intent(inout) :: archive
       character(len=*), intent(in) :: name
-      type(coarse_values_t), intent(inout) :: values
+      type(coarse_values_t), intent(inout), target :: values
+      integer(lk) :: n
 
       call archive%enter(name)
       call archive%list("of", values%of, "3, blocks ?")
       call archive%list("nodal", values%nodal, "3, nodes ?")
+      call archive%extent("drained", values%drained, n, "mesh_tips ?")
+      if (archive%is_loading) then
+         if (allocated(values%drained)) deallocate (values%drained)
+         if (n >= 0_lk) allocate (values%drained(n))
+      end if
+      if (n > 0_lk) call archive%plain("drained", c_loc(values%drained), &
+                                       n*storage_size(values%drained)/8_lk)
       call archive%list("displacement", values%displacement, "2, nodes ?")
       call archive%list("gradient", values%gradient, "2, 2, nodes ?")
       call visit_laws(archive, "law", values%law)
@@ -231,7 +240,8 @@ contains
       call archive%list("viscous", values%viscous, "fcells ?")
       call archive%item("undrained", values%undrained)
       call archive%agree(name, [allocated(values%of), allocated(values%nodal), &
-                                allocated(values%displacement), allocated(values%gradient), &
+                                allocated(values%drained), allocated(values%displacement), &
+                                allocated(values%gradient), &
                                 allocated(values%law), allocated(values%is_grown), &
                                 allocated(values%viscous)])
       call archive%leave()

@@ -17,8 +17,10 @@ module twolevel_back_stress
    use coarse_layout, only: end_block, layer_block
    use coarse_rock, only: solid_t
    use coarse_state, only: state_t
+   use coarse_tip_drainage, only: pressure_at, pressure_of_face
    use mesh_geometry, only: cell_area, face_length
    use mesh_types, only: mesh_t
+   use twolevel_faces, only: coarse_values_t
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
@@ -60,8 +62,7 @@ contains
                layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
                if (layer == 0) cycle
                place = place_of(mesh, layers, layer)
-               call find_excess(mesh, layers, state, problem%values%nodal(3, :), layer, alone, &
-                                excess)
+               call find_excess(mesh, layers, state, problem%values, layer, alone, excess)
                k1 = k1 - 0.5_rk*weighted(behind, place, excess)
                of_layers = of_layers - 0.5_rk*weighted(behind, place, alone)
             end do
@@ -94,7 +95,7 @@ contains
          do side = 1, 2
             layer = mesh%face_layer(mesh%fracture%cell_faces(side, cell))
             if (layer == 0) cycle
-            call find_excess(mesh, layers, state, problem%values%nodal(3, :), layer, alone, excess)
+            call find_excess(mesh, layers, state, problem%values, layer, alone, excess)
             pressure = pressure + 0.5_rk*alone(1)
          end do
       end associate
@@ -165,19 +166,20 @@ contains
    !> Pressure of the layer at these distances beyond that of windows [Pa].
    !!
    !! The cell at a tip also has the singular pressure of undrained rock there, which windows do not
-   !! have: the fluid drains it (coarse_own_pressure), and it vanishes on the faces. The layer is
+   !! have: the fluid drains it (coarse_tip_drainage), and it vanishes on the faces. The layer is
    !! therefore that of a difference from the window's pressure, with the shape that it has. The
    !! window's pressure, from the means of cells, has the content of the layer distributed over the
    !! cell: the rest of the cell has less.
-   pure subroutine find_excess(mesh, layers, state, own_pressure, layer, alone, excess)
+   pure subroutine find_excess(mesh, layers, state, values, layer, alone, excess)
       type(mesh_t), intent(in) :: mesh
       type(layers_t), intent(in) :: layers
       type(state_t), intent(in) :: state
-      real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) [Pa]
+      type(coarse_values_t), intent(in) :: values
       integer(ik), intent(in) :: layer
       !> pressure beyond that of the rest of the cell, and beyond that of windows [Pa]
       real(rk), allocatable, intent(out) :: alone(:), excess(:)
       real(rk), parameter :: at_most = 2.0_rk  ! times the pressures of the layer [-]
+      real(rk), parameter :: thirds(3) = 1.0_rk/3.0_rk  ! weights of the nodes at the centre [-]
       real(rk), allocatable :: place(:)
       real(rk) :: at_centre, at_face, beyond, rest
       integer(ik) :: last
@@ -185,8 +187,8 @@ contains
       associate (chain => layers%chain(layer), cell => layers%cell(layer), &
                  face => mesh%layer_face(layer), x => state%unknowns)
          last = size(state%layer, 1, kind=ik)
-         at_face = 0.5_rk*sum(own_pressure(mesh%face_nodes(:, face)))
-         at_centre = sum(own_pressure(mesh%cell_nodes(:, cell)))/3.0_rk
+         at_face = pressure_of_face(values%drained, mesh, values%nodal(3, :), face)
+         at_centre = pressure_at(values%drained, mesh, values%nodal(3, :), cell, thirds)
          rest = x(3, layer_block(mesh, mesh%cell_layer(cell)))
          beyond = rest - x(3, cell)
          place = place_of(mesh, layers, layer)

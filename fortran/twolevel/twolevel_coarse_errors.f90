@@ -65,7 +65,7 @@ contains
       excess = 0.0_rk
       if (self%now%undrained) return
       excess = drained_excess(layer_at_tip(self%problem%mesh, self%problem%model%rock, &
-                                           self%now%coarse, self%problem%values%nodal(3, :), &
+                                           self%now%coarse, self%problem%values, &
                                            tip%fracture, tip%end), self%now%coarse%time)
    end function excess_at
 
@@ -273,7 +273,7 @@ contains
       type(layer_t) :: layer
       real(rk) :: age
 
-      layer = layer_at_tip(problem%mesh, problem%model%rock, state, problem%values%nodal(3, :), &
+      layer = layer_at_tip(problem%mesh, problem%model%rock, state, problem%values, &
                            tip%fracture, tip%end)
       ! A tip that moves meets rock that the fluid has not reached.
       age = state%time

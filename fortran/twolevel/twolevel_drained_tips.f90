@@ -15,7 +15,9 @@ module twolevel_drained_tips
    use base_kinds, only: ik, rk
    use coarse_rock, only: rock_t
    use coarse_state, only: state_t
+   use coarse_tip_drainage, only: pressure_of_face
    use mesh_types, only: mesh_t
+   use twolevel_faces, only: coarse_values_t
    implicit none(type, external)
    private
 
@@ -43,11 +45,11 @@ module twolevel_drained_tips
 contains
 
    !> Layer at an end of a fracture; without effect if the fracture has no cells.
-   pure function layer_at_tip(mesh, rock, state, own_pressure, fracture, end) result(layer)
+   pure function layer_at_tip(mesh, rock, state, values, fracture, end) result(layer)
       type(mesh_t), intent(in) :: mesh  !< coarse
       type(rock_t), intent(in) :: rock
       type(state_t), intent(in) :: state
-      real(rk), intent(in) :: own_pressure(:)  !< (n_nodes) pressure of the rock [Pa]
+      type(coarse_values_t), intent(in) :: values
       integer(ik), intent(in) :: fracture  !< number of the fracture in the network
       integer(ik), intent(in) :: end  !< 1: start of the polyline, 2: its end
       type(layer_t) :: layer
@@ -65,7 +67,8 @@ contains
          if (mesh%n_layers > 0) layer%is_known = any(mesh%face_layer(here%cell_faces(:, at)) > 0)
          cell = mesh%face_cells(1, here%cell_faces(1, at))
          layer%jump = state%pressure(at) &
-           - 0.25_rk*sum([(own_pressure(mesh%face_nodes(:, here%cell_faces(side, at))), side=1, 2)])
+           - 0.5_rk*sum([(pressure_of_face(values%drained, mesh, values%nodal(3, :), &
+                                           here%cell_faces(side, at)), side=1, 2)])
       end associate
       i = min(cell, size(rock%shear, kind=ik))
       associate (g => rock%shear(i), lame => rock%lame(i), biot => rock%biot(i), &

@@ -9,6 +9,7 @@
 module twolevel_faces
    use base_kinds, only: ik, rk
    use coarse_state, only: state_t
+   use coarse_tip_drainage, only: drained_tip_t
    use contact_law, only: contact_law_t
    use fine_contact, only: contact_t, new_contact
    use fine_element, only: gauss_rule, line_parameter, line_shapes
@@ -27,6 +28,7 @@ module twolevel_faces
       !> unknowns from which the following values are computed [m], [m], [Pa]
       real(rk), allocatable :: of(:, :)
       real(rk), allocatable :: nodal(:, :)  !< (3, n_nodes) u_x, u_y [m], p [Pa] at the mesh's nodes
+      type(drained_tip_t), allocatable :: drained(:)  !< what this p at nodes does not contain
       !> Displacement and gradient for an interpolation that is exact for quadratic fields
       !! (nodal_fields)
       real(rk), allocatable :: displacement(:, :)  !< (2, n_nodes) [m]

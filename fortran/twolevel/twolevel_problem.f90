@@ -10,6 +10,7 @@ module twolevel_problem
    use coarse_model, only: coarse_model_t
    use coarse_nodes, only: nodal_fields
    use coarse_own_pressure, only: own_pressure
+   use coarse_tip_drainage, only: drained_tips
    use coarse_well_rings, only: ring_count
    use coarse_wells, only: well_index
    use coarse_state, only: state_t, step_report_t
@@ -302,7 +303,8 @@ contains
          call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, &
                            values%nodal, values%displacement, values%gradient)
          values%nodal(3, :) = own_pressure(mesh, state%unknowns(3, :mesh%n_cells), &
-                                           values%nodal(3, :), state%pressure)
+                                           values%nodal(3, :))
+         values%drained = drained_tips(mesh, values%nodal(3, :), state%pressure, model%cells%share)
       end associate
    end subroutine find_values
 

@@ -171,10 +171,20 @@ contains
       else if (trial%gains_all) then
          trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
                                          self%rules%toughness, 0.0_rk), mask=stops)
+         trial%beyond = excess_beyond(self, stops, tolerance)
       end if
       trial%is_late = trial%gains_all
       search%is_over = trial%goes_too_far .or. trial%is_late
    end subroutine stop_gained
+
+   !> Largest excess of these tips at their targets, beyond half of what is allowed [-].
+   pure real(rk) function excess_beyond(self, tips, allowed)
+      class(two_levels_t), intent(in) :: self
+      logical, intent(in) :: tips(:)
+      real(rk), intent(in) :: allowed  !< [-]
+
+      excess_beyond = maxval(self%tip%excess(self%rules%toughness), mask=tips) - 0.5_rk*allowed
+   end function excess_beyond
 
    !> Connect tips to their targets, unless they reach them too early in the step. The time error is
    !! that up to the connection, which is a jump.
@@ -188,6 +198,7 @@ contains
          trial%goes_too_far = any(joins .and. search%begun > 0)
          trial%arrival = minval(arrivals(self%last%front%tip, self%tip, self%now%segment, &
                                          self%rules%toughness, at_joints), mask=joins)
+         trial%beyond = excess_beyond(self, joins, at_joints)
          trial%moment = search%moment
          trial%is_late = (1.0_rk - trial%arrival)*search%dt > trial%moment
          search%is_over = trial%goes_too_far .or. trial%is_late .or. self%errs(trial%time_error)

@@ -74,6 +74,7 @@ module twolevel_stepping
       logical :: is_late = .false.  !< a tip reaches a target long before the end of the step
       logical :: gains_all = .false.  !< a tip reaches the prescribed gain instead of a target
       real(rk) :: arrival = 1.0_rk  !< share of the step after which the tip does [-]
+      real(rk) :: beyond = 0.0_rk  !< its excess at the end of the step, beyond what is aimed at [-]
       real(rk) :: moment = 0.0_rk  !< length of a step within which this time does not matter [s]
       real(rk) :: switch = 1.0_rk  !< share of the step after which a well reaches its limit [-]
       real(rk) :: time_error = 0.0_rk  !< relative time error [-]
@@ -127,6 +128,7 @@ module twolevel_stepping
       !> growth begins in the present step however short it is, because others grow at its start
       logical :: has_sudden_onset = .false.
       integer :: arrival_cuts = 0  !< cuts of the present step to the arrival at a target
+      real(rk) :: late(2) = 0.0_rk  !< length [s] and excess [-] of the step before its last such cut
       integer :: at_switches = 0  !< cuts of the present step at limits of wells
       !> time error of the present step before its last cut for this error [-]
       real(rk) :: error_before = huge(1.0_rk)
@@ -247,7 +249,9 @@ contains
          dt = max(0.01_rk, share)*dt
          self%at_switches = self%at_switches + 1
       else if (trial%converged .and. trial%is_late .and. .not. trial%goes_too_far) then
-         call cut_to(max(soonest, trial%arrival), max(trial%moment, 0.5_rk*self%shortest), &
+         share = share_before_arrival(self, trial, dt)
+         self%late = [dt, trial%beyond]
+         call cut_to(max(soonest, share), max(trial%moment, 0.5_rk*self%shortest), &
                      self%arrival_cuts, dt)
       else if (trial%converged .and. .not. trial%goes_too_far) then
          dt = dt*2.0_rk**max(-6, min(-1, powers(self, trial)))
@@ -268,6 +272,20 @@ contains
       is_too_short = dt < self%shortest .or. is_steady
       self%next = dt
    end subroutine cut
+
+   !> Share of a step after which a tip reaches its target: once the step has been cut for this
+   !! reason, by linear interpolation between the excesses in steps of both lengths [-].
+   pure real(rk) function share_before_arrival(self, trial, dt) result(share)
+      class(stepper_t), intent(in) :: self
+      type(trial_t), intent(in) :: trial
+      real(rk), intent(in) :: dt  !< [s]
+      real(rk), parameter :: least = 0.25_rk
+
+      share = trial%arrival
+      if (self%arrival_cuts == 0 .or. trial%beyond >= self%late(2)) return
+      share = max(least, 1.0_rk - trial%beyond/(self%late(2) - trial%beyond) &
+                  *(self%late(1)/dt - 1.0_rk))
+   end function share_before_arrival
 
    !> Cut a step to the share after which an event happens; the last such cut leads to a length
    !! within which the time of the event does not matter.

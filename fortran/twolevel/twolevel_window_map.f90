@@ -8,6 +8,7 @@ module twolevel_window_map
    use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use base_plane, only: barycentric
+   use coarse_tip_drainage, only: drained_tip_t, pressure_at
    use fine_mesh, only: fine_mesh_t
    use mesh_builder, only: locate, mesher_t
    use mesh_types, only: mesh_t, network_t
@@ -31,7 +32,7 @@ module twolevel_window_map
       real(rk), allocatable :: temperature(:)  !< acting ones that the loads are for [K]
    contains
       procedure :: find
-      procedure :: interpolate
+      procedure :: pressure
       procedure :: curved_edge
    end type window_map_t
 
@@ -179,20 +180,20 @@ contains
       end do
    end subroutine find
 
-   !> Interpolate values at the coarse nodes linearly to the first nodes of the window.
-   pure subroutine interpolate(self, coarse, nodal, values)
+   !> Pressure of the rock at the vertices of the window [Pa].
+   pure function pressure(self, n, coarse, nodal, drained)
       class(window_map_t), intent(in) :: self
+      integer(ik), intent(in) :: n  !< vertices
       type(mesh_t), intent(in) :: coarse
-      real(rk), intent(in) :: nodal(:)  !< (coarse nodes)
-      real(rk), intent(out) :: values(:)  !< (vertices)
+      real(rk), intent(in) :: nodal(:)  !< (coarse nodes) [Pa]
+      type(drained_tip_t), intent(in) :: drained(:)
+      real(rk) :: pressure(n)
       integer(ik) :: v
 
-      do v = 1, size(values, kind=ik)
-         associate (nodes => coarse%cell_nodes(:, self%coarse_cell(v)))
-            values(v) = dot_product(nodal(nodes), self%weight(:, v))
-         end associate
+      do v = 1, n
+         pressure(v) = pressure_at(drained, coarse, nodal, self%coarse_cell(v), self%weight(:, v))
       end do
-   end subroutine interpolate
+   end function pressure
 
    !> Displacements of the window's edge, quadratic in each coarse cell: linear interpolation, plus
    !! half of the terms with the gradients at the nodes. Zero at other nodes.

@@ -18,7 +18,8 @@ contains
    logical :: again
 
    associate (n => self%model%mesh%n_vertices)
-      call self%map%interpolate(coarse, values%nodal(3, :), self%loads%pore_pressure(:n))
+      self%loads%pore_pressure(:n) = self%map%pressure(n, coarse, values%nodal(3, :), &
+                                                            values%drained)
    end associate
    if (any(self%sides%of%changes())) call follow_sides(self, scene)
    self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &

@@ -94,6 +94,8 @@ contains
                               "no layer in undrained rock")
          problem%values%undrained = .false.
          problem%values%nodal = 0.0_rk
+         deallocate (problem%values%drained)
+         allocate (problem%values%drained(0))
          state%unknowns(3, :) = 0.0_rk
          associate (layers => problem%model%layers, mesh => problem%mesh)
             call checks%is_true(layers%n == 2*mesh%fracture%n_cells, "both faces have layers")
@@ -108,7 +110,7 @@ contains
          end associate
          do end = 1, 2
             data = layer_at_tip(problem%mesh, problem%model%rock, state, &
-                                problem%values%nodal(3, :), 1_ik, end)
+                                problem%values, 1_ik, end)
             associate (fracture => problem%mesh%fracture, layers => problem%model%layers)
                do side = 1, 2
                   cell = merge(1_ik, fracture%n_cells, end == 1)

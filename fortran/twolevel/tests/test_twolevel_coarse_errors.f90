@@ -10,7 +10,7 @@ program test_twolevel_coarse_errors
    use testing_checks, only: checks_t
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_drained_tips, only: layer_at_tip, layer_t
-   use twolevel_faces, only: coarse_jumps
+   use twolevel_faces, only: coarse_jumps, coarse_values_t
    use twolevel_state, only: two_levels_t
    implicit none(type, external)
 
@@ -246,7 +246,7 @@ contains
       type(two_levels_t) :: simulation
       type(layer_t) :: layer
       real(rk) :: bulk, bulk_undrained, shear, storage, undrained
-      real(rk), allocatable :: own(:)
+      type(coarse_values_t) :: own
       integer(ik) :: end
 
       call start(0.1_rk, simulation)
@@ -256,7 +256,8 @@ contains
          storage = m%porosity*fluid%compressibility + (m%biot - m%porosity)/bulk
          bulk_undrained = bulk + m%biot**2/storage
          undrained = (3.0_rk*bulk_undrained - 2.0_rk*shear)/(6.0_rk*bulk_undrained + 2.0_rk*shear)
-         allocate (own(simulation%problem%mesh%n_nodes), source=rock)
+         own%nodal = spread(spread(rock, 1, 3), 2, int(simulation%problem%mesh%n_nodes))
+         allocate (own%drained(0))
          simulation%now%coarse%pressure = rock + beyond
          do end = 1, 2
             layer = layer_at_tip(simulation%problem%mesh, simulation%problem%model%rock, &
