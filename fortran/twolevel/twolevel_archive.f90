@@ -12,7 +12,7 @@ module twolevel_archive
    use twolevel_followed, only: followed_t
    use twolevel_levels_state, only: levels_state_t
    use twolevel_stepping, only: stepper_t
-   use twolevel_trend, only: rates_t, trend_t
+   use twolevel_trend, only: trend_t
    use twolevel_value_errors, only: value_errors_t
    use twolevel_windows_state, only: windows_state_t
    implicit none(type, external)
@@ -85,38 +85,23 @@ contains
       type(archive_t), intent(inout) :: archive
       character(len=*), intent(in) :: name
       type(trend_t), intent(inout) :: trend
-      integer(lk) :: has_quiet
 
       call archive%enter(name)
-      call visit_rates(archive, "last", trend%last)
-      has_quiet = merge(1_lk, -1_lk, allocated(trend%quiet))
-      call archive%count("quiet", has_quiet)
-      if (archive%is_loading .and. has_quiet > 0_lk) allocate (trend%quiet)
-      if (has_quiet > 0_lk) call visit_rates(archive, "quiet", trend%quiet)
+      call archive%item("dt", trend%dt)
+      call archive%list("rock", trend%rock, "cells")
+      call archive%list("fracture", trend%fracture, "fcells")
+      call archive%list("jump", trend%jump, "2, fcells")
+      call archive%list("knows_rock", trend%knows_rock, "cells")
+      call archive%list("knows_fracture", trend%knows_fracture, "fcells")
       call archive%item("pressure", trend%pressure)
       call archive%item("jumps", trend%jumps)
       call archive%item("least_pressure", trend%least_pressure)
       call archive%item("least_jump", trend%least_jump)
+      call archive%agree(name, [allocated(trend%rock), allocated(trend%fracture), &
+                                allocated(trend%jump), allocated(trend%knows_rock), &
+                                allocated(trend%knows_fracture)])
       call archive%leave()
    end subroutine visit_trend
-
-   subroutine visit_rates(archive, name, rates)
-      type(archive_t), intent(inout) :: archive
-      character(len=*), intent(in) :: name
-      type(rates_t), intent(inout) :: rates
-
-      call archive%enter(name)
-      call archive%item("dt", rates%dt)
-      call archive%list("rock", rates%rock, "cells")
-      call archive%list("fracture", rates%fracture, "fcells")
-      call archive%list("jump", rates%jump, "2, fcells")
-      call archive%list("knows_rock", rates%knows_rock, "cells")
-      call archive%list("knows_fracture", rates%knows_fracture, "fcells")
-      call archive%agree(name, [allocated(rates%rock), allocated(rates%fracture), &
-                                allocated(rates%jump), allocated(rates%knows_rock), &
-                                allocated(rates%knows_fracture)])
-      call archive%leave()
-   end subroutine visit_rates
 
    !> The control of the step length, without its settings, which are those of the scene.
    subroutine visit_stepper(archive, name, stepper)

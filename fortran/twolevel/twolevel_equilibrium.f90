@@ -172,7 +172,7 @@ contains
          return
       end if
       if (is_first .and. .not. search%is_last) then
-         trial%time_error = self%step_error(search%dt, has_begun=.false.)
+         trial%time_error = self%step_error(search%dt)
          search%is_over = self%errs(trial%time_error/much)
          call self%tape%keep("over", search%is_over)
          if (search%is_over) return
@@ -324,7 +324,6 @@ contains
          return
       end if
       search%is_over = .true.
-      trial%has_begun = any(search%begun > 0)
       trial%advance = maxval([0.0_rk, advances(self%front_state_t, self%start, self%now%segment, &
                                                self%increments())/paces(self)])
       call self%pace%see_end(self%tape, self%tip%excess(self%rules%toughness), &

@@ -11,7 +11,7 @@ module twolevel_levels_state
    use heat_state, only: heat_state_t
    use mesh_types, only: network_t
    use twolevel_errors, only: stated_errors_t
-   use twolevel_trend, only: rates_t, trend_t
+   use twolevel_trend, only: trend_t
    use twolevel_windows_state, only: windows_state_t
    implicit none(type, external)
    private
@@ -197,20 +197,10 @@ contains
    pure type(part_t) function trend_part(trend) result(part)
       type(trend_t), intent(in) :: trend
 
-      part = part_t("rates", [rates(trend%last), trend%pressure, trend%jumps, &
+      part = part_t("rates", [trend%dt, numbers(trend%rock), numbers(trend%fracture), &
+                              flat(trend%jump), some_truths(trend%knows_rock), &
+                              some_truths(trend%knows_fracture), trend%pressure, trend%jumps, &
                               trend%least_pressure, trend%least_jump])
-      if (allocated(trend%quiet)) part%value = [part%value, rates(trend%quiet)]
-
-   contains
-
-      pure function rates(of) result(all)
-         type(rates_t), intent(in) :: of
-         real(rk), allocatable :: all(:)
-
-         all = [of%dt, numbers(of%rock), numbers(of%fracture), flat(of%jump), &
-                some_truths(of%knows_rock), some_truths(of%knows_fracture)]
-      end function rates
-
    end function trend_part
 
    pure type(part_t) function certainty_part(stated_errors) result(part)

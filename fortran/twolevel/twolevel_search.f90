@@ -52,7 +52,7 @@ contains
       type(trial_t), intent(inout) :: trial
 
       if (self%dt <= self%moment) return
-      trial%time_error = levels%step_error(self%dt, has_begun=any(self%begun > 0))
+      trial%time_error = levels%step_error(self%dt)
    end subroutine see_error
 
    !> End the tries after the first one, where a tip would have to begin a segment but exceeds its

@@ -332,10 +332,9 @@ contains
    end subroutine explain
 
    !> Relative time error of a step of length dt to the present state [-].
-   function step_error(self, dt, has_begun) result(error)
+   function step_error(self, dt) result(error)
       class(two_levels_t), intent(in) :: self
       real(rk), intent(in) :: dt  !< [s]
-      logical, intent(in) :: has_begun  !< a tip began a segment in the step
       real(rk) :: error
       real(rk) :: area(self%problem%mesh%n_cells)
       integer(ik) :: c
@@ -345,12 +344,12 @@ contains
             area(c) = cell_area(self%problem%mesh, c)
          end do
          error = trend%step_error(self%before, self%now%coarse, dt, area, &
-                                  model%condensed%length, has_begun)
+                                  model%condensed%length)
          ! The pressure that heat causes may be confined to a small part of the rock.
          if (allocated(model%rock%temperature)) then
             error = max(error, trend%step_error(self%before, self%now%coarse, dt, &
                                                 area*abs(model%rock%temperature), &
-                                                model%condensed%length, has_begun))
+                                                model%condensed%length))
          end if
          if (model%wells%n_all > 0 .and. trend%is_known()) then
             error = max(error, trend%volume_error(self%before%well_flow, &
@@ -358,8 +357,8 @@ contains
                                                   least_volume(self, dt)))
          end if
          ! Rates jump where a well is switched: the length of the step before does not count.
-         if (self%step%is_after_switch .and. trend%last%dt > dt) then
-            error = 0.5_rk*(1.0_rk + trend%last%dt/dt)*error
+         if (self%step%is_after_switch .and. trend%dt > dt) then
+            error = 0.5_rk*(1.0_rk + trend%dt/dt)*error
          end if
       end associate
    end function step_error

@@ -66,7 +66,6 @@ module twolevel_stepping
       logical :: goes_too_far = .false.  !< tips would advance by more than one new segment
       logical :: jumps = .false.  !< tips advance by more than one new segment, and may
       logical :: was_beyond = .false.  !< one of these tips exceeded its toughness before the step
-      logical :: has_begun = .false.  !< a tip has begun a segment in the step
       logical :: has_joined = .false.  !< a tip has joined a target in the step
       real(rk) :: onset = 1.0_rk  !< share of the step in which no tip begins to grow [-]
       !> share of the step in which these tips would not go too far, by linear interpolation [-]

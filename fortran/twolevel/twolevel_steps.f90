@@ -259,7 +259,7 @@ contains
          if (allocated(error)) return
          if (is_settled) exit
       end do
-      trial%time_error = self%step_error(self%step%dt, has_begun=.false.)
+      trial%time_error = self%step_error(self%step%dt)
       if (.not. is_last) then
          call share_before_switch(self, self%step%dt, punctual, trial%switch, timers, error)
       end if
@@ -308,7 +308,7 @@ self%step%ends_at_switch = self%step%ends_at_switch .or. next_switch(self%scene,
       ! A step that the end has shortened does not shorten those of a run that goes on.
       if (.not. self%now%coarse%time < self%scene%time%end) self%stepper%next = &
          max(self%stepper%next, wanted)
-      call self%now%trend%accept(self%before, self%now%coarse, self%step%dt, trial%has_begun)
+      call self%now%trend%accept(self%before, self%now%coarse, self%step%dt)
       ! The rates of a step in which cracks have joined do not apply to the next step.
       if (trial%has_joined) call self%follow_trend(at_rest=.false.)
       if (.not. self%step%is_unstable) return

@@ -13,7 +13,6 @@ program test_twolevel_trend
 
    call test_parabola()
    call test_rest()
-   call test_bursts()
    call test_transfer()
    call checks%finish()
 
@@ -30,41 +29,15 @@ contains
                        stiffness=1.0_rk, length=1.0_rk)
       call checks%is_true(.not. trend%is_known(), "no step yet")
       t = 1.0_rk
-      call trend%accept(state_at(0.0_rk), state_at(t), t, has_begun=.false.)
+      call trend%accept(state_at(0.0_rk), state_at(t), t)
       call checks%is_true(trend%is_known(), "a step")
       ! Ranges are at least a hundredth of the range that the load would cause: 100.
-      call checks%is_close(trend%step_error(state_at(t), state_at(t + h), h, area, length, &
-                                            has_begun=.false.), &
+      call checks%is_close(trend%step_error(state_at(t), state_at(t + h), h, area, length), &
                            3.0_rk*h**2/100.0_rk, round_off, "pressure")
-      call trend%accept(jumped(0.0_rk), jumped(t), t, has_begun=.false.)
-      call checks%is_close(trend%step_error(jumped(t), jumped(t + h), h, area, length, &
-                                            has_begun=.false.), &
+      call trend%accept(jumped(0.0_rk), jumped(t), t)
+      call checks%is_close(trend%step_error(jumped(t), jumped(t + h), h, area, length), &
                            3.0_rk*h**2/100.0_rk, round_off, "opening")
    end subroutine test_parabola
-
-   !> A step in which a tip runs through a segment has other rates, as has the step after it: the
-   !! rates of the last quiet step count too. Without a quiet step those of any step do.
-   subroutine test_bursts()
-      type(trend_t) :: trend
-      real(rk) :: error
-
-      call trend%begin(state_at(0.0_rk), at_rest=.false., pressure_scale=1.0_rk, &
-                       stiffness=1.0_rk, length=1.0_rk)
-      call trend%accept(level(0.0_rk), level(100.0_rk), 1.0_rk, has_begun=.true.)
-      call checks%is_close(trend%step_error(level(100.0_rk), level(140.0_rk), 1.0_rk, area, &
-                                            length, has_begun=.false.), &
-                           0.5_rk*60.0_rk/40.0_rk, round_off, "the only known step")
-      call trend%accept(level(100.0_rk), level(102.0_rk), 1.0_rk, has_begun=.false.)
-      call trend%accept(level(102.0_rk), level(62.0_rk), 1.0_rk, has_begun=.true.)
-      error = trend%step_error(level(62.0_rk), level(64.0_rk), 1.0_rk, area, length, .false.)
-      call checks%is_close(error, 0.0_rk, round_off, "as quiet as before the burst")
-      error = trend%step_error(level(62.0_rk), level(22.0_rk), 1.0_rk, area, length, .false.)
-      call checks%is_close(error, 0.0_rk, round_off, "as fast as in the burst")
-      error = trend%step_error(level(62.0_rk), level(67.0_rk), 1.0_rk, area, length, .false.)
-      call checks%is_close(error, 0.5_rk*3.0_rk/40.0_rk, round_off, "neither")
-      error = trend%step_error(level(62.0_rk), level(64.0_rk), 1.0_rk, area, length, .true.)
-      call checks%is_close(error, 0.5_rk*42.0_rk/40.0_rk, round_off, "a burst: by the last step")
-   end subroutine test_bursts
 
    !> At rest the whole change is the error, in the mean over the body; 0 without a rate.
    subroutine test_rest()
@@ -75,18 +48,15 @@ contains
                        stiffness=1.0_rk, length=1.0_rk)
       after = state_at(0.0_rk)
       after%unknowns(3, 1) = 8.0_rk
-      call checks%is_close(trend%step_error(state_at(0.0_rk), after, 1.0_rk, area, length, &
-                                            has_begun=.false.), &
+      call checks%is_close(trend%step_error(state_at(0.0_rk), after, 1.0_rk, area, length), &
                            0.25_rk, round_off, "a quarter of the body")
       after = state_at(0.0_rk)
       after%jump(2, :, 3) = 5.0_rk
-      call checks%is_close(trend%step_error(state_at(0.0_rk), after, 1.0_rk, area, length, &
-                                            has_begun=.false.), &
+      call checks%is_close(trend%step_error(state_at(0.0_rk), after, 1.0_rk, area, length), &
                            0.5_rk, round_off, "slip of half of the fractures")
       call trend%begin(state_at(0.0_rk), at_rest=.false., pressure_scale=1.0_rk, &
                        stiffness=1.0_rk, length=1.0_rk)
-      call checks%is_close(trend%step_error(state_at(0.0_rk), after, 1.0_rk, area, length, &
-                                            has_begun=.false.), &
+      call checks%is_close(trend%step_error(state_at(0.0_rk), after, 1.0_rk, area, length), &
                            0.0_rk, 0.0_rk, "nothing is known")
    end subroutine test_rest
 
@@ -97,21 +67,21 @@ contains
 
       call trend%begin(state_at(0.0_rk), at_rest=.true., pressure_scale=1.0_rk, &
                        stiffness=1.0_rk, length=1.0_rk)
-      call trend%accept(state_at(0.0_rk), state_at(1.0_rk), 1.0_rk, has_begun=.false.)
-      trend%last%rock = [1.0_rk, 2.0_rk]
-      trend%last%fracture = [3.0_rk, 4.0_rk, 5.0_rk]
-      trend%last%jump = reshape([6.0_rk, 7.0_rk, 8.0_rk, 9.0_rk, 10.0_rk, 11.0_rk], [2, 3])
+      call trend%accept(state_at(0.0_rk), state_at(1.0_rk), 1.0_rk)
+      trend%rock = [1.0_rk, 2.0_rk]
+      trend%fracture = [3.0_rk, 4.0_rk, 5.0_rk]
+      trend%jump = reshape([6.0_rk, 7.0_rk, 8.0_rk, 9.0_rk, 10.0_rk, 11.0_rk], [2, 3])
       map%cell_old = [2_ik, 0_ik, 1_ik]
       map%fracture_cell_old = [0_ik, 3_ik, 1_ik, 2_ik]
       call trend%transfer(map)
-      call checks%is_true(all(trend%last%knows_rock .eqv. [.true., .false., .true.]), "cells")
-      call checks%is_true(all(trend%last%knows_fracture .eqv. [.false., .true., .true., .true.]), &
+      call checks%is_true(all(trend%knows_rock .eqv. [.true., .false., .true.]), "cells")
+      call checks%is_true(all(trend%knows_fracture .eqv. [.false., .true., .true., .true.]), &
                           "fracture cells")
-     call checks%is_close(maxval(abs(trend%last%rock - [2.0_rk, 0.0_rk, 1.0_rk])), 0.0_rk, 0.0_rk, &
+      call checks%is_close(maxval(abs(trend%rock - [2.0_rk, 0.0_rk, 1.0_rk])), 0.0_rk, 0.0_rk, &
                            "rates of cells")
-      call checks%is_close(maxval(abs(trend%last%fracture - [0.0_rk, 5.0_rk, 3.0_rk, 4.0_rk])), &
+      call checks%is_close(maxval(abs(trend%fracture - [0.0_rk, 5.0_rk, 3.0_rk, 4.0_rk])), &
                            0.0_rk, 0.0_rk, "rates of fracture cells")
-      call checks%is_close(maxval(abs(trend%last%jump(2, :) - [0.0_rk, 11.0_rk, 7.0_rk, 9.0_rk])), &
+      call checks%is_close(maxval(abs(trend%jump(2, :) - [0.0_rk, 11.0_rk, 7.0_rk, 9.0_rk])), &
                            0.0_rk, 0.0_rk, "rates of slip")
    end subroutine test_transfer
 
@@ -125,16 +95,6 @@ contains
       state%unknowns(3, :) = 3.0_rk*t**2
       state%pressure = 3.0_rk*t**2
    end function state_at
-
-   !> The same pressure everywhere.
-   pure function level(pressure) result(state)
-      real(rk), intent(in) :: pressure  !< [Pa]
-      type(state_t) :: state
-
-      state = state_at(0.0_rk)
-      state%unknowns(3, :) = pressure
-      state%pressure = pressure
-   end function level
 
    !> Set the jumps as well, with a mean of the same curvature, in a larger range.
    pure function jumped(t) result(state)
