@@ -5,7 +5,7 @@ module coarse_model
    use base_kinds, only: ik, rk
    use base_timers, only: phase_assemble, phase_discretize, timers_t
    use contact_law, only: state_stick
-   use coarse_tips, only: crack_ends_t, free_ends
+   use coarse_tips, only: crack_ends_t, free_ends, place_tips
    use coarse_fractures, only: newton_settings_t
    use mesh_geometry, only: fracture_cell_centre
    use coarse_in_situ, only: find_in_situ, in_situ_state_t
@@ -56,6 +56,7 @@ module coarse_model
       procedure :: change_sides
       procedure :: equilibrate
       procedure :: advance
+      procedure :: place_ends
       procedure :: release
    end type coarse_model_t
 
@@ -250,6 +251,20 @@ contains
       state%branch_flow = spread(0.0_rk, 1, int(model%joints%branch_count()))
       state%joint_pressure = [(model%joints%mean_pressure(j, state%pressure), j=1, model%joints%n)]
    end subroutine rest_fluid
+
+   !> Set the shares of the cells behind the ends of the cracks, and what depends on them; without
+   !! effect on a mesh without equations.
+   pure subroutine place_ends(self, mesh)
+      class(coarse_model_t), intent(inout) :: self
+      type(mesh_t), intent(in) :: mesh
+
+      if (mesh%fracture%n_cells == 0 .or. .not. allocated(self%condensed%length)) return
+      if (size(self%condensed%length) /= mesh%fracture%n_cells) return
+      call place_tips(self%ends, self%condensed%length, self%cells)
+      if (allocated(self%rock_resistance)) then
+         self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
+      end if
+   end subroutine place_ends
 
    !> Free what gfortran 12 does not free by itself where the model is a component: arrays of the
    !! types that its components extend.

@@ -11,7 +11,7 @@ submodule(coarse_model) coarse_steps
    use coarse_held_cells, only: choose_held, find_released
    use coarse_newton, only: solve_fractures
    use coarse_state, only: go_back
-   use coarse_tips, only: dampers, jumps_of, place_tips, tip_springs
+   use coarse_tips, only: dampers, jumps_of, tip_springs
    use coarse_rock, only: solid_t
    use coarse_wells, only: wells_t
    use mesh_geometry, only: cell_area
@@ -112,10 +112,7 @@ contains
          spring = spring + dampers(self%condensed, self%settings%damping/dt)
       end if
       call self%condensed%support(spring)
-      call place_tips(self%ends, self%condensed%length, self%cells)
-      if (allocated(self%rock_resistance)) then
-         self%cells%leak_resistance = self%cells%leak_resistance*self%rock_resistance
-      end if
+      call self%place_ends(mesh)
    end subroutine support_faces
 
    !> Right-hand side of the body: loads, sources, stored fluid.

@@ -82,7 +82,7 @@ contains
             new = 0.0_rk
             do i = 1, 2
                if (weights(i) > 0.0_rk) new = new + weights(i) &
-                  *drained_pressure(mesh, nodal, fluid, cells(i), step, tip%ends(:, k, part))
+                         *drained_pressure(mesh, nodal, fluid, cells(i), step, tip%ends(:, k, part))
             end do
             rock = rock_pressures(mesh, nodal, cells(part), ends, share)
             ! The sides have one pressure at the tip.

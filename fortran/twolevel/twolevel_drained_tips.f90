@@ -67,8 +67,8 @@ contains
          if (mesh%n_layers > 0) layer%is_known = any(mesh%face_layer(here%cell_faces(:, at)) > 0)
          cell = mesh%face_cells(1, here%cell_faces(1, at))
          layer%jump = state%pressure(at) &
-           - 0.5_rk*sum([(pressure_of_face(values%drained, mesh, values%nodal(3, :), &
-                                           here%cell_faces(side, at)), side=1, 2)])
+                      - 0.5_rk*sum([(pressure_of_face(values%drained, mesh, values%nodal(3, :), &
+                                                      here%cell_faces(side, at)), side=1, 2)])
       end associate
       i = min(cell, size(rock%shear, kind=ik))
       associate (g => rock%shear(i), lame => rock%lame(i), biot => rock%biot(i), &

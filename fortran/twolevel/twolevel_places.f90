@@ -67,6 +67,7 @@ contains
          end if
          call problem%model%joints%shut_only(ends%cell, tips%end)
       end associate
+      call problem%model%place_ends(problem%mesh)
    end subroutine place_tips
 
    !> Last cell of a fracture at a tip; cells are stored along each fracture.

@@ -289,14 +289,13 @@ contains
       if (allocated(self%values%of)) then
          if (all(abs(self%values%of - state%unknowns) <= 0.0_rk)) then
             self%values%undrained = undrained
-            call take_viscous(self)
+            call take_tips(self, state)
             return
          end if
       end if
       self%values = coarse_values_t(of=state%unknowns, law=self%model%cells%law, &
                                     is_grown=self%model%cells%roughness > 0.0_rk, &
                                     undrained=undrained)
-      call take_viscous(self)
       associate (values => self%values, model => self%model, mesh => self%mesh, &
                  n => self%mesh%n_nodes)
          allocate (values%nodal(3, n), values%displacement(2, n), values%gradient(2, 2, n))
@@ -304,19 +303,23 @@ contains
                            values%nodal, values%displacement, values%gradient)
          values%nodal(3, :) = own_pressure(mesh, state%unknowns(3, :mesh%n_cells), &
                                            values%nodal(3, :))
-         values%drained = drained_tips(mesh, values%nodal(3, :), state%pressure, model%cells%share)
       end associate
+      call take_tips(self, state)
    end subroutine find_values
 
-   !> The parameters of the tips, which the model has once it has solved a step.
-   subroutine take_viscous(self)
+   !> What depends on the places of the tips in their cells, and their parameters, which the model
+   !! has once it has solved a step.
+   subroutine take_tips(self, state)
       class(coarse_problem_t), intent(inout) :: self
+      type(state_t), intent(in) :: state
 
+      self%values%drained = drained_tips(self%mesh, self%values%nodal(3, :), state%pressure, &
+                                         self%model%cells%share)
       self%values%viscous = spread(0.0_rk, 1, self%mesh%fracture%n_cells)
       if (.not. allocated(self%model%cells%viscous)) return
       if (size(self%model%cells%viscous) /= size(self%values%viscous)) return
       self%values%viscous = self%model%cells%viscous
-   end subroutine take_viscous
+   end subroutine take_tips
 
    !> Wells in the rock.
    pure subroutine feed_rock(self, rates)

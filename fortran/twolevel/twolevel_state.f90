@@ -21,7 +21,7 @@ module twolevel_state
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_pace, only: pace_t
    use twolevel_place_errors, only: note_probes
-   use twolevel_places, only: end_at_tips
+   use twolevel_places, only: end_at_tips, place_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
    use twolevel_setup, only: pressure_scale
@@ -237,7 +237,6 @@ contains
    subroutine put_back(self)
       class(two_levels_t), intent(inout) :: self
 
-      self%front_state_t = self%last%front
       self%now = self%last%levels
       self%before = self%now%coarse
       if (self%scene%growth%intensities) then
@@ -249,6 +248,10 @@ contains
          call move_alloc(self%kept_problem, self%problem)
          call self%windows%coarse_changed()
          call self%reference%coarse_changed()
+      end if
+      self%front_state_t = self%last%front
+      if (self%scene%growth%leaves_partial_cells() .and. allocated(self%now%segment)) then
+         call place_tips(self%front_state_t, self%now%segment, self%problem)
       end if
       call act(self%scene, self%problem, self%now%heat)
    end subroutine put_back

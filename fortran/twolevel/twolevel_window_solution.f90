@@ -19,7 +19,7 @@ contains
 
    associate (n => self%model%mesh%n_vertices)
       self%loads%pore_pressure(:n) = self%map%pressure(n, coarse, values%nodal(3, :), &
-                                                            values%drained)
+                                                       values%drained)
    end associate
    if (any(self%sides%of%changes())) call follow_sides(self, scene)
    self%loads%boundary_displacement = self%curved_edge(coarse, values%displacement, &

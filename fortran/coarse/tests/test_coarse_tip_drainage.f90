@@ -31,7 +31,7 @@ contains
       integer(ik) :: i
 
       fluid = [(beyond + slope*0.5_rk*sum(mesh%fracture%point_xy(1, mesh%fracture%cell_points(:, &
-                                                          i))), i=1, mesh%fracture%n_cells)]
+                                                                  i))), i=1, mesh%fracture%n_cells)]
    end function fluid
 
    !> Pressure of the rock: the fluid's less a constant, and a suction around the tips [Pa].
@@ -44,7 +44,7 @@ contains
       do v = 1, mesh%n_nodes
          associate (x => mesh%xy(1, v), y => mesh%xy(2, v))
             if (x < 0.6_rk .or. x > 1.4_rk) rock(v) = rock(v) &
-               - suction*(1.0_rk + 0.5_rk*sin(40.0_rk*x + 30.0_rk*y + real(v, rk)))
+                                - suction*(1.0_rk + 0.5_rk*sin(40.0_rk*x + 30.0_rk*y + real(v, rk)))
          end associate
       end do
    end function rock
@@ -104,8 +104,8 @@ contains
                   ! The difference of the sides, which is not drained yet near the tip, vanishes
                   ! one cell behind it.
                   if (behind == 4) worst = max(worst, &
-                     abs(pressure_at(tips, mesh, nodal, mesh%face_cells(1, f), weights) &
-                         - slope*x))
+                                abs(pressure_at(tips, mesh, nodal, mesh%face_cells(1, f), weights) &
+                                                   - slope*x))
                end do
                worst = max(worst, abs(mean_of_sides(tips, nodal, c, x) - slope*x))
             end associate
