@@ -49,7 +49,6 @@ STORED = {
     "fine_loads_t": ("fine_archive:visit_loads",),
     "face_conditions_t": ("fine_archive:visit_conditions",),
     "trend_t": ("twolevel_archive:visit_trend",),
-    "rates_t": ("twolevel_archive:visit_rates",),
     "stated_errors_t": ("twolevel_errors:visit",),
     "coarse_problem_t": ("twolevel_restart:visit", "twolevel_restart:visit_problem"),
     "coarse_values_t": ("twolevel_archive:visit_values",),
