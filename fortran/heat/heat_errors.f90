@@ -6,7 +6,7 @@
 !! in the tail of a front, whose few parts have come through many cells (test_heat_errors).
 !!
 !! In fractures that of the rock next to them counts too, beyond what layers resolve: a share where
-!! the fracture cools the rock, and half the difference of its cells where it follows the rock.
+!! the fracture cools the rock, and more than the difference of its cells where it follows the rock.
 !! Where a well lies in a cell with a dead end behind it, fluid has lost heat to that part too:
 !! temperatures lie as far behind. In that cell the fluid has the temperature of the well, but
 !! behind it that of the rock, and next to it may lie heat of earlier stages.
@@ -22,6 +22,8 @@ module heat_errors
 
    real(rk), parameter :: half = 0.6_rk  !< of a cell, and a fifth more (docs/sweeps.md) [-]
    real(rk), parameter :: of_rock = 0.15_rk  !< share of the error of rock that a fracture cools [-]
+   real(rk), parameter :: ahead = 0.25_rk  !< by which a fracture is that cools rock, of differences
+   real(rk), parameter :: following = 1.6_rk  !< error of one that follows it, over differences [-]
    real(rk), parameter :: in_tails = 6.0_rk  !< more, where neighbours differ by all of the rise [-]
    real(rk), parameter :: of_tolerance = 2.5_rk  !< error in time over tolerance and rise [-]
    real(rk), parameter :: at_wells = 4.0_rk  !< times the error in the cell of a well [-]
@@ -70,10 +72,10 @@ contains
          associate (c => heat%first_cell - 1 + i, &
                     cells => heat%mesh%face_cells(1, heat%mesh%fracture%cell_faces(:, i)))
             error(c) = error(c) + half*max(maxval(behind), 0.0_rk)*step(c)
-            if (abs(rise(c)) > maxval(abs(rise(cells)))) then
+            if (abs(rise(c)) - maxval(abs(rise(cells))) > ahead*maxval(step(cells))) then
                error(c) = error(c) + of_rock*maxval(error(cells))
             else
-               error(c) = error(c) + half*maxval(step(cells))
+               error(c) = error(c) + following*maxval(step(cells))
             end if
          end associate
       end do
