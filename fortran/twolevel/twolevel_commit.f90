@@ -63,8 +63,8 @@ call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row
 call self%blurred%solve(self%scene, self%problem, self%before, self%now%coarse, &
                         self%step%report, self%shows_growth)
 if (self%blurred%is_unsolved) then
-   call self%summary%warn("a step with blurred temperatures was not solved: errors stated after "// &
-                          "it lack those by the mean temperatures of cells")
+   call self%summary%warn("a step with blurred temperatures was not solved: errors after it "// &
+                          "lack those by the mean temperatures of cells")
 end if
 call self%blurred%add_to_row(self%problem, self%before, self%now%coarse, self%value_errors%row)
 call note_well_rows(self)

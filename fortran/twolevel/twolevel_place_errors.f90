@@ -75,9 +75,9 @@ contains
    end subroutine note_probes
 
    !> Add the error of displacements by wells in the rock, whose fluid lies at the centre of their
-   !! cell instead: that of a nucleus of strain, u = m/(2 pi r), m = alpha V/(S' (lambda + 2 G)) for
-   !! the volume V, which is displaced by d: d m/(2 pi r^2), and as much by its image in a side, r at
-   !! most the distance of that.
+   !! cell instead: that of a strain nucleus, u = m/(2 pi r), m = alpha V/(S' (lambda + 2 G)) for
+   !! the volume V, which is displaced by d: d m/(2 pi r^2), and as much by its image in a side,
+   !! r at most the distance of that.
    subroutine add_well_places(scene, problem, injected, row)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem

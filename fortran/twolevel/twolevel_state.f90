@@ -518,8 +518,9 @@ contains
       if (allocated(error)) return
       call note_probes(self%value_errors, self%time(), self%now%trend%pressure_rise(), row)
       call self%blurred%add_to_probes(self%scene, self%problem, row)
-      if (allocated(self%well_results%injected)) call add_well_places(self%scene, self%problem, &
-                                                                 self%well_results%injected, row)
+      if (allocated(self%well_results%injected)) then
+         call add_well_places(self%scene, self%problem, self%well_results%injected, row)
+      end if
    end subroutine probes
 
    !> Fields of the last accepted state, if there is one.
