@@ -144,7 +144,7 @@ contains
       do k = 1, size(heat%externals, kind=ik)
          associate (external => heat%externals(k), w => heat%externals(k)%well)
             if (w == 0 .or. external%flow > 0.0_rk) cycle
-            of_wells(w) = max(of_wells(w), error(external%unknown))
+            of_wells(w) = max(of_wells(w), at_wells*error(external%unknown))
          end associate
       end do
    end function well_errors
