@@ -114,13 +114,15 @@ def _each(names: str, reason: str) -> dict[str, str]:
 
 # type: components that are not stored, with the reason
 MADE_AGAIN = {
+    "blurred_t": {"is_unsolved": "found in each step, and in the warnings since"},
+    "fracture_errors_t": {"temperature": _HEAT},
     "two_levels_t": {
         "last": "the next step begins with it",
         "kept_problem": _EMPTY,
         "load_pressure": _RULE,
     },
     "summary_t": {"heat": "that of the state"},
-    "matrix_fields_t": {"temperature": _HEAT},
+    "matrix_fields_t": {"temperature": _HEAT, "temperature_error": _HEAT},
     "fracture_fields_t": {"temperature": _HEAT},
     "simulation_t": {
         "scene": "it is read again, and may be changed",

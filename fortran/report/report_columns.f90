@@ -236,7 +236,9 @@ module report_columns
       column_t("pressure_error_pa", "Pa", with_fluid), &
       column_t("flow_error_m2_s", "m2/s", with_fluid), &
       column_t("temperature_k", "K", with_heat_and_fractures, &
-         "Temperature of the fluid and of the faces, on the scale of the scene", of_heat)]
+         "Temperature of the fluid and of the faces, on the scale of the scene", &
+         "temperature_error_k"), &
+      column_t("temperature_error_k", "K", with_heat_and_fractures)]
 
    !> NAME stands for the name of a probe; all columns except the first two repeat for each probe.
    type(column_t), parameter :: probe_columns(*) = [ &
@@ -303,7 +305,9 @@ module report_columns
       column_t("injectivity_error_m2_s_pa", "m2/s/Pa", with_wells), &
       column_t("temperature_k", "K", with_heat_and_wells, &
          "Temperature of what the well takes out of the body, mean over the step; else of what "// &
-         "it supplies", of_heat)]
+         "it supplies", "temperature_error_k"), &
+      column_t("temperature_error_k", "K", with_heat_and_wells, &
+         "Estimated error of temperature_k; 0 of what it supplies", an_error)]
 
    type(column_t), parameter :: entry_columns(*) = [ &
       column_t("time_s", "s", with_entries, "Time", chosen), &

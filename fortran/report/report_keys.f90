@@ -156,7 +156,8 @@ module report_keys
       column_t("pressure_error", "Pa", with_fluid), &
       column_t("stress_error", "Pa", always, &
          "Estimated error of each component of stress", an_error), &
-      column_t("temperature", "K", with_heat, "Mean temperature of the cell", of_heat)]
+     column_t("temperature", "K", with_heat, "Mean temperature of the cell", "temperature_error"), &
+      column_t("temperature_error", "K", with_heat)]
 
    type(column_t), parameter :: fracture_fields(*) = [ &
       column_t("fracture", "-", always, "Number of the fracture, from 1", label), &
@@ -177,7 +178,9 @@ module report_keys
          "Estimated error of traction: normal, tangential", an_error), &
       column_t("pressure_error", "Pa", with_fluid), &
       column_t("flow_error", "m2/s", with_fluid), &
-      column_t("temperature", "K", with_heat, "Temperature of fluid and faces", of_heat)]
+      column_t("temperature", "K", with_heat, "Temperature of fluid and faces", &
+         "temperature_error"), &
+      column_t("temperature_error", "K", with_heat)]
 
    type(column_t), parameter :: intersection_fields(*) = [ &
       column_t("pressure", "Pa", with_fluid, &

@@ -121,7 +121,7 @@ module report_rows
    !> Estimated errors of a well after a step, in the units of its row.
    type :: well_errors_t
       real(rk) :: rate = 0.0_rk, flow = 0.0_rk, pressure = 0.0_rk, head_pressure = 0.0_rk
-      real(rk) :: injected = 0.0_rk, injectivity = 0.0_rk
+      real(rk) :: injected = 0.0_rk, injectivity = 0.0_rk, temperature = 0.0_rk
    end type well_errors_t
 
    !> A well after a step, a row of wells.csv.
@@ -205,6 +205,7 @@ module report_rows
       ! (n_cells) Estimated errors: of each component, and of the pressure
       real(rk), allocatable :: displacement_error(:), stress_error(:)  !< [m], [Pa]
       real(rk), allocatable :: pressure_error(:)  !< [Pa]
+      real(rk), allocatable :: temperature_error(:)  !< with heat [K]
    end type matrix_fields_t
 
    !> (n_cells) Estimated errors of the state of the fracture cells, in the units of the fields.
@@ -212,6 +213,7 @@ module report_rows
       real(rk), allocatable :: jump_n(:), jump_t(:)  !< that of the aperture is that of jump_n
       real(rk), allocatable :: traction_n(:), traction_t(:)
       real(rk), allocatable :: pressure(:), flow(:)
+      real(rk), allocatable :: temperature(:)  !< with heat
    end type fracture_errors_t
 
    !> State of the fracture cells. Normal n and tangent tau as in mesh_types.

@@ -215,6 +215,7 @@ contains
       call grid%add("pressure_error", fields%pressure_error)
       call grid%add("stress_error", fields%stress_error)
       call grid%add("temperature", fields%temperature)
+      call grid%add("temperature_error", fields%temperature_error)
       call grid%set_units(matrix_fields%name, matrix_fields%unit)
    end subroutine fill_matrix
 
@@ -242,6 +243,7 @@ contains
          call grid%add("flow_error", error%flow)
       end associate
       call grid%add("temperature", fields%temperature)
+      call grid%add("temperature_error", fields%error%temperature)
       call grid%set_units(fracture_fields%name, fracture_fields%unit)
    end subroutine fill_fractures
 

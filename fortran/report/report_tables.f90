@@ -239,6 +239,7 @@ contains
             call put_if_there(table, "pressure_error_pa", error%pressure, cell)
             call put_if_there(table, "flow_error_m2_s", error%flow, cell)
             call put_if_there(table, "temperature_k", fields%temperature, cell)
+            call put_if_there(table, "temperature_error_k", error%temperature, cell)
             call table%end_row()
          end do
       end associate
@@ -359,6 +360,7 @@ contains
          call table%put("injected_error_m2", row%error%injected)
          call table%put("injectivity_error_m2_s_pa", row%error%injectivity)
          call table%put("temperature_k", row%temperature)
+         call table%put("temperature_error_k", row%error%temperature)
          call table%end_row()
       end associate
    end subroutine well_row

@@ -8,7 +8,7 @@ use report_rows, only: entry_row_t, history_row_t, well_row_t
 use report_limits, only: limit_depth, limit_well_error
 use report_slip, only: slip_step_t
 use twolevel_field_errors, only: load_errors
-use twolevel_heat, only: follow_heat, warn_of_heat
+use twolevel_heat, only: add_well_temperatures, follow_heat, warn_of_heat
 use twolevel_limits, only: watch_levels
 use twolevel_notes, only: note_stated_errors, states_errors
 use twolevel_place_errors, only: note_entries
@@ -62,6 +62,10 @@ call self%value_errors%note_state(self%scene, self%problem, self%now%coarse, row
                                   self%now%stated_errors, facts_of(self))
 call self%blurred%solve(self%scene, self%problem, self%before, self%now%coarse, &
                         self%step%report, self%shows_growth)
+if (self%blurred%is_unsolved) then
+   call self%summary%warn("a step with blurred temperatures was not solved: errors after it "// &
+                          "lack those by the mean temperatures of cells")
+end if
 call self%blurred%add_to_row(self%problem, self%before, self%now%coarse, self%value_errors%row)
 call note_well_rows(self)
 call watch_errors(self)
@@ -167,8 +171,7 @@ subroutine note_well_rows(self)
    call self%blurred%add_to_wells(self%scene, self%problem, self%before%time, self%now%coarse, &
                                   rows, self%value_errors%row)
    self%value_errors%of_wells = rows%error%pressure
-   if (allocated(self%problem%heat)) rows%temperature = self%problem%heat%heat%temperature &
-                                                        + self%now%heat%well_temperature
+   call add_well_temperatures(self%problem, self%now%heat, rows)
    self%chronicle%wells = [self%chronicle%wells, rows]
    if (.not. self%scene%has_entries()) return
    entries = entry_rows(self%problem, self%now%coarse)

@@ -5,6 +5,7 @@ module twolevel_heat
    use base_tolerances, only: same_time
    use coarse_layer_profiles, only: kept_faces_t
    use coarse_state, only: state_t
+   use heat_errors, only: add_errors_at_wells, temperature_errors, well_errors
    use heat_field, only: new_field
    use heat_flows, only: set_flows
    use heat_links, only: external_t
@@ -13,7 +14,7 @@ module twolevel_heat
    use heat_steps, only: advance_heat
    use heat_transfer, only: transfer_heat
    use mesh_types, only: mesh_map_t
-   use report_rows, only: heat_row_t, summary_t
+   use report_rows, only: heat_row_t, summary_t, well_row_t
    use report_simulation, only: snapshot_t
    use scene_fluid_law, only: viscosity_ratio
    use scene_types, only: injection_t, scene_t
@@ -24,7 +25,7 @@ module twolevel_heat
    implicit none(type, external)
    private
 
-   public :: act, add_heat_fields, carry_heat, follow_heat, heat_row
+   public :: act, add_heat_fields, add_well_temperatures, carry_heat, follow_heat, heat_row
    public :: predict_heat, set_heat, settle_heat, settlings_max, warn_of_heat
 
    integer, parameter :: settlings_max = 3  !< tries that are repeated since they moved other heat
@@ -398,18 +399,66 @@ contains
    end function heat_row
 
    !> Add the temperatures to the fields of a state.
-   pure subroutine add_heat_fields(heat, state, fields)
-      type(heat_model_t), allocatable, intent(in) :: heat
+   pure subroutine add_heat_fields(problem, state, fields)
+      type(coarse_problem_t), intent(in) :: problem
       type(heat_state_t), intent(in) :: state
       type(snapshot_t), intent(inout) :: fields
+      real(rk), allocatable :: behind(:), error(:)
 
-      if (.not. (allocated(heat) .and. allocated(state%temperature))) return
-      associate (datum => heat%heat%temperature)
-         fields%fracture%temperature = datum + state%temperature(heat%first_cell: &
-                                                                 heat%first_joint - 1)
+      if (.not. (allocated(problem%heat) .and. allocated(state%temperature))) return
+      associate (heat => problem%heat, datum => problem%heat%heat%temperature)
+         behind = behind_wells(problem)
+         error = temperature_errors(heat, state, behind)
+         call add_errors_at_wells(heat, state, behind, error)
+         associate (first => heat%first_cell, last => heat%first_joint - 1)
+            fields%fracture%temperature = datum + state%temperature(first:last)
+            fields%fracture%error%temperature = error(first:last)
+         end associate
          if (.not. allocated(fields%matrix%pressure)) return
          fields%matrix%temperature = datum + heat%cell_means(state)
+         fields%matrix%temperature_error = error(:heat%mesh%n_cells)
       end associate
    end subroutine add_heat_fields
+
+   !> Add the temperatures to the rows of the wells.
+   pure subroutine add_well_temperatures(problem, state, rows)
+      type(coarse_problem_t), intent(in) :: problem
+      type(heat_state_t), intent(in) :: state
+      type(well_row_t), intent(inout) :: rows(:)
+
+      if (.not. allocated(problem%heat)) return
+      rows%temperature = problem%heat%heat%temperature + state%well_temperature
+      rows%error%temperature = well_errors(problem%heat, state, &
+                                           temperature_errors(problem%heat, state, &
+                                                              behind_wells(problem)))
+   end subroutine add_well_temperatures
+
+   !> The share of each fracture cell that lies behind a well at a point of it, at a dead end;
+   !! -1 without such a well.
+   pure function behind_wells(problem) result(behind)
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), allocatable :: behind(:)  !< (fracture cells) [-]
+      integer(ik) :: e, i, k, point
+
+      associate (fracture => problem%mesh%fracture, heat => problem%heat)
+         allocate (behind(fracture%n_cells), source=-1.0_rk)
+         do e = 1, size(problem%entries, kind=ik)
+            if (.not. problem%entries(e)%at_point) cycle
+            do i = 1, fracture%n_cells
+               if (.not. problem%share(i, e) > 0.0_rk) cycle
+               behind(i) = max(behind(i), 0.0_rk)
+               do k = 1, 2
+                  point = fracture%cell_points(k, i)
+                  if (fracture%point_cells%length(point) > 1) cycle
+                  if (any(problem%model%joints%point == point)) cycle
+                  associate (well => problem%entries(e), end => fracture%point_xy(:, point), &
+                             length => fracture%cell_s(2, i) - fracture%cell_s(1, i))
+                     behind(i) = max(behind(i), norm2([well%x, well%y] - end)/length)
+                  end associate
+               end do
+            end do
+         end do
+      end associate
+   end function behind_wells
 
 end module twolevel_heat

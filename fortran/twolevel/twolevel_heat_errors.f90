@@ -38,6 +38,7 @@ module twolevel_heat_errors
       real(rk), allocatable :: injected(:)  !< the same of what wells have injected [m2]
       !> fluid of the heat that lies wrong at fractures, and at drained sides [m2]
       real(rk) :: at_faces = 0.0_rk, at_sides = 0.0_rk
+      logical :: is_unsolved = .false.  !< that of the last step, whose rows lack these errors
    contains
       procedure :: solve
       procedure :: visit
@@ -87,6 +88,7 @@ contains
       type(error_t), allocatable :: error
       real(rk), allocatable :: means(:)
 
+      self%is_unsolved = .false.
       if (.not. allocated(self%injected)) allocate (self%injected(0))
       if (size(self%injected) /= size(scene%injections)) then
          ! At the start, and after a restart with other wells.
@@ -109,7 +111,9 @@ contains
       associate (dt => state%time - before%time)
          call problem%advance(scene, dt, self%state, timers, second, error)
          call move_alloc(means, problem%model%rock%temperature)
-         if (allocated(error) .or. .not. second%converged) then
+         self%is_unsolved = allocated(error)
+         if (.not. self%is_unsolved) self%is_unsolved = .not. second%converged
+         if (self%is_unsolved) then
             deallocate (self%state)
             return
          end if

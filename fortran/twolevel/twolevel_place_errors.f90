@@ -1,16 +1,20 @@
 !> Estimated errors of the entries of wells and of the probes, from those of the quantities of a run
 !! (twolevel_value_errors).
 module twolevel_place_errors
-   use base_kinds, only: rk
+   use base_kinds, only: pi, rk
+   use base_plane, only: norm2
+   use mesh_geometry, only: cell_area, cell_centre
    use report_rows, only: entry_row_t, probe_row_t
+   use scene_types, only: scene_t
    use twolevel_errors, only: stated_errors_t
    use twolevel_followed, only: followed_step_t
    use twolevel_pressure_errors, only: least
+   use twolevel_problem, only: coarse_problem_t
    use twolevel_value_errors, only: of_solution, step_facts_t, value_errors_t
    implicit none(type, external)
    private
 
-   public :: note_entries, note_probes
+   public :: add_well_places, note_entries, note_probes
 
    !> least error of a probe, over the range, and of its displacement [-]
    real(rk), parameter :: of_range = 0.001_rk, of_displacement = 4.0e-4_rk
@@ -69,5 +73,35 @@ contains
                                + of_range*maxval(abs(row%stress(:, i)))
       end do
    end subroutine note_probes
+
+   !> Add the error of displacements by wells in the rock, whose fluid lies at the centre of their
+   !! cell instead: that of a strain nucleus, u = m/(2 pi r), m = alpha V/(S' (lambda + 2 G)) for
+   !! the volume V, which is displaced by d: d m/(2 pi r^2), and as much by its image in a side,
+   !! r at most the distance of that.
+   subroutine add_well_places(scene, problem, injected, row)
+      type(scene_t), intent(in) :: scene
+      type(coarse_problem_t), intent(in) :: problem
+      real(rk), intent(in) :: injected(:)  !< (wells) so far [m2]
+      type(probe_row_t), intent(inout) :: row
+      real(rk) :: off, r, strength
+      integer :: i, w
+
+      do w = 1, size(scene%injections)
+         if (problem%rock_cell(w) == 0) cycle
+         associate (well => [scene%injections(w)%x, scene%injections(w)%y], mesh => problem%mesh, &
+                    cell => problem%rock_cell(w), solid => problem%model%rock%solid_at( &
+                    problem%rock_cell(w)))
+            off = norm2(well - cell_centre(mesh, cell))
+            strength = solid%biot*abs(injected(w))/(solid%uniaxial_storage() &
+                                                    *(solid%lame + 2.0_rk*solid%shear))
+            do i = 1, size(scene%probes)
+               r = min(norm2([scene%probes(i)%x, scene%probes(i)%y] - well), &
+                       minval(well - minval(mesh%xy, dim=2)), minval(maxval(mesh%xy, dim=2) - well))
+               row%displacement_error(i) = row%displacement_error(i) &
+                                           + off*strength/(pi*max(r**2, cell_area(mesh, cell)))
+            end do
+         end associate
+      end do
+   end subroutine add_well_places
 
 end module twolevel_place_errors

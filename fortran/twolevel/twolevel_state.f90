@@ -20,7 +20,7 @@ module twolevel_state
    use twolevel_levels_state, only: checkpoint_t, levels_state_t
    use twolevel_notes, only: notes_t, states_errors
    use twolevel_pace, only: pace_t
-   use twolevel_place_errors, only: note_probes
+   use twolevel_place_errors, only: add_well_places, note_probes
    use twolevel_places, only: end_at_tips, place_tips
    use twolevel_problem, only: coarse_problem_t, discard
    use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
@@ -520,6 +520,9 @@ contains
       if (allocated(error)) return
       call note_probes(self%value_errors, self%time(), self%now%trend%pressure_rise(), row)
       call self%blurred%add_to_probes(self%scene, self%problem, row)
+      if (allocated(self%well_results%injected)) then
+         call add_well_places(self%scene, self%problem, self%well_results%injected, row)
+      end if
    end subroutine probes
 
    !> Fields of the last accepted state, if there is one.
@@ -542,7 +545,7 @@ contains
          fields%windows = self%windows%meshes(self%tip)
          if (size(fields%windows%tip) == 0) deallocate (fields%windows)
       end if
-      call add_heat_fields(self%problem%heat, self%now%heat, fields)
+      call add_heat_fields(self%problem, self%now%heat, fields)
    end subroutine snapshot
 
    !> Time of the present state [s].

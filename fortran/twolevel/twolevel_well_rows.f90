@@ -14,7 +14,7 @@ module twolevel_well_rows
 
    !> (wells) Sums, and values of the first state.
    type :: well_results_t
-      real(rk), allocatable, private :: injected(:)  !< injected at their heads so far [m2]
+      real(rk), allocatable :: injected(:)  !< injected at their heads so far [m2]
       real(rk), allocatable, private :: first_pressure(:)  !< pressure before the first step [Pa]
    contains
       procedure :: begin
