@@ -18,6 +18,8 @@ program test_coarse_blocks
    real(rk), parameter :: height = 2.0_rk  !< of the body [m]
    real(rk), parameter :: middle(2, 2) = reshape([0.0_rk, 1.0_rk, 2.0_rk, 1.0_rk], [2, 2])
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(step_report_t) :: report
    type(timers_t) :: timers
 
    call test_sliding_block(contact_law_t(friction=0.6_rk, dilation=0.0_rk))
@@ -81,8 +83,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: stresses(:, :)
       real(rk) :: pressure, stress
 
@@ -117,8 +117,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: motion(2) = [0.7e-3_rk, 1.0e-3_rk]
 
       call cut_square(checks, held_body(motion, 0.0_rk), middle, contact_law_t(friction=0.6_rk, &

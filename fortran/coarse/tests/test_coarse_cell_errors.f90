@@ -21,6 +21,7 @@ program test_coarse_cell_errors
 
    real(rk), parameter :: dt = 1.0e6_rk, moved = 1.0e-5_rk, pressed = 1.0e6_rk
    type(checks_t) :: checks
+   type(scene_t) :: scene
    type(mesh_t) :: body
 
    call test_linear()
@@ -58,7 +59,6 @@ contains
 
    !> Uniform stress, and linear pressure without flow through bottom and top.
    subroutine test_linear()
-      type(scene_t) :: scene
       type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(rock_fields_t) :: fields
@@ -101,7 +101,6 @@ contains
    !! fluxes on sides that are held. Expected: estimate and error of first order (4 +- 15 % between
    !! meshes, of squares), the estimate 1 to 3 times the error.
    subroutine test_smooth()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(rock_fields_t) :: fields
       real(rk) :: energy, estimate(3), true(3)

@@ -19,6 +19,9 @@ program test_coarse_condensed
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesher_t) :: mesher
+   type(mesh_t) :: mesh
 
    call test_with_fractures()
    call test_without_fracture()
@@ -98,12 +101,9 @@ contains
 
    !> Forces and fluxes r on the fractures: S q = g + r, then all unknowns from q.
    subroutine test_with_fractures()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
-      type(error_t), allocatable :: error
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.7_rk, &
                                                        1.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
       real(rk), parameter :: steps(4) = [1.0_rk, 1800.0_rk, 1.0e8_rk, 1800.0_rk]
@@ -196,12 +196,9 @@ contains
 
    !> Without fractures there is nothing to condense onto: expand solves the whole system.
    subroutine test_without_fracture()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
-      type(error_t), allocatable :: error
       real(rk), allocatable :: expected(:, :), rhs(:, :), unknowns(:, :)
       real(rk) :: none(2, 2, 0), empty(0)
       integer(ik) :: k
@@ -225,12 +222,9 @@ contains
 
    !> The same forces, loads and unknowns where S is not formed.
    subroutine test_without_full_matrix()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: full, sparse
-      type(error_t), allocatable :: error
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.4_rk, &
                                                        0.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
       real(rk), parameter :: steps(2) = [1.0_rk, 1.0e6_rk]
@@ -288,12 +282,9 @@ contains
    !! exchanges of pivots, for good, as if it had never tried without. What is well posed is then
    !! solved as well as ever.
    subroutine test_nearly_incompressible()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed, exchanging
-      type(error_t), allocatable :: error
       real(rk), parameter :: parts(3) = [0.0_rk, 1.0e-14_rk, 1.0_rk]
       real(rk), parameter :: steps(3) = [1.0e-20_rk, 1.0e-20_rk, 100.0_rk]
       real(rk) :: none(2, 2, 0), empty(0)

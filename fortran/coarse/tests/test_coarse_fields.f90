@@ -21,6 +21,9 @@ program test_coarse_fields
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk
    type(checks_t) :: checks
+   type(mesher_t) :: mesher
+   type(mesh_t) :: mesh
+   type(scene_t) :: scene
    type(mesh_t) :: body
    type(mesher_t) :: its_mesher
 
@@ -74,7 +77,6 @@ contains
    !! tractions are all given, the rotation has to come from elsewhere.
    subroutine test_linear_displacement(mesh)
       type(mesh_t), intent(in) :: mesh
-      type(scene_t) :: scene
       real(rk), parameter :: gradient(2, 2) = reshape([2.0e-4_rk, 9.0e-4_rk, -1.0e-4_rk, &
                                                        -3.0e-4_rk], [2, 2])
       real(rk), parameter :: translation(2) = [0.1e-3_rk, -0.2e-3_rk], pressure = 7.0e6_rk
@@ -144,9 +146,6 @@ contains
    end subroutine test_own_pressure
 
    subroutine test_linear_pressure()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
-      type(scene_t) :: scene
       real(rk), allocatable :: content(:), stresses(:, :), values(:, :)
       real(rk) :: none(2, 2, 0)
 
@@ -179,7 +178,6 @@ contains
    !> A cut through the whole body: its upper part slides and opens as one block.
    subroutine test_two_blocks()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: block_motion(2, 2) = reshape([1.0e-3_rk, 0.4e-3_rk, -2.0e-3_rk, &
                                                            1.1e-3_rk], [2, 2])
       real(rk), allocatable :: content(:), stresses(:, :), unknowns(:, :), values(:, :)
@@ -213,8 +211,6 @@ contains
 
    !> Two cuts that cross: four blocks.
    subroutine test_four_blocks()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.0_rk, 1.0_rk, 2.0_rk, 1.0_rk, 0.7_rk, &
                                                        0.0_rk, 1.3_rk, 2.0_rk], [2, 2, 2])
       real(rk), allocatable :: content(:), stresses(:, :), unknowns(:, :), values(:, :)

@@ -17,6 +17,9 @@ program test_coarse_in_situ
 
    real(rk), parameter :: g = 9.81_rk  !< [m/s2]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(timers_t) :: timers
 
    call check_states()
@@ -45,7 +48,6 @@ contains
 
    !> Which scenes have one, what it is, and what weight it carries.
    subroutine check_states()
-      type(scene_t) :: scene
       type(in_situ_state_t), allocatable :: state
       real(rk), parameter :: tight = 1.0e-9_rk  ! rounding of MPa [Pa]
       real(rk) :: traction(2)
@@ -120,12 +122,9 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
       real(rk), parameter :: ends(2, 2, 3) = reshape([0.4_rk, 0.5_rk, 1.2_rk, 1.3_rk, &
                                                       0.3_rk, 1.2_rk, 1.3_rk, 0.6_rk, &
                                                       1.6_rk, 1.0_rk, 2.0_rk, 1.5_rk], [2, 2, 3])
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: along, across, n(2), stress(2, 2), worst, y
       integer(ik) :: cell, end, step
 
@@ -169,12 +168,9 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
    !!   sigma_yy = -rho g (H - y), p = rho_f g (H - y), M u_y' = sigma_yy + alpha p.
    subroutine check_column()
       real(rk), parameter :: height = 100.0_rk
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: exact, modulus, slope, worst(2), y
       integer(ik) :: c, level
 
@@ -218,12 +214,9 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
    !! full, and its pressure higher, but by no more than the fluid above it weighs.
    subroutine check_vapour()
       real(rk), parameter :: ends(2, 2, 1) = reshape([0.7_rk, 0.8_rk, 1.3_rk, 1.2_rk], [2, 2, 1])
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: pressure(:)
 
       scene = basin()

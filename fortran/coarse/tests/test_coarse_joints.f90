@@ -22,6 +22,10 @@ program test_coarse_joints
 
    real(rk), parameter :: side_pressure = 2.0e6_rk  !< of the left side, where it has one [Pa]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(flow_paths_t), target :: paths  !< of the equations that are set up last
 
    call test_places()
@@ -107,7 +111,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model, sealed
       type(state_t) :: state
-      type(scene_t) :: scene
       integer(ik) :: b
 
       scene = tight_body()
@@ -141,9 +144,7 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t), target :: model
       type(state_t), target :: state
-      type(scene_t) :: scene
       type(equations_t) :: above, below, eq
-      type(error_t), allocatable :: error
       real(rk), parameter :: dt = 10.0_rk
       real(rk), allocatable :: jacobian(:, :), moved(:), x(:)
       real(rk), allocatable, target :: g(:)
@@ -281,10 +282,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: stresses(:, :), values(:, :)
       real(rk) :: worst
 
@@ -321,10 +318,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: drop, expected
       integer(ik) :: cells(2), i, k, step
 
@@ -370,10 +363,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: expected
       integer :: step
 
@@ -405,10 +394,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       integer :: step
 
       scene = tight_body()
@@ -440,10 +425,6 @@ contains
       type(mesh_t) :: mesh, mesh_of_halves
       type(coarse_model_t) :: model, model_of_halves
       type(state_t) :: state, state_of_halves
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       integer :: step
 
       scene = tight_body()
@@ -478,10 +459,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       integer :: k
 
       scene = tight_body()

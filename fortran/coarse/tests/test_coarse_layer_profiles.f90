@@ -21,6 +21,11 @@ program test_coarse_layer_profiles
    !> A fracture from side to side.
    real(rk), parameter :: line(2, 2, 1) = reshape([0.0_rk, 1.0_rk, 2.0_rk, 1.0_rk], [2, 2, 1])
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(mesher_t) :: mesher
+   type(scene_t) :: scene
    type(mesh_t) :: mesh
    type(coarse_model_t) :: model
    type(state_t) :: state
@@ -35,11 +40,6 @@ contains
 
    !> Fluid goes into the layers, more of it the farther along the fracture.
    subroutine take_in_fluid()
-      type(mesher_t) :: mesher
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       integer(ik) :: i
 
       scene = porous_body()
@@ -132,11 +132,6 @@ contains
       real(rk), parameter :: across(2, 2, 1) = reshape([1.0_rk, 0.0_rk, 1.0_rk, 2.0_rk], [2, 2, 1])
       real(rk), parameter :: drop = 2.0e7_rk  ! per m [Pa/m]
       real(rk), parameter :: depth(5) = [1.0e-5_rk, 1.0e-3_rk, 0.03_rk, 0.08_rk, 0.15_rk]
-      type(mesher_t) :: mesher
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk) :: found, largest, weight(3), xy(2)
       integer(ik) :: c, i, k
 

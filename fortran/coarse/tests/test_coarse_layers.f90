@@ -23,6 +23,10 @@ program test_coarse_layers
                                                      0.0_rk, 1.25_rk, 2.0_rk, 0.75_rk], [2, 2, 2])
    real(rk), parameter :: first_step = 1.0e-2_rk  !< [s]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(scene_t) :: scene
 
    call steady_state()
    call cell_with_two_layers()
@@ -61,10 +65,6 @@ contains
       type(mesh_t) :: mesh(2)
       type(coarse_model_t) :: model(2)
       type(state_t) :: state(2)
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk), parameter :: long = 1.0e12_rk  ! [s]
       real(rk) :: supply
       integer(ik) :: k, n
@@ -101,10 +101,6 @@ contains
       type(mesh_t) :: mesh(2)
       type(coarse_model_t) :: model(2)
       type(state_t) :: state(2)
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk), parameter :: steps(4) = [1.0e-2_rk, 1.0_rk, 1.0e3_rk, 1.0e13_rk]  ! [s]
       real(rk), parameter :: supply = 1.0e-11_rk  ! [m2/s]
       integer(ik) :: i, k
@@ -153,10 +149,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk) :: difference, largest
       integer(ik) :: l
 
@@ -187,10 +179,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk), allocatable :: undrained(:)
       real(rk) :: c, dt, exact, held, largest, mass_error, uniaxial, width
 

@@ -24,6 +24,8 @@ program test_coarse_matrix
    real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, &
                                                     0.0_rk, 1.5_rk, 0.8_rk, 1.5_rk], [2, 2, 2])
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(scene_t) :: scene
    type(mesh_t) :: mesh
    type(mesher_t) :: mesher
    integer(ik) :: cell
@@ -50,7 +52,6 @@ contains
       type(rock_t), intent(out) :: rock
       type(regions_t), intent(out) :: regions
       type(matrix_t), intent(out) :: matrix
-      type(error_t), allocatable :: error
 
       rock = new_rock(scene%material, scene%fluid)
       call discretize(mesh, rock, scene%sides, regions, matrix, error)
@@ -92,7 +93,6 @@ contains
    !> Patch test: any uniform strain with any uniform pressure, in plane strain and plane stress.
    subroutine test_uniform_strain(plane_stress)
       logical, intent(in) :: plane_stress
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -159,7 +159,6 @@ contains
 
    !> Uniform pressure in a clamped body moves nothing: sigma = -alpha p I, content S p.
    subroutine test_clamped_pressure()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -190,11 +189,9 @@ contains
    subroutine test_linear_pressure()
       type(mesh_t) :: body
       type(mesher_t) :: its_mesher
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), parameter :: slope(2) = [-0.5e6_rk, 0.9e6_rk]
       real(rk), parameter :: tensor(2, 2) = reshape([3.0e-14_rk, 1.0e-14_rk, 1.0e-14_rk, &
                                                      5.0e-14_rk/9.0_rk], [2, 2])
@@ -241,7 +238,6 @@ contains
    !> Constant pressure drives no flow: rows of the flow matrix add up to zero, and with given
    !! pressures on the sides to what these give.
    subroutine test_closed_sides()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -269,7 +265,6 @@ contains
    !> For any unknowns at all: the matrix, half of which is kept, gives the forces of the tractions
    !! around each cell and the content that follows from them.
    subroutine test_tractions_behind_matrix()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -314,7 +309,6 @@ contains
 
    !> The same for the flow.
    subroutine test_fluxes_behind_matrix()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -348,7 +342,6 @@ contains
    !! (quasi-definite, Vanderbei 1995: then any order of elimination is stable without pivoting).
    subroutine test_quasi_definite(poisson)
       real(rk), intent(in) :: poisson
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix

@@ -19,6 +19,11 @@ program test_coarse_model
    !> at (2, 2) [m]
    real(rk), parameter :: undrained_u(2) = [-0.6412206423e-3_rk, -0.04122064228e-3_rk]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(mesh_t) :: mesh
+   type(scene_t) :: scene
 
    call undrained_square()
    call linear_pressure()
@@ -115,13 +120,8 @@ contains
 
    !> Uniform undrained state: exact on any mesh.
    subroutine undrained_square()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: stresses(:, :)
       real(rk) :: none(2, 0)
 
@@ -144,13 +144,8 @@ contains
 
    !> Steady flow between two pressures with a full permeability tensor: the pressure is linear.
    subroutine linear_pressure()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: x(:)
       real(rk) :: none(2, 0)
       integer(ik) :: c
@@ -177,13 +172,8 @@ contains
    !> A fracture with high friction in the uniform state changes nothing and carries the resolved
    !! stress.
    subroutine sticking_fracture()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: at(2, 2) = reshape([0.7_rk, 0.8_rk, 1.2_rk, 1.3_rk], [2, 2])
 
       call paper_c(scene)
@@ -208,13 +198,8 @@ contains
    !> Closed frictional crack with dilation (catalogue 3.1, undrained elasticity): the slip
    !! converges with the cell size, and the tractions follow the law.
    subroutine slipping_fracture()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.05_rk, h = a/sqrt(2.0_rk), psi = tan(0.0174532925199433_rk)
       real(rk), parameter :: at(2, 2) = reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], &
                                                 [2, 2])
@@ -261,13 +246,8 @@ contains
    !! the mean, with the other sign. A fracture that stays closed has this pressure, or that of its
    !! vapour if it is larger, and the contact traction of the stress across it; it is full.
    subroutine closed_at_vapour_pressure()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: at(2, 2) = reshape([0.7_rk, 1.0_rk, 1.3_rk, 1.0_rk], [2, 2])
       real(rk), parameter :: vapour(3) = [0.0_rk, -1.0e6_rk, -3.0e6_rk]
       real(rk), parameter :: rock = -undrained_pressure/3.0_rk
@@ -298,13 +278,8 @@ contains
    !! net tension s in undrained rock is 2 pi s a^2/E', whatever the pressure of the rock. The next
    !! step goes on from there.
    subroutine open_at_vapour_pressure()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk
       real(rk), parameter :: at(2, 2) = reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2])
       real(rk) :: exact, volume
@@ -333,13 +308,8 @@ contains
 
    !> Ten steps of injection: fluid is neither made nor lost.
    subroutine injection_conserves_mass()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: at(2, 2) = reshape([0.9_rk, 0.95_rk, 1.1_rk, 1.05_rk], [2, 2])
       real(rk), parameter :: dt = 1800.0_rk, rate = 5.0e-9_rk
       integer :: i

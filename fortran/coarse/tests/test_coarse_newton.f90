@@ -17,6 +17,9 @@ program test_coarse_newton
    real(rk), parameter :: opening_rate = 2.0e-5_rk  !< Q that opens a fracture [m2/s] ...
    real(rk), parameter :: opening_time = 20.0_rk  !< ... within this time [s]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(timers_t) :: timers
 
    call test_cubic_law()
@@ -32,10 +35,7 @@ contains
    subroutine test_cubic_law()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: aperture = 1.0e-5_rk, rate = 1.0e-7_rk
       real(rk) :: slope
       integer(ik) :: i, n, step
@@ -74,10 +74,7 @@ contains
    subroutine test_pressure_spreads()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: aperture = 1.0e-3_rk, rate = 1.0e-6_rk, dt = 10.0_rk
       real(rk) :: before, capacity, plane_bulk, rise
       integer(ik) :: i
@@ -144,10 +141,7 @@ contains
    subroutine test_quadratic_convergence()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
 
       call opening_scene(scene)
       scene%fluid%viscosity = 0.02_rk
@@ -198,10 +192,7 @@ contains
    subroutine test_vapour()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: aperture = 1.0e-5_rk, bearable = 1.0e5_rk, dt = 1.0_rk
       real(rk) :: held, total
       integer :: k
@@ -263,10 +254,7 @@ contains
    subroutine test_refused_steps()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: before, state
-      type(error_t), allocatable :: error
-      type(step_report_t) :: report
 
       call opening_scene(scene)
       call cut_square(checks, scene, inside, contact_law_t(friction=0.5_rk, dilation=0.02_rk), &

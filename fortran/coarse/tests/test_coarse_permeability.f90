@@ -24,6 +24,12 @@ program test_coarse_permeability
 
    real(rk), parameter :: tiny_error = 1.0e-13_rk
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(mesher_t) :: mesher
+   type(mesh_t) :: mesh
+   type(scene_t) :: scene
 
    call test_shares()
    call test_layers()
@@ -132,8 +138,6 @@ contains
    subroutine test_sealing_sheet()
       real(rk), parameter :: sheet(4) = [0.7_rk, 0.71_rk, -1.0_rk, 3.0_rk]
       real(rk), parameter :: contrast(3) = [1.0e2_rk, 1.0e6_rk, 1.0e12_rk]
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       real(rk) :: layering, line(2, 2), share, worst
       integer(ik) :: c
@@ -170,15 +174,9 @@ contains
       real(rk), parameter :: contrast(3) = [1.0e6_rk, 1.0e9_rk, 1.0e12_rk]
       real(rk), parameter :: given = 1.0e6_rk  ! [Pa]
       real(rk), parameter :: slack = 0.01_rk  ! of the range: triangles are not all acute
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk) :: none(2, 2, 0)
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       integer :: k, step
 
       call mesh_square(checks, straight_network(none), 0.2_rk, 0.2_rk, mesher, mesh)
@@ -210,8 +208,6 @@ contains
 
    !> Of regions that overlap the last one counts; cells that they leave keep the scene's rock.
    subroutine test_order()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       integer(ik) :: c
       real(rk) :: expected
@@ -237,8 +233,6 @@ contains
 
    !> Two regions that share an outline, and fill the body, leave nothing of the rock around them.
    subroutine test_neighbours()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       real(rk) :: content
       integer(ik) :: c
@@ -268,12 +262,9 @@ contains
       character(len=*), intent(in) :: name
       real(rk), parameter :: first(3) = [3.0e-14_rk, 1.0e-14_rk, 1.2e-14_rk]
       real(rk), parameter :: second(3) = [2.0e-16_rk, 7.0e-16_rk, -3.0e-16_rk]
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: around(:), outflow(:), pressure(:)
       real(rk) :: slope(2, 2), gradient(2), along(2), worst, flux
       integer(ik) :: c, k, side
@@ -339,13 +330,8 @@ contains
    !! stencils and what the tip cells need.
    subroutine test_whole_body()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk) :: pressure(2)
       integer :: k
 

@@ -11,6 +11,7 @@ program test_coarse_regions
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(mesher_t) :: mesher
 
    call test_single_fracture()
    call test_joints()
@@ -106,7 +107,6 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(regions_t), intent(out) :: regions
       character(len=*), intent(in) :: name
-      type(mesher_t) :: mesher
 
       call mesh_square(checks, network, 0.2_rk, 0.5_rk, mesher, mesh)
       call find_regions(mesh, regions)
@@ -197,7 +197,6 @@ contains
    !> sigma = sum of sign t (x) lever gives back any constant tensor; lengths and area are right.
    subroutine test_corner_geometry()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: stress(2, 2) = reshape([3.0_rk, -1.0_rk, 2.0_rk, 5.0_rk], [2, 2])
       real(rk) :: rebuilt(2, 2), traction(2), sign_out(2), length(2), lever(2, 2), area, total
       integer(ik) :: c, faces(2), j, k, n_wrong
@@ -252,7 +251,6 @@ contains
    !> Both sides of a fracture share the traction of side +; other faces stay as they are.
    subroutine test_traction_face()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       integer(ik) :: face, i
       real(rk) :: sign_out
 

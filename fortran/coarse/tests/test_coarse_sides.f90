@@ -16,6 +16,7 @@ program test_coarse_sides
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk
    type(checks_t) :: checks
+   type(scene_t) :: scene
    type(mesh_t) :: mesh
 
    mesh = boxes(5_ik)
@@ -66,7 +67,6 @@ contains
 
    !> Uniform strain between rollers and springs, against which tractions press: exact.
    subroutine test_springs()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -92,7 +92,6 @@ contains
 
    !> Pure shear by tractions along the sides, with the body on their left.
    subroutine test_shear()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -115,7 +114,6 @@ contains
    !> Fluid comes in on the right and leaves on the left, where the pressure is given: a linear
    !! pressure, and no cell gains any.
    subroutine test_inflow()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -137,7 +135,6 @@ contains
 
    !> What is known of the sides, and how tractions and fluxes answer to it.
    subroutine test_other_values()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: anew, regions
       type(matrix_t) :: matrix, other
@@ -172,7 +169,6 @@ contains
    !> Cells around a node share a force; one in which a point lies has all of it; what holds a point
    !! bears what its displacement lacks of the given one.
    subroutine test_points()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix

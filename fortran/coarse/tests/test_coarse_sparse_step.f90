@@ -20,6 +20,8 @@ program test_coarse_sparse_step
 
    real(rk), parameter :: same = 1.0e-9_rk  !< relative
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
 
    call compare("apart", straight_network(lines([0.4_rk, 0.5_rk, 0.9_rk, 0.7_rk, &
                                                  1.2_rk, 1.5_rk, 1.6_rk, 1.1_rk, &
@@ -100,8 +102,6 @@ contains
       type(scene_t), intent(in) :: scene
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       integer(ik) :: i
 
       model%cells = uniform_cells(mesh, contact_law_t(friction=0.5_rk, dilation=0.02_rk), 1.0e-4_rk)
@@ -119,8 +119,6 @@ contains
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(out) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
       call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
       call checks%no_error(error, "equilibrium")
@@ -132,8 +130,6 @@ contains
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(out) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
       call model%advance(mesh, dt, state, timers, report, error)
       call checks%no_error(error, "step")

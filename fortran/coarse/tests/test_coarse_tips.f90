@@ -20,6 +20,11 @@ program test_coarse_tips
    real(rk), parameter :: a = 0.05_rk  !< half-length of the mesh's crack [m]
    integer(ik), parameter :: n_cells = 20
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(mesher_t) :: mesher
+   type(scene_t) :: scene
 
    call test_lengths(.true., 0.2_rk)
    call test_lengths(.true., 0.45_rk)
@@ -38,14 +43,9 @@ contains
       real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
       real(rk), parameter :: stress = 5.0e6_rk  ! released [Pa]
       real(rk), parameter :: cell = 2.0_rk*a/n_cells  ! [m]
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk) :: half_length, modulus, volume
       integer(ik) :: component
       integer :: k
@@ -94,14 +94,9 @@ contains
       real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
       real(rk), parameter :: a = 0.1_rk, cell = 2.0_rk*a/10.0_rk, radius = 1.0787052023767587_rk
       real(rk), parameter :: stress = -1.0e6_rk  ! keeps it closed [Pa]
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk) :: half_length, rate
       integer :: k
 
@@ -143,14 +138,9 @@ contains
                                                      0.6_rk + a, 1.0_rk + gap, &
                                                      1.4_rk - a, 1.0_rk, 1.4_rk + a, 1.0_rk], &
                                                      [2, 2, 3])
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), allocatable :: spring(:)
       real(rk) :: lowest
       integer(ik) :: at, cell, k, tip

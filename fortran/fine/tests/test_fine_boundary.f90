@@ -16,6 +16,8 @@ program test_fine_boundary
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 0.8_rk, .false.)
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4, x = 1, y = 2
 
@@ -59,7 +61,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :), reaction(:, :)
       real(rk) :: energy
       integer(ik) :: node
@@ -99,7 +100,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       real(rk) :: corner(2)
       integer(ik) :: node
@@ -134,7 +134,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
 
       call set_body(model)
@@ -164,11 +163,9 @@ contains
    subroutine gravity(poisson, tolerance)
       real(rk), intent(in) :: poisson, tolerance
       real(rk), parameter :: weight = 2700.0_rk*9.81_rk, height = 2.0_rk
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :), reaction(:, :)
       real(rk) :: modulus
       type(elasticity_t) :: elasticity
@@ -202,7 +199,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
 
       call set_body(model)
@@ -229,7 +225,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       integer(ik) :: node, side
 
@@ -259,7 +254,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), reaction(:, :)
       real(rk) :: moment
       integer(ik) :: node
@@ -294,7 +288,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       integer(ik) :: node
 
@@ -322,11 +315,9 @@ contains
    subroutine units()
       real(rk), parameter :: lengths(3) = [1.0_rk, 1.0e-6_rk, 1.0e4_rk]
       real(rk), parameter :: stresses(3) = [1.0_rk, 1.0e9_rk, 1.0e-9_rk]
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), first(:, :)
       integer(ik) :: i
 
@@ -354,7 +345,6 @@ contains
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(face_conditions_t) :: conditions
-      type(error_t), allocatable :: error
 
       call set_body(model)
       call model%prepare(loaded_everywhere(model%mesh), error, boundary)

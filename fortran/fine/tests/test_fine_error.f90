@@ -13,6 +13,8 @@ program test_fine_error
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
 
    call exact_in_the_elements()
    call smooth_field()
@@ -28,7 +30,6 @@ contains
       logical, intent(in) :: cracked
       type(fine_model_t), intent(inout) :: model
       real(rk), allocatable, intent(out) :: displacement(:, :)
-      type(error_t), allocatable :: error
 
       call solve_exact(mesh, cracked, model, displacement, error)
       call checks%no_error(error, "body is solved")
@@ -36,12 +37,10 @@ contains
 
    !> A displacement that the elements hold has no error, and none is estimated.
    subroutine exact_in_the_elements()
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
 
       mesh = cracked_rectangle([0.0_rk, 2.0_rk], [0.0_rk, 1.0_rk], [5_ik, 3_ik], 1_ik, 1_ik, 0_ik)
@@ -61,7 +60,6 @@ contains
 
    !> The effectivity index, estimated over true error, tends to one.
    subroutine smooth_field()
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate, averaged
@@ -102,7 +100,6 @@ contains
 
    !> A crack with quarter-point elements at both tips.
    subroutine crack()
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate, averaged
