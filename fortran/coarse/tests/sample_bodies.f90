@@ -6,7 +6,7 @@ module sample_bodies
    use coarse_layout, only: end_block
    use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_state, only: fracture_cells_t, state_t
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
    use contact_law, only: contact_law_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_geometry, only: face_length
@@ -16,8 +16,9 @@ module sample_bodies
    implicit none(type, external)
    private
 
-   public :: boxes, cell_centre, cut_square, dense_matrix, linear_unknowns, load_sides, mesh_square
-   public :: porous_body, scattered, shake, straight_network, uniform_cells
+   public :: advance, boxes, cell_centre, cut_square, dense_matrix, equilibrate, hold
+   public :: linear_unknowns, load_sides, mesh_square, new_square, porous_body, scattered
+   public :: set_permeability, shake, straight_network, uniform_cells
 
 contains
 
@@ -35,6 +36,26 @@ contains
       scene%fluid%viscosity = 1.0e-4_rk
       allocate (scene%fractures(0), scene%injections(0), scene%probes(0))
    end function porous_body
+
+   pure subroutine set_permeability(scene, permeability)
+      type(scene_t), intent(inout) :: scene
+      real(rk), intent(in) :: permeability  !< [m2]
+
+      scene%material%permeability_xx = permeability
+      scene%material%permeability_yy = permeability
+   end subroutine set_permeability
+
+   !> Rollers at left and bottom, and perhaps normal stresses on the right side and on top.
+   pure subroutine hold(scene, stress)
+      type(scene_t), intent(inout) :: scene
+      real(rk), intent(in), optional :: stress(2)  !< xx, yy [Pa]
+
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      if (.not. present(stress)) return
+      scene%sides(2)%traction(1) = stress(1)
+      scene%sides(4)%traction(2) = stress(2)
+   end subroutine hold
 
    !> Let a uniform total stress act on all sides.
    pure subroutine load_sides(scene, stress)
@@ -252,16 +273,79 @@ contains
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
       type(mesher_t) :: mesher
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
       call mesh_square(checks, straight_network(reshape(line, [2, 2, 1])), 0.2_rk, 0.4_rk, &
                        mesher, mesh)
       call shake(mesh)
+      call begin(checks, scene, law, aperture, mesh, model, state)
+   end subroutine cut_square
+
+   !> The square with a network, before anything happens.
+   subroutine new_square(checks, scene, network, sizes, law, aperture, mesh, model, state)
+      type(checks_t), intent(inout) :: checks
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: sizes(2)  !< of cells at fractures and at the boundary [m]
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: aperture  !< residual [m]
+      type(mesh_t), intent(out) :: mesh
+      type(coarse_model_t), intent(inout) :: model
+      type(state_t), intent(out) :: state
+      type(mesher_t) :: mesher
+
+      call mesh_square(checks, network, sizes(1), sizes(2), mesher, mesh)
+      call begin(checks, scene, law, aperture, mesh, model, state)
+   end subroutine new_square
+
+   subroutine begin(checks, scene, law, aperture, mesh, model, state)
+      type(checks_t), intent(inout) :: checks
+      type(scene_t), intent(in) :: scene
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: aperture  !< residual [m]
+      type(mesh_t), intent(inout) :: mesh
+      type(coarse_model_t), intent(inout) :: model
+      type(state_t), intent(out) :: state
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
       model%cells = uniform_cells(mesh, law, aperture)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization")
       call new_state(mesh, model%cells, scene%initial, model, state)
-   end subroutine cut_square
+   end subroutine begin
+
+   !> A time step, which must converge.
+   subroutine advance(checks, model, mesh, dt, state, report, name)
+      type(checks_t), intent(inout) :: checks
+      type(coarse_model_t), intent(inout) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(step_report_t), intent(out) :: report
+      character(len=*), intent(in) :: name
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call model%advance(mesh, dt, state, timers, report, error)
+      call checks%no_error(error, name)
+      call checks%is_true(report%converged, name//" converges")
+   end subroutine advance
+
+   !> The initial state, which must converge.
+   subroutine equilibrate(checks, model, mesh, dt, state, report, name)
+      type(checks_t), intent(inout) :: checks
+      type(coarse_model_t), intent(inout) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(step_report_t), intent(out) :: report
+      character(len=*), intent(in) :: name
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call model%equilibrate(mesh, dt, state, timers, report, error)
+      call checks%no_error(error, name)
+      call checks%is_true(report%converged, name//" converges")
+   end subroutine equilibrate
 
 end module sample_bodies

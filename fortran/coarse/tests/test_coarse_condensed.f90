@@ -12,7 +12,7 @@ program test_coarse_condensed
    use coarse_stencils, only: discretize
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, mesh_square, porous_body, scattered, shake, &
+   use sample_bodies, only: dense_matrix, hold, mesh_square, porous_body, scattered, shake, &
                             straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
@@ -40,8 +40,7 @@ contains
       type(error_t), allocatable :: error
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides(4)%traction = [2.0e6_rk, -10.0e6_rk]
       scene%sides(2)%pressure_given = .true.
       scene%sides(2)%pressure = 2.0e6_rk

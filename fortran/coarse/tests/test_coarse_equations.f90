@@ -16,7 +16,8 @@ program test_coarse_equations
    use contact_newton, only: step_quality_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells
+   use sample_bodies, only: hold, mesh_square, porous_body, scattered, set_permeability, &
+                            straight_network, uniform_cells
    use scene_fluid_law, only: new_fluid_law
    use scene_types, only: fluid_t, initial_t, scene_t
    use testing_checks, only: checks_t
@@ -64,10 +65,8 @@ contains
       integer(ik) :: i
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%material%permeability_xx = 1.0e-15_rk
-      scene%material%permeability_yy = 1.0e-15_rk
+      call hold(scene)
+      call set_permeability(scene, 1.0e-15_rk)
       call mesh_square(checks, straight_network(lines), 0.3_rk, 0.5_rk, mesher, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-4_rk)
       do i = 1, mesh%fracture%n_cells

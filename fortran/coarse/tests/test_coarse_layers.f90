@@ -12,8 +12,8 @@ program test_coarse_layers
    use contact_law, only: contact_law_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: boxes, load_sides, mesh_square, porous_body, shake, straight_network, &
-                            uniform_cells
+   use sample_bodies, only: boxes, hold, load_sides, mesh_square, porous_body, shake, &
+                            straight_network, uniform_cells
    use scene_types, only: initial_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -50,8 +50,7 @@ contains
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       call mesh_square(checks, straight_network(lines), size, 0.3_rk, mesher, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       if (has_layers) model%first_step = first_step
@@ -106,8 +105,7 @@ contains
       integer(ik) :: i, k
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides(2:3)%pressure_given = .true.
       scene%sides(2:3)%pressure = 1.0e3_rk
       do k = 1, 2

@@ -13,8 +13,8 @@ program test_coarse_matrix
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body, &
-                            scattered, shake, straight_network
+   use sample_bodies, only: dense_matrix, hold, linear_unknowns, load_sides, mesh_square, &
+                            porous_body, scattered, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -351,8 +351,7 @@ contains
 
       scene = porous_body()
       scene%material%poisson = poisson
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       call prepare(scene, rock, regions, matrix)
       allocate (full, source=dense_matrix(matrix, 1.0e-3_rk))
       allocate (of_pressure, source=[(3*i, i=1, matrix%n_blocks)])

@@ -9,7 +9,7 @@ program test_coarse_sides
    use coarse_rock, only: new_rock, rock_t
    use coarse_stencils, only: discretize, renew_sides
    use mesh_types, only: mesh_t
-   use sample_bodies, only: boxes, dense_matrix, linear_unknowns, porous_body, shake
+   use sample_bodies, only: boxes, dense_matrix, hold, linear_unknowns, porous_body, shake
    use scene_types, only: point_load_t, restraint_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -77,8 +77,7 @@ contains
       scene = porous_body()
       gradient = reshape([strain(1), 0.0_rk, 0.0_rk, strain(2)], [2, 2])
       stress = stress_of(scene, strain)
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides(2)%spring(1) = spring(1)
       scene%sides(2)%traction(1) = stress(1) + spring(1)*2.0_rk*strain(1)
       scene%sides(4)%spring(2) = spring(2)

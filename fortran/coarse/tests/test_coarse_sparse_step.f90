@@ -13,7 +13,7 @@ program test_coarse_sparse_step
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
-   use sample_bodies, only: mesh_square, porous_body, straight_network, uniform_cells
+   use sample_bodies, only: hold, mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -56,10 +56,7 @@ contains
       logical :: has_occurred(state_stick:state_open)
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction(1) = -20.0e6_rk
-      scene%sides(4)%traction(2) = -10.0e6_rk
+      call hold(scene, [-20.0e6_rk, -10.0e6_rk])
       call mesh_square(checks, network, 0.08_rk, 0.3_rk, mesher, mesh)
       scene%discretization%condensation = "full"
       call start(mesh, scene, full, by_full)
