@@ -39,7 +39,8 @@ program fine_recovery_errors
    call estimate_error(model, displacement, patches, estimate)
    true = norm2(true_errors(model, displacement, cracked))
    call table%open("recovery.csv", "elements,patches")
-   call table%row([true, norm2(true_errors(model, displacement, cracked, patches))]/estimate%solution)
+   call table%row([true, norm2(true_errors(model, displacement, cracked, patches))] &
+                  /estimate%solution)
    call table%close()
    call table%open("effectivity.csv", "patches")
    call table%row([estimate%total/true])

@@ -152,8 +152,8 @@ contains
       type(coarse_model_t) :: model
       type(state_t) :: state
       real(rk), parameter :: a = 0.05_rk, h = a/sqrt(2.0_rk), psi = tan(0.0174532925199433_rk)
-      real(rk), parameter :: at(2, 2, 1) = reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], &
-                                                [2, 2, 1])
+      real(rk), parameter :: at(2, 2, 1) = &
+                             reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], [2, 2, 1])
       real(rk) :: drop, slip, error_of(3), exact, modulus, x
       integer(ik) :: end, i, level, n
 
@@ -228,7 +228,8 @@ contains
       type(coarse_model_t) :: model
       type(state_t) :: state
       real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk
-      real(rk), parameter :: at(2, 2, 1) = reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2, 1])
+      real(rk), parameter :: at(2, 2, 1) = &
+                             reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2, 1])
       real(rk) :: exact, volume
 
       scene = paper_c()

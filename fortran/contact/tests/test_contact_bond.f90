@@ -30,13 +30,16 @@ contains
    subroutine test_derivatives()
       type(contact_law_t) :: dilating, joint, opened, tough
 
-      call compare_slopes(bonded, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
+      call compare_slopes(bonded, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
       call compare_slopes(bonded, [1.0_rk, 1.0_rk]*mpa, [0.1_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
       call compare_slopes(bonded, [-5.0_rk, 7.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare_slopes(bonded, [1.0_rk, -7.0_rk]*mpa, [-0.3_rk, -4.0_rk]*um, -2.0_rk*um, state_slip)
+      call compare_slopes(bonded, [1.0_rk, -7.0_rk]*mpa, [-0.3_rk, -4.0_rk]*um, -2.0_rk*um, &
+                          state_slip)
       call compare_slopes(bonded, [1.5_rk, 1.0_rk]*mpa, [3.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
       call compare_slopes(bonded, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
-      call compare_slopes(bonded, [1.5_rk, -5.0_rk]*mpa, [13.0_rk, -4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(bonded, [1.5_rk, -5.0_rk]*mpa, [13.0_rk, -4.0_rk]*um, 2.0_rk*um, &
+                          state_open)
       opened = bonded%aged(1.0_rk*um, 4.0_rk*um)
       call compare_slopes(opened, [0.5_rk, 4.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
       call compare_slopes(opened, [0.5_rk, 4.0_rk]*mpa, [5.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
@@ -44,14 +47,17 @@ contains
       joint = bonded
       joint%compliance = 1.0e-11_rk
       joint%closure_end = 1.0e4_rk
-      call compare_slopes(joint, [-5.0_rk, 7.5_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(joint, [-5.0_rk, 7.5_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
       call compare_slopes(joint, [1.0_rk, 6.5_rk]*mpa, [20.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
       dilating = bonded
       dilating%dilation = 0.1_rk
       dilating%weakening = 4.0e4_rk
       dilating%weakening_slip = 1.0e-5_rk
-      call compare_slopes(dilating, [-5.0_rk, 7.5_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare_slopes(dilating, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(dilating, [-5.0_rk, 7.5_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(dilating, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_open)
       tough = bonded
       tough%wears = .false.
       call compare_slopes(tough, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)

@@ -81,11 +81,15 @@ contains
    end subroutine test_inverse
 
    subroutine test_derivatives()
-      call compare_slopes(joint, [-5.0_rk, 1.0_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
-      call compare_slopes(joint, [-5.0_rk, 3.0_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare_slopes(joint, [-5.0_rk, -3.0_rk]*mpa, [-30.0_rk, -4.0_rk]*um, -2.0_rk*um, state_slip)
+      call compare_slopes(joint, [-5.0_rk, 1.0_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
+      call compare_slopes(joint, [-5.0_rk, 3.0_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(joint, [-5.0_rk, -3.0_rk]*mpa, [-30.0_rk, -4.0_rk]*um, -2.0_rk*um, &
+                          state_slip)
       call compare_slopes(joint, [-1.0_rk, 0.3_rk]*mpa, [30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
-      call compare_slopes(joint, [2.0_rk, 0.3_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
+      call compare_slopes(joint, [2.0_rk, 0.3_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
       call compare_slopes(stiff, [-5.0_rk, 1.0_rk]*mpa, [0.1_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
       call compare_slopes(stiff, [-5.0_rk, 3.0_rk]*mpa, [-0.1_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
    end subroutine test_derivatives
