@@ -6,7 +6,10 @@ module sample_bodies
    use coarse_layout, only: end_block
    use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
    use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_stencils, only: discretize
    use contact_law, only: contact_law_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_geometry, only: face_length
@@ -16,8 +19,8 @@ module sample_bodies
    implicit none(type, external)
    private
 
-   public :: advance, boxes, cell_centre, cut_square, dense_matrix, equilibrate, hold
-   public :: linear_unknowns, load_sides, mesh_square, new_square, porous_body, scattered
+   public :: action, advance, boxes, cell_centre, cut_square, dense_matrix, equilibrate, hold
+   public :: linear_unknowns, load_sides, mesh_square, new_square, porous_body, prepare, scattered
    public :: set_permeability, shake, straight_network, uniform_cells
 
 contains
@@ -261,6 +264,33 @@ contains
          end do
       end do
    end function dense_matrix
+
+   !> matrix*unknowns less the boundary's part, as (3, n_blocks).
+   function action(matrix, dt, unknowns) result(rows)
+      type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: dt, unknowns(:, :)
+      real(rk), allocatable :: rows(:, :)
+
+      allocate (rows(3, matrix%n_blocks))
+      rows = reshape(matmul(dense_matrix(matrix, dt), reshape(unknowns, [size(unknowns)])), &
+                     [3_ik, matrix%n_blocks]) - matrix%elastic_known
+      rows(3, :) = rows(3, :) - dt*matrix%flow_known
+   end function action
+
+   !> The discretized rock of a scene without regions.
+   subroutine prepare(checks, mesh, scene, rock, regions, matrix)
+      type(checks_t), intent(inout) :: checks
+      type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
+      type(rock_t), intent(out) :: rock
+      type(regions_t), intent(out) :: regions
+      type(matrix_t), intent(out) :: matrix
+      type(error_t), allocatable :: error
+
+      rock = new_rock(scene%material, scene%fluid)
+      call discretize(mesh, rock, scene%sides, regions, matrix, error)
+      call checks%no_error(error, "discretization")
+   end subroutine prepare
 
    !> The square with one straight fracture, on cells of irregular shape, before anything happens.
    subroutine cut_square(checks, scene, line, law, aperture, mesh, model, state)

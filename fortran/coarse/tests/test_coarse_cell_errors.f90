@@ -2,19 +2,17 @@
 !! fractures; of first order, and no less than the true ones, where they are smooth; sizes that
 !! bring the error to a given one.
 program test_coarse_cell_errors
-   use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use coarse_cell_errors, only: cell_errors, rock_fields, rock_fields_t, sizes_for
    use coarse_fields, only: corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
+   use coarse_rock, only: rock_t
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
-                            porous_body, shake, straight_network
+                            porous_body, prepare, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -42,12 +40,9 @@ contains
       type(rock_fields_t) :: nothing
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: tractions(:)
 
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       call corner_tractions(regions, unknowns, tractions)
       call rock_fields(mesh, rock, regions, unknowns, tractions, fields)
       nothing = fields

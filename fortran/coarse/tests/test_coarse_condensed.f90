@@ -8,12 +8,11 @@ program test_coarse_condensed
    use coarse_layout, only: condensed_layout_t
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
+   use coarse_rock, only: rock_t
    use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, hold, mesh_square, porous_body, scattered, shake, &
-                            straight_network
+   use sample_bodies, only: dense_matrix, hold, mesh_square, porous_body, prepare, scattered, &
+                            shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -31,23 +30,20 @@ program test_coarse_condensed
 
 contains
 
-   subroutine prepare(mesh, rock, matrix)
+   subroutine drained(mesh, rock, matrix)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(out) :: rock
       type(matrix_t), intent(out) :: matrix
       type(regions_t) :: regions
       type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       scene = porous_body()
       call hold(scene)
       scene%sides(4)%traction = [2.0e6_rk, -10.0e6_rk]
       scene%sides(2)%pressure_given = .true.
       scene%sides(2)%pressure = 2.0e6_rk
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
-   end subroutine prepare
+      call prepare(checks, mesh, scene, rock, regions, matrix)
+   end subroutine drained
 
    !> The whole system by Gauss elimination, scaled by its diagonal.
    subroutine solve_whole(matrix, dt, rhs, unknowns)
@@ -114,7 +110,7 @@ contains
 
       call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
       call shake(mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       layout = condensed_layout_t(mesh%fracture%n_cells)
       n = layout%count()
       allocate (g(n), q(n, 1), pivots(n), unknowns(3, matrix%n_blocks))
@@ -204,7 +200,7 @@ contains
 
       call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesher, mesh)
       call shake(mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       allocate (unknowns(3, matrix%n_blocks))
       do k = 1, 2
          call condensed%factorize(mesh, matrix, 100.0_rk**k, error)
@@ -233,7 +229,7 @@ contains
       integer(ik) :: i, k, n
 
       call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       sparse%is_full = .false.
       do k = 1, size(steps)
          call full%factorize(mesh, matrix, steps(k), error)
@@ -292,7 +288,7 @@ contains
 
       call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesher, mesh)
       call shake(mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       storing = matrix%elastic(3, 3, :)
       allocate (unknowns(3, matrix%n_blocks), expected(3, matrix%n_blocks))
       exchanging%factors%needs_exchanges = .true.

@@ -1,20 +1,18 @@
 !> Fields from the unknowns: exact where displacement and pressure are linear, also at loaded
 !! corners of the body, beside fractures, and where blocks of the body move against each other.
 program test_coarse_fields
-   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_nodes, only: nodal_fields, node_values
    use coarse_own_pressure, only: own_pressure
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
+   use coarse_rock, only: rock_t
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
-                            porous_body, shake, straight_network
+                            porous_body, prepare, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -52,14 +50,11 @@ contains
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: tractions(:)
       real(rk) :: worst
       integer(ik) :: v
 
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (stresses(3, mesh%n_cells), content(mesh%n_cells), values(3, mesh%n_nodes))
       call corner_tractions(regions, unknowns, tractions)
       call cell_stresses(mesh, regions, tractions, stresses)

@@ -2,19 +2,17 @@
 !! the same as the tractions and fluxes that it stands for, symmetric and quasi-definite.
 program test_coarse_matrix
    use algebra_lapack, only: dpotrf
-   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t, traction_face
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
+   use coarse_rock, only: rock_t
    use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, hold, linear_unknowns, load_sides, mesh_square, &
-                            porous_body, scattered, shake, straight_network
+   use sample_bodies, only: action, dense_matrix, hold, linear_unknowns, load_sides, mesh_square, &
+                            porous_body, prepare, scattered, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -24,7 +22,6 @@ program test_coarse_matrix
    real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, &
                                                     0.0_rk, 1.5_rk, 0.8_rk, 1.5_rk], [2, 2, 2])
    type(checks_t) :: checks
-   type(error_t), allocatable :: error
    type(scene_t) :: scene
    type(mesh_t) :: mesh
    type(mesher_t) :: mesher
@@ -46,29 +43,6 @@ program test_coarse_matrix
    call checks%finish()
 
 contains
-
-   subroutine prepare(scene, rock, regions, matrix)
-      type(scene_t), intent(in) :: scene
-      type(rock_t), intent(out) :: rock
-      type(regions_t), intent(out) :: regions
-      type(matrix_t), intent(out) :: matrix
-
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
-   end subroutine prepare
-
-   !> matrix*unknowns less the boundary's part, as (3, n_blocks).
-   function action(matrix, dt, unknowns) result(rows)
-      type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: dt, unknowns(:, :)
-      real(rk), allocatable :: rows(:, :)
-
-      allocate (rows(3, matrix%n_blocks))
-      rows = reshape(matmul(dense_matrix(matrix, dt), reshape(unknowns, [size(unknowns)])), &
-                     [3_ik, matrix%n_blocks]) - matrix%elastic_known
-      rows(3, :) = rows(3, :) - dt*matrix%flow_known
-   end function action
 
    !> Force through half a fracture face, negated: -l/2 sigma n.
    subroutine check_fracture_rows(rows, stress, name)
@@ -120,7 +94,7 @@ contains
                      - scene%material%porosity)*3.0_rk*(1.0_rk - 2.0_rk*nu)/e)*pressure + biot*trace
       end associate
       call load_sides(scene, [stress(1, 1), stress(2, 2), stress(1, 2)])
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, [0.1e-3_rk, -0.2e-3_rk], gradient, &
                                                     pressure, [0.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(rows(1:2, :mesh%n_cells))), 0.0_rk, &
@@ -142,7 +116,7 @@ contains
       type(matrix_t) :: matrix
       real(rk), parameter :: turn(2, 2) = reshape([0.0_rk, 1.0e-3_rk, -1.0e-3_rk, 0.0_rk], [2, 2])
 
-      call prepare(porous_body(), rock, regions, matrix)
+      call prepare(checks, mesh, porous_body(), rock, regions, matrix)
       call checks%is_close(maxval(abs(matrix%elastic_known)), 0.0_rk, 0.0_rk, "free body: no load")
       associate (rows => action(matrix, 0.0_rk, linear_unknowns(mesh, [1.0e-3_rk, 2.0e-3_rk], &
                                                                 nothing, 0.0_rk, [0.0_rk, 0.0_rk])))
@@ -170,7 +144,7 @@ contains
       do i = 1, 4
          scene%sides(i)%displacement_given = .true.
       end do
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, pressure, &
                                                     [0.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(rows(1:2, :mesh%n_cells))), 0.0_rk, 1.0e-13_rk*pressure, &
@@ -206,9 +180,7 @@ contains
       scene%material%permeability_yy = tensor(2, 2)
       scene%material%permeability_xy = tensor(1, 2)
       flux = -matmul(tensor, slope)/scene%fluid%viscosity
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(body, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
+      call prepare(checks, body, scene, rock, regions, matrix)
       unknowns = linear_unknowns(body, [0.0_rk, 0.0_rk], nothing, 3.0e6_rk, slope)
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
@@ -245,7 +217,7 @@ contains
       real(rk), allocatable :: ones(:, :), rows(:, :)
 
       scene = porous_body()
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (ones(3, matrix%n_blocks), source=0.0_rk)
       ones(3, :) = 1.0_rk
       matrix%elastic = 0.0_rk
@@ -254,7 +226,7 @@ contains
                            "closed sides: row sums")
       scene%sides([1, 4])%pressure_given = .true.
       scene%sides([1, 4])%pressure = pressure
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       call checks%is_true(maxval(abs(matrix%flow_known)) > 0.0_rk, "given pressures act")
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, pressure*ones)
@@ -279,7 +251,7 @@ contains
       scene%sides(3)%displacement_given(2) = .true.
       scene%sides(3)%displacement(2) = 1.0e-4_rk
       scene%sides(4)%traction = [3.0e6_rk, -10.0e6_rk]
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (unknowns(3, matrix%n_blocks), content(mesh%n_cells), force(2, mesh%n_cells))
       unknowns = reshape(scattered(3*matrix%n_blocks), [3_ik, matrix%n_blocks])
       unknowns(1:2, :) = 1.0e-4_rk*unknowns(1:2, :)
@@ -319,7 +291,7 @@ contains
       scene%material%permeability_xy = 2.0e-20_rk
       scene%sides([1, 4])%pressure_given = .true.
       scene%sides([1, 4])%pressure = [2.0e6_rk, 3.0e6_rk]
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (unknowns(3, matrix%n_blocks), outflow(mesh%n_cells), source=0.0_rk)
       unknowns(3, :) = 1.0e6_rk*scattered(matrix%n_blocks)
       matrix%elastic = 0.0_rk
@@ -329,7 +301,7 @@ contains
       call checks%is_close(maxval(abs(rows(3, :mesh%n_cells) + outflow)), 0.0_rk, &
                            1.0e-12_rk*maxval(abs(outflow)), "outflow by the matrix and by fluxes")
       ! Without open sides, what leaves the cells enters the fractures.
-      call prepare(porous_body(), rock, regions, matrix)
+      call prepare(checks, mesh, porous_body(), rock, regions, matrix)
       call cell_outflow(mesh, regions, regions%flux, unknowns(3, :), outflow)
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
@@ -352,7 +324,7 @@ contains
       scene = porous_body()
       scene%material%poisson = poisson
       call hold(scene)
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (full, source=dense_matrix(matrix, 1.0e-3_rk))
       allocate (of_pressure, source=[(3*i, i=1, matrix%n_blocks)])
       allocate (of_displacement, source=[([3*i - 2, 3*i - 1], i=1, matrix%n_blocks)])
