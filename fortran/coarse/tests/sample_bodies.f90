@@ -84,16 +84,23 @@ contains
    end function straight_network
 
    !> Mesh of [0, 2] x [0, 2] m.
-   subroutine mesh_square(checks, network, size_fracture, size_boundary, mesher, mesh)
+   subroutine mesh_square(checks, network, size_fracture, size_boundary, mesh, mesher)
       type(checks_t), intent(inout) :: checks
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: size_fracture, size_boundary  !< [m]
-      type(mesher_t), intent(inout) :: mesher
       type(mesh_t), intent(out) :: mesh
+      type(mesher_t), intent(inout), optional :: mesher  !< of a mesh that will change
+      type(mesh_spec_t) :: spec
+      type(mesher_t) :: own
       type(error_t), allocatable :: error
 
-      call build_mesh(mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
-                                  size_boundary=size_boundary), network, mesher, mesh, error)
+      spec = mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
+                         size_boundary=size_boundary)
+      if (present(mesher)) then
+         call build_mesh(spec, network, mesher, mesh, error)
+      else
+         call build_mesh(spec, network, own, mesh, error)
+      end if
       call checks%no_error(error, "mesh of the square")
    end subroutine mesh_square
 
@@ -302,10 +309,8 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(mesher_t) :: mesher
 
-      call mesh_square(checks, straight_network(reshape(line, [2, 2, 1])), 0.2_rk, 0.4_rk, &
-                       mesher, mesh)
+      call mesh_square(checks, straight_network(reshape(line, [2, 2, 1])), 0.2_rk, 0.4_rk, mesh)
       call shake(mesh)
       call begin(checks, scene, law, aperture, mesh, model, state)
    end subroutine cut_square
@@ -321,9 +326,8 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(mesher_t) :: mesher
 
-      call mesh_square(checks, network, sizes(1), sizes(2), mesher, mesh)
+      call mesh_square(checks, network, sizes(1), sizes(2), mesh)
       call begin(checks, scene, law, aperture, mesh, model, state)
    end subroutine new_square
 

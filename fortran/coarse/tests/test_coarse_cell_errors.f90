@@ -8,7 +8,6 @@ program test_coarse_cell_errors
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
    use coarse_rock, only: rock_t
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
@@ -54,7 +53,6 @@ contains
 
    !> Uniform stress, and linear pressure without flow through bottom and top.
    subroutine test_linear()
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(rock_fields_t) :: fields
       real(rk), parameter :: gradient(2, 2) = reshape([2.0e-4_rk, 9.0e-4_rk, -1.0e-4_rk, &
@@ -63,7 +61,7 @@ contains
       real(rk), allocatable :: squares(:)
 
       call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk], &
-                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, mesher, body)
+                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, body)
       scene = porous_body()
       shear = scene%material%young/(2.0_rk*(1.0_rk + scene%material%poisson))
       trace = 2.0_rk*shear*scene%material%poisson/(1.0_rk - 2.0_rk*scene%material%poisson) &

@@ -9,7 +9,6 @@ program test_coarse_condensed
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
    use coarse_rock, only: rock_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: dense_matrix, hold, mesh_square, porous_body, prepare, scattered, &
                             shake, straight_network
@@ -19,7 +18,6 @@ program test_coarse_condensed
 
    type(checks_t) :: checks
    type(error_t), allocatable :: error
-   type(mesher_t) :: mesher
    type(mesh_t) :: mesh
 
    call test_with_fractures()
@@ -108,7 +106,7 @@ contains
       integer(ik), allocatable :: pivots(:)
       integer(ik) :: i, info, k, n
 
-      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
       call shake(mesh)
       call drained(mesh, rock, matrix)
       layout = condensed_layout_t(mesh%fracture%n_cells)
@@ -198,7 +196,7 @@ contains
       real(rk) :: none(2, 2, 0), empty(0)
       integer(ik) :: k
 
-      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesh)
       call shake(mesh)
       call drained(mesh, rock, matrix)
       allocate (unknowns(3, matrix%n_blocks))
@@ -228,7 +226,7 @@ contains
       integer(ik), allocatable :: faces(:)
       integer(ik) :: i, k, n
 
-      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
       call drained(mesh, rock, matrix)
       sparse%is_full = .false.
       do k = 1, size(steps)
@@ -286,7 +284,7 @@ contains
       real(rk), allocatable :: expected(:, :), rhs(:, :), storing(:), unknowns(:, :)
       integer(ik) :: k
 
-      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesh)
       call shake(mesh)
       call drained(mesh, rock, matrix)
       storing = matrix%elastic(3, 3, :)

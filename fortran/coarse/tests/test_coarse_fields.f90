@@ -8,7 +8,6 @@ program test_coarse_fields
    use coarse_own_pressure, only: own_pressure
    use coarse_regions, only: regions_t
    use coarse_rock, only: rock_t
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
@@ -19,15 +18,13 @@ program test_coarse_fields
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk
    type(checks_t) :: checks
-   type(mesher_t) :: mesher
    type(mesh_t) :: mesh
    type(scene_t) :: scene
    type(mesh_t) :: body
-   type(mesher_t) :: its_mesher
 
    call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 0.0_rk, &
                                                       1.5_rk, 0.8_rk, 1.5_rk], [2, 2, 2])), &
-                    0.25_rk, 0.4_rk, its_mesher, body)
+                    0.25_rk, 0.4_rk, body)
    call shake(body)
    call test_linear_displacement(body)
    call test_own_pressure(body)
@@ -144,7 +141,7 @@ contains
       real(rk), allocatable :: content(:), stresses(:, :), values(:, :)
       real(rk) :: none(2, 2, 0)
 
-      call mesh_square(checks, straight_network(none), 0.4_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.4_rk, 0.4_rk, mesh)
       call shake(mesh)
       scene = porous_body()
       scene%sides([1, 2])%pressure_given = .true.
@@ -180,7 +177,7 @@ contains
       integer(ik) :: c, part
 
       call mesh_square(checks, straight_network(reshape([0.0_rk, 0.6_rk, 2.0_rk, 1.4_rk], &
-                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, mesh)
       call shake(mesh)
       allocate (unknowns, source=linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, 0.0_rk, &
                                                  [0.0_rk, 0.0_rk]))
@@ -212,7 +209,7 @@ contains
       real(rk) :: worst
       integer(ik) :: c
 
-      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
       call shake(mesh)
       allocate (unknowns, source=linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, 0.0_rk, &
                                                  [0.0_rk, 0.0_rk]))

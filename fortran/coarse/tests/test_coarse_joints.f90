@@ -12,7 +12,6 @@ program test_coarse_joints
    use coarse_nodes, only: nodal_fields
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_stick
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: new_square, advance, equilibrate, hold, load_sides, mesh_square, &
                             porous_body, scattered, set_permeability, straight_network
@@ -221,7 +220,6 @@ contains
    !! mesh gives each at least two, also at few degrees, at sides and at bends.
    subroutine test_sectors()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: few_degrees(2, 2, 2) = reshape( &
                              [0.5_rk, 0.9_rk, 1.5_rk, 1.1_rk, 0.5_rk, 0.95_rk, 1.5_rk, 1.06_rk], &
                              [2, 2, 2])
@@ -233,15 +231,15 @@ contains
 
       do arms = 2, 8
          do k = 0, 8
-            call mesh_square(checks, star(arms, 5*k*pi/180.0_rk), 0.1_rk, 0.4_rk, mesher, mesh)
+            call mesh_square(checks, star(arms, 5*k*pi/180.0_rk), 0.1_rk, 0.4_rk, mesh)
             call expect_two_cells(mesh)
          end do
       end do
-      call mesh_square(checks, all_kinds(), 0.2_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, all_kinds(), 0.2_rk, 0.4_rk, mesh)
       call expect_two_cells(mesh)
-      call mesh_square(checks, straight_network(few_degrees), 0.1_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(few_degrees), 0.1_rk, 0.4_rk, mesh)
       call expect_two_cells(mesh)
-      call mesh_square(checks, straight_network(triangle), 0.1_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(triangle), 0.1_rk, 0.4_rk, mesh)
       call expect_two_cells(mesh)
       call expect_uniform(straight_network(triangle), 0.1_rk)
    end subroutine test_sectors

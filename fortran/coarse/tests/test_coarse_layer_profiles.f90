@@ -11,7 +11,6 @@ program test_coarse_layer_profiles
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: advance, hold, load_sides, mesh_square, porous_body, straight_network, &
                             uniform_cells
@@ -25,7 +24,6 @@ program test_coarse_layer_profiles
    type(error_t), allocatable :: error
    type(timers_t) :: timers
    type(step_report_t) :: report
-   type(mesher_t) :: mesher
    type(scene_t) :: scene
    type(mesh_t) :: mesh
    type(coarse_model_t) :: model
@@ -45,7 +43,7 @@ contains
 
       scene = porous_body()
       call hold(scene)
-      call mesh_square(checks, straight_network(line), 0.25_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(line), 0.25_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       model%first_step = 1.0e-2_rk
       call model%set_mesh(mesh, scene, timers, error)
@@ -140,7 +138,7 @@ contains
       call load_sides(scene, [-60.0e6_rk, -60.0e6_rk, 0.0_rk])
       scene%sides(1:2)%pressure_given = .true.
       scene%sides(2)%pressure = 2.0_rk*drop
-      call mesh_square(checks, straight_network(across), 0.25_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(across), 0.25_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization with drained sides")

@@ -10,7 +10,6 @@ program test_coarse_layers
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, hold, load_sides, mesh_square, porous_body, shake, &
                             straight_network, uniform_cells
@@ -46,12 +45,11 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(mesher_t) :: mesher
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
       call hold(scene)
-      call mesh_square(checks, straight_network(lines), size, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(lines), size, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       if (has_layers) model%first_step = first_step
       call model%set_mesh(mesh, scene, timers, error)

@@ -8,7 +8,6 @@ program test_coarse_matrix
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t, traction_face
    use coarse_rock, only: rock_t
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t
    use sample_bodies, only: action, dense_matrix, hold, linear_unknowns, load_sides, mesh_square, &
@@ -24,10 +23,9 @@ program test_coarse_matrix
    type(checks_t) :: checks
    type(scene_t) :: scene
    type(mesh_t) :: mesh
-   type(mesher_t) :: mesher
    integer(ik) :: cell
 
-   call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+   call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
    call shake(mesh)
    call checks%is_true(all([(cell_area(mesh, cell), cell=1, mesh%n_cells)] > 0.0_rk), "cells")
    call test_uniform_strain(.false.)
@@ -162,7 +160,6 @@ contains
    !! bottom and top are closed in truth. Cells at the closed left and right sides are left out.
    subroutine test_linear_pressure()
       type(mesh_t) :: body
-      type(mesher_t) :: its_mesher
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -173,7 +170,7 @@ contains
       real(rk) :: flux(2), tangent(2), through, worst
       integer(ik) :: i
 
-      call mesh_square(checks, straight_network(lines(:, :, :1)), 0.25_rk, 0.4_rk, its_mesher, body)
+      call mesh_square(checks, straight_network(lines(:, :, :1)), 0.25_rk, 0.4_rk, body)
       call shake(body)
       scene = porous_body()
       scene%material%permeability_xx = tensor(1, 1)

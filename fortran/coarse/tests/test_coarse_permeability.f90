@@ -13,7 +13,6 @@ program test_coarse_permeability
    use coarse_state, only: state_t, step_report_t
    use coarse_stencils, only: discretize
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: advance, boxes, cell_centre, hold, load_sides, mesh_square, &
@@ -27,7 +26,6 @@ program test_coarse_permeability
    type(error_t), allocatable :: error
    type(timers_t) :: timers
    type(step_report_t) :: report
-   type(mesher_t) :: mesher
    type(mesh_t) :: mesh
    type(scene_t) :: scene
 
@@ -179,7 +177,7 @@ contains
       type(state_t) :: state
       integer :: k, step
 
-      call mesh_square(checks, straight_network(none), 0.2_rk, 0.2_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.2_rk, 0.2_rk, mesh)
       do k = 1, size(contrast)
          scene = body_with(1)
          call set_permeability(scene, 1.0e-12_rk/contrast(k))
@@ -334,7 +332,7 @@ contains
       integer :: k
 
       call mesh_square(checks, straight_network(reshape([0.9_rk, 0.9_rk, 1.1_rk, 1.1_rk], &
-                                                        [2, 2, 1])), 0.05_rk, 0.3_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.05_rk, 0.3_rk, mesh)
       do k = 1, 2
          scene = body_with(1)
          call set_permeability(scene, merge(1.0e-15_rk, 1.0e-19_rk, k == 1))

@@ -3,7 +3,6 @@
 program test_coarse_regions
    use base_kinds, only: ik, rk
    use coarse_regions, only: find_regions, fracture_end_region, regions_t, traction_face
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: corner_geometry, face_length
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: mesh_square, shake, straight_network
@@ -11,7 +10,6 @@ program test_coarse_regions
    implicit none(type, external)
 
    type(checks_t) :: checks
-   type(mesher_t) :: mesher
 
    call test_single_fracture()
    call test_joints()
@@ -108,7 +106,7 @@ contains
       type(regions_t), intent(out) :: regions
       character(len=*), intent(in) :: name
 
-      call mesh_square(checks, network, 0.2_rk, 0.5_rk, mesher, mesh)
+      call mesh_square(checks, network, 0.2_rk, 0.5_rk, mesh)
       call find_regions(mesh, regions)
       call check_regions(mesh, regions, name)
    end subroutine mesh_and_regions
@@ -203,7 +201,7 @@ contains
       real(rk) :: worst
 
       call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk], &
-                                                        [2, 2, 1])), 0.2_rk, 0.5_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.2_rk, 0.5_rk, mesh)
       call shake(mesh)
       worst = 0.0_rk
       total = 0.0_rk
@@ -255,7 +253,7 @@ contains
       real(rk) :: sign_out
 
       call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk], &
-                                                        [2, 2, 1])), 0.3_rk, 0.5_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.3_rk, 0.5_rk, mesh)
       do i = 1, mesh%fracture%n_cells
          face = mesh%fracture%cell_faces(2, i)
          sign_out = 1.0_rk

@@ -11,7 +11,6 @@ program test_coarse_sparse_step
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: hold, mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: scene_t
@@ -47,7 +46,6 @@ contains
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: joints  !< expected
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(scene_t) :: scene
       type(coarse_model_t) :: full, sparse
       type(state_t) :: by_full, by_sparse
@@ -57,7 +55,7 @@ contains
 
       scene = porous_body()
       call hold(scene, [-20.0e6_rk, -10.0e6_rk])
-      call mesh_square(checks, network, 0.08_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, network, 0.08_rk, 0.3_rk, mesh)
       scene%discretization%condensation = "full"
       call start(mesh, scene, full, by_full)
       scene%discretization%condensation = "sparse"

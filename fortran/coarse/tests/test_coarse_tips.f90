@@ -10,7 +10,6 @@ program test_coarse_tips
    use coarse_state, only: state_t, step_report_t
    use coarse_tips, only: tip_springs
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: advance, equilibrate, hold, load_sides, mesh_square, porous_body, &
                             set_permeability, straight_network, uniform_cells
@@ -24,7 +23,6 @@ program test_coarse_tips
    type(error_t), allocatable :: error
    type(timers_t) :: timers
    type(step_report_t) :: report
-   type(mesher_t) :: mesher
    type(scene_t) :: scene
 
    call test_lengths(.true., 0.2_rk)
@@ -65,7 +63,7 @@ contains
       call hold(scene)
       if (.not. opens) scene%initial%pressure = 0.1_rk*stress
       call mesh_square(checks, straight_network(reshape(1.0_rk + a*sqrt(0.5_rk)*[-1, -1, 1, 1], &
-                                                        [2, 2, 1])), cell, 0.2_rk, mesher, mesh)
+                                                        [2, 2, 1])), cell, 0.2_rk, mesh)
       call checks%is_true(mesh%fracture%n_cells == n_cells, "cells along the crack")
       model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
       call model%set_mesh(mesh, scene, timers, error)
@@ -104,7 +102,7 @@ contains
       call hold(scene)
       scene%sides%pressure_given = .true.
       call mesh_square(checks, straight_network(reshape(1.0_rk + a*sqrt(0.5_rk)*[-1, -1, 1, 1], &
-                                                        [2, 2, 1])), cell, 0.04_rk, mesher, mesh)
+                                                        [2, 2, 1])), cell, 0.04_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
       rate = 1.0e-8_rk  ! [m2/s]
       model%cells%injection(5) = rate
@@ -141,7 +139,7 @@ contains
 
       scene = porous_body()
       call hold(scene)
-      call mesh_square(checks, straight_network(ends), 0.02_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(ends), 0.02_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=0.5_rk, dilation=0.0_rk), 1.0e-4_rk)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization of three cracks")
