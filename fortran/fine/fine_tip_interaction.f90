@@ -363,8 +363,8 @@ contains
       k = 0.5_rk*self%frame%rock%crack_modulus()*k
    end function by_joints
 
-   !> dK/du of both modes for the first domain, on faces whose traction is given: the nodal forces whose
-   !! work on a displacement is its share in K.
+   !> dK/du of both modes for the first domain, on faces whose traction is given: the nodal forces
+   !! whose work on a displacement is its share in K.
    pure function extraction_forces(self, n_nodes) result(force)
       class(interactions_t), intent(in) :: self
       integer(ik), intent(in) :: n_nodes  !< of the mesh
