@@ -4,7 +4,7 @@ module app_stress
    use app_cost, only: cost_t, cost_of_scene
    use base_kinds, only: degrees, ik, pi, rk
    use growth_law, only: equivalent_intensity, kink_angle
-   use report_text, only: json_t
+   use report_json, only: json_t
    use scene_plausible, only: doubts_of_scene
    use scene_regime, only: dimensionless_toughness
    use scene_stress, only: far_stress_t, find_far_stress, part_t, parts_of_scene

@@ -280,7 +280,7 @@ contains
       real(rk) :: missing(2)
       integer(ik) :: mode
 
-      force = probe%interactions%extraction_forces(1_ik, model%mesh%n_nodes)
+      force = probe%interactions%extraction_forces(model%mesh%n_nodes)
       do mode = 1, 2
          call model%influence(force(:, :, mode), dual, error)
          if (allocated(error)) return

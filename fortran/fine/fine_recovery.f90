@@ -5,9 +5,6 @@
 !! share nodes, so they never reach across a fracture, and are of one rock. Around a free tip the
 !! singular part, which no polynomial can follow, is fitted first and kept apart (Rodenas and others
 !! 2008): the polynomials hold what remains.
-!!
-!! Area averaging (Zienkiewicz and Zhu 1987), for comparison, takes the mean stress of the elements
-!! around a node, weighted with their areas, instead of the fit.
 module fine_recovery
    use algebra_lapack, only: dpotrf, dpotrs
    use base_kinds, only: ik, rk
@@ -21,7 +18,7 @@ module fine_recovery
    implicit none(type, external)
    private
 
-   public :: recover_by_averages, recover_by_patches, recovered_stress, recovery_t
+   public :: recover_by_patches, recovered_stress, recovery_t
 
    !> An elastic stress field on the mesh: a quadratic in every element, plus the singular field of
    !! the tip in the elements around it.
@@ -66,32 +63,6 @@ contains
          call fit_quadratic(xy, values, recovery%coefficients(:, :, site))
       end do
    end subroutine recover_by_patches
-
-   !> Recovery by averages.
-   subroutine recover_by_averages(model, displacement, recovery)
-      type(fine_model_t), intent(in) :: model
-      real(rk), intent(in) :: displacement(:, :)  !< (2, n_nodes) [m]
-      type(recovery_t), intent(out) :: recovery
-      type(samples_t) :: samples
-      real(rk) :: area
-      integer(ik) :: i, k, site
-
-      call take_samples(model, displacement, samples)
-      call find_tips(model, samples, recovery)
-      recovery%scale = 1.0_rk
-      do site = 1, size(samples%node, kind=ik)
-         associate (mean => recovery%coefficients(1, :, site), &
-                    cells => samples%around%of(site))
-            area = sum(samples%area(cells))
-            do i = 1, size(cells)
-               do k = 1, n_samples
-                  mean = mean + samples%area(cells(i))/(n_samples*area) &
-                         *smooth_part(samples, recovery, site, k, cells(i))
-               end do
-            end do
-         end associate
-      end do
-   end subroutine recover_by_averages
 
    !> The recovered stress (xx yy xy) at a point of an element [Pa]. In an element it is the
    !! quadratic through the values of the fits at the corners and the means of two fits at the

@@ -363,11 +363,10 @@ contains
       k = 0.5_rk*self%frame%rock%crack_modulus()*k
    end function by_joints
 
-   !> dK/du of both modes for one domain, on faces whose traction is given: the nodal forces whose
-   !! work on a displacement is its share in K.
-   pure function extraction_forces(self, domain, n_nodes) result(force)
+   !> dK/du of both modes for the first domain, on faces whose traction is given: the nodal forces
+   !! whose work on a displacement is its share in K.
+   pure function extraction_forces(self, n_nodes) result(force)
       class(interactions_t), intent(in) :: self
-      integer(ik), intent(in) :: domain  !< its number
       integer(ik), intent(in) :: n_nodes  !< of the mesh
       real(rk), allocatable :: force(:, :, :)  !< (2, n_nodes, modes) [Pa m^1/2 per m]
       integer(ik) :: mode
@@ -375,7 +374,7 @@ contains
       allocate (force(2, n_nodes, 2), source=0.0_rk)
       do mode = 1, 2
          force(:, self%node, mode) = 0.5_rk*self%frame%rock%crack_modulus() &
-                                     *self%by_displacement(:, mode, domain, :)
+                                     *self%by_displacement(:, mode, 1, :)
       end do
    end function extraction_forces
 

@@ -6,10 +6,10 @@ module report_describe
    use report_column, only: column_t
    use report_columns, only: entry_columns, event_columns, fracture_columns, history_columns, &
                              probe_columns, slip_event_columns, tip_columns, well_columns
+   use report_json, only: json_t
    use report_keys, only: fracture_fields, intersection_fields, matrix_fields, network_keys, &
                           record_keys, window_fields
    use report_limits, only: limits
-   use report_text, only: json_t
    use report_words, only: contact_words, end_words, event_words, joint_words, slip_words, &
                            status_words, well_words, word_t
    use scene_parameter_table, only: parameters

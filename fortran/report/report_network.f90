@@ -2,6 +2,7 @@
 !! report_keys defines its keys.
 module report_network
    use base_archive, only: archive_t
+   use base_buffer, only: newline, text_buffer_t
    use base_errors, only: error_t
    use base_kinds, only: ik, lk, rk
    use base_plane, only: norm2
@@ -10,7 +11,7 @@ module report_network
    use mesh_archive, only: visit_fracture_mesh, visit_network
    use mesh_types, only: fracture_mesh_t, network_t, point_boundary, point_corner
    use report_files, only: write_text_file
-   use report_text, only: json_t, newline, text_buffer_t
+   use report_json, only: json_t
    implicit none(type, external)
    private
 

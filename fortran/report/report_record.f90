@@ -7,9 +7,9 @@ module report_record
    use base_texts, only: add_text, text_t
    use base_timers, only: phase_count, phase_names, timers_t
    use report_files, only: write_text_file
+   use report_json, only: json_t
    use report_progress, only: duration_text
    use report_rows, only: dof_block_t, summary_t
-   use report_text, only: json_t
    implicit none(type, external)
    private
 

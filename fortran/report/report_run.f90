@@ -5,6 +5,7 @@
 !! time.
 module report_run
    use base_archive, only: archive_t
+   use base_buffer, only: newline, text_buffer_t
    use base_errors, only: error_t, keep_first
    use base_kinds, only: lk, rk
    use base_texts, only: add_text, text_t
@@ -16,7 +17,6 @@ module report_run
    use report_simulation, only: snapshot_t
    use report_snapshots, only: snapshots_t
    use report_tables, only: tables_t
-   use report_text, only: newline, text_buffer_t
    use scene_types, only: scene_t
    use scene_write, only: scene_text
    implicit none(type, external)
@@ -277,7 +277,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (text%length == written) return
-      call text%write_file(path, error)
+      call write_text_file(path, text%text(), error)
       if (.not. allocated(error)) written = text%length
    end subroutine write_longer
 

@@ -1,11 +1,12 @@
 !> Tables as CSV (RFC 4180): rows are kept in memory, and the file is written completely.
 module report_series
    use base_archive, only: archive_t
+   use base_buffer, only: newline, text_buffer_t
    use base_errors, only: error_t, raise_error
    use base_kinds, only: ik, lk, rk
    use base_number, only: format_integer, format_real, integer_text, number_width
    use base_texts, only: text_t
-   use report_text, only: newline, text_buffer_t
+   use report_files, only: write_text_file
    implicit none(type, external)
    private
 
@@ -204,7 +205,7 @@ contains
       if (allocated(self%fault)) then
          call raise_error(error, "flush_series", self%path//": "//self%fault)
       else if (self%buffer%length /= self%written) then
-         call self%buffer%write_file(self%path, error)
+         call write_text_file(self%path, self%buffer%text(), error)
          if (.not. allocated(error)) self%written = self%buffer%length
       end if
    end subroutine flush_series

@@ -6,6 +6,7 @@
 !! first.
 module report_snapshots
    use base_archive, only: archive_t
+   use base_buffer, only: newline, text_buffer_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: exact_text
@@ -15,7 +16,6 @@ module report_snapshots
    use report_files, only: copy_file, make_directory, remove_file, write_text_file
    use report_rows, only: fracture_fields_t, intersection_fields_t, matrix_fields_t
    use report_simulation, only: snapshot_t
-   use report_text, only: newline, text_buffer_t
    use report_vtu, only: vtk_line, vtk_quadratic_triangle, vtk_triangle, vtk_vertex, vtu_grid_t
    use scene_types, only: material_t, scene_t
    implicit none(type, external)

@@ -7,11 +7,11 @@
 !! support.
 module report_vtu
    use, intrinsic :: iso_fortran_env, only: int64, int8
+   use base_buffer, only: newline, text_buffer_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_number, only: exact_text, integer_text
    use report_files, only: whole_file_t
-   use report_text, only: newline, text_buffer_t
    implicit none(type, external)
    private
 

@@ -93,7 +93,7 @@ contains
       type(scene_t), intent(in) :: scene
       type(region_t), intent(in) :: region
       type(error_t), allocatable, intent(out) :: error
-      character(len=:), allocatable :: whose
+      character(len=:), allocatable :: name, whose
 
       whose = "of region '"//trim(region%name)//"' "
       associate (m => region%material, fluid => scene%fluid, given => sheet%records(record))
@@ -104,15 +104,15 @@ contains
             return
          end if
          if (.not. scene%has_fluid()) return
+         name = "porosity"
+         if (given%is_given("biot")) name = "biot"
          if (m%biot < m%porosity) then
-            call refuse(error, sheet, record, either(given%is_given("biot"), "biot", &
-                                                     "porosity"), whose// &
+            call refuse(error, sheet, record, name, whose// &
                         "makes its Biot coefficient "//real_text(m%biot)// &
                         " smaller than its porosity, "//real_text(m%porosity)// &
                         ", but it must be at least that")
          else if (.not. storage(m, fluid) > 0.0_rk) then
-            call refuse(error, sheet, record, either(given%is_given("biot"), "biot", &
-                                                     "porosity"), whose// &
+            call refuse(error, sheet, record, name, whose// &
                         "gives no storage: phi c_p and the part of the solid are both zero, "// &
                         "but their sum must be positive")
          else if (.not. fluid%compressibility > 0.0_rk .and. &
@@ -125,16 +125,6 @@ contains
          end if
       end associate
    end subroutine check_rock
-
-   !> The first of two names, or the second.
-   pure function either(is_first, first, second) result(name)
-      logical, intent(in) :: is_first
-      character(len=*), intent(in) :: first, second
-      character(len=:), allocatable :: name
-
-      name = second
-      if (is_first) name = first
-   end function either
 
    !> Young's moduli, and with a fluid permeabilities, of a region and of the scene's rock or an
    !! earlier region do not differ too much for rounding; permeabilities are averaged in cut cells.

@@ -1,5 +1,6 @@
 !> Writes a scene with all defaults.
 module scene_write
+   use base_buffer, only: newline, text_buffer_t
    use base_kinds, only: ik
    use base_number, only: integer_text
    use scene_exchange, only: scene_to_sheet
@@ -15,14 +16,6 @@ module scene_write
 
    public :: scene_text
 
-   !> The lines of a text.
-   type :: lines_t
-      character(len=:), allocatable :: text  !< with spare capacity
-      integer :: length = 0  !< characters in use
-   contains
-      procedure :: put
-   end type lines_t
-
 contains
 
    !> The text of a scene file with all values of a scene. Reading it gives the same scene, bit for
@@ -31,15 +24,15 @@ contains
       type(scene_t), intent(in) :: scene  !< from read_scene
       character(len=:), allocatable :: text
       type(sheet_t) :: sheet
-      type(lines_t) :: lines
+      type(text_buffer_t) :: lines
       integer :: i, item
 
       call scene_to_sheet(scene, sheet)
-      call lines%put("! The scene with all defaults; it reproduces the run.")
-      call lines%put("! SI units; docs/input.md describes each name.")
+      call lines%append("! The scene with all defaults; it reproduces the run."//newline)
+      call lines%append("! SI units; docs/input.md describes each name."//newline)
       do i = 1, sheet%length
-         call lines%put("")
-         call lines%put("&"//trim(groups(sheet%records(i)%group)%name))
+         call lines%append(newline)
+         call lines%append("&"//trim(groups(sheet%records(i)%group)%name)//newline)
          do item = lbound(sheet%records(i)%values, 1), ubound(sheet%records(i)%values, 1)
             associate (parameter => parameters(item), value => sheet%records(i)%values(item))
                if (.not. applies(parameter%scenes, scene%has_fluid())) cycle
@@ -49,38 +42,21 @@ contains
                if (value%is_set) then
                   call put_value(lines, parameter, value)
                else if (parameter%absent == "") then  ! a default that this group does not take
-                  call lines%put("  ! "//trim(parameter%name)//": does not apply")
+                  call lines%append("  ! "//trim(parameter%name)//": does not apply"//newline)
                else
-                  call lines%put("  ! "//trim(parameter%name)//": "//trim(parameter%absent))
+                  call lines%append("  ! "//trim(parameter%name)//": "// &
+                                    trim(parameter%absent)//newline)
                end if
             end associate
          end do
-         call lines%put("/")
+         call lines%append("/"//newline)
       end do
-      text = lines%text(:lines%length)
+      text = lines%text()
    end function scene_text
-
-   !> Add a line. The text grows by doubling: polylines may have 100,000 points.
-   subroutine put(self, line)
-      class(lines_t), intent(inout) :: self
-      character(len=*), intent(in) :: line
-      character(len=:), allocatable :: longer
-      integer :: length  ! with the new line
-
-      length = self%length + len(line) + 1
-      if (.not. allocated(self%text)) allocate (character(len=4096) :: self%text)
-      if (length > len(self%text)) then
-         allocate (character(len=2*length) :: longer)
-         longer(:self%length) = self%text(:self%length)
-         call move_alloc(longer, self%text)
-      end if
-      self%text(self%length + 1:length) = line//new_line("a")
-      self%length = length
-   end subroutine put
 
    !> Add `name = value`, with the unit as a comment; a list follows on separate lines.
    subroutine put_value(lines, parameter, value)
-      type(lines_t), intent(inout) :: lines
+      type(text_buffer_t), intent(inout) :: lines
       type(parameter_t), intent(in) :: parameter
       type(value_t), intent(in) :: value
       character(len=:), allocatable :: line, unit
@@ -89,10 +65,11 @@ contains
       unit = ""
       if (parameter%unit /= "-") unit = "  ! ["//trim(parameter%unit)//"]"
       if (all(parameter%kind /= [kind_reals, kind_wholes]) .or. is_single(parameter, value)) then
-         call lines%put("  "//trim(parameter%name)//" = "//value_text(parameter, value)//unit)
+         call lines%append("  "//trim(parameter%name)//" = "//value_text(parameter, value)//unit// &
+                           newline)
          return
       end if
-      call lines%put("  "//trim(parameter%name)//" ="//unit)
+      call lines%append("  "//trim(parameter%name)//" ="//unit//newline)
       line = "   "
       do k = 1, size(value%reals)
          if (parameter%kind == kind_reals) then
@@ -101,7 +78,7 @@ contains
             line = line//" "//integer_text(nint(value%reals(k), ik))
          end if
          if (k == size(value%reals) .or. len(line) > 70) then
-            call lines%put(line)
+            call lines%append(line//newline)
             line = "   "
          end if
       end do

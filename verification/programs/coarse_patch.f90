@@ -20,6 +20,7 @@ program coarse_patch
    real(rk), parameter :: side_length = 2.0_rk  ! [m]
    type(table_t) :: table
    real(rk) :: found(7)
+   type(mesh_t) :: mesh
 
    call table%open("errors.csv", "biaxial_displacement,biaxial_stress,shear_displacement," &
                    //"shear_stress,uniform_pressure,linear_pressure,linear_flux")
@@ -71,7 +72,6 @@ contains
       real(rk), intent(in) :: strain(3)  !< e_x, e_y, g
       real(rk), intent(out) :: displacement_error, stress_error, pressure_error  !< relative
       type(scene_t) :: scene
-      type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
       real(rk), allocatable :: stresses(:, :)
@@ -123,7 +123,6 @@ contains
       real(rk), parameter :: angle = pi/6.0_rk
       real(rk), parameter :: along = 5.0e-14_rk, across = 2.0e-16_rk  ! [m2]
       type(scene_t) :: scene
-      type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
       real(rk) :: exact, inflow, centre(2)

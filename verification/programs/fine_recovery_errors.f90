@@ -1,5 +1,4 @@
-!> Recovered stresses (verification/stress_recovery): superconvergent patches beside area averages,
-!! on a smooth field or around a crack.
+!> Recovered stresses (verification/stress_recovery) of a smooth field or around a crack.
 !!
 !! Arguments: smooth or crack; number of boxes along the side, 4 triangles of a box each, in a crack
 !! a multiple of 12.
@@ -9,7 +8,7 @@ program fine_recovery_errors
    use exact_fields, only: angle, solve_exact, true_errors
    use fine_error, only: energy_error_t, estimate_error
    use fine_model, only: fine_model_t
-   use fine_recovery, only: recover_by_averages, recover_by_patches, recovery_t
+   use fine_recovery, only: recover_by_patches, recovery_t
    use mesh_types, only: mesh_t
    use sample_meshes, only: cracked_rectangle, rotate_mesh
    use verification_files, only: finish, integer_argument, stop_on, table_t, text_argument
@@ -17,8 +16,8 @@ program fine_recovery_errors
 
    type(mesh_t) :: mesh
    type(fine_model_t) :: model
-   type(recovery_t) :: patches, averages
-   type(energy_error_t) :: by_patches, by_averages
+   type(recovery_t) :: patches
+   type(energy_error_t) :: estimate
    type(error_t), allocatable :: error
    type(table_t) :: table
    real(rk), allocatable :: displacement(:, :)
@@ -37,16 +36,14 @@ program fine_recovery_errors
    call solve_exact(mesh, cracked, model, displacement, error)
    call stop_on(error)
    call recover_by_patches(model, displacement, patches)
-   call recover_by_averages(model, displacement, averages)
-   call estimate_error(model, displacement, patches, by_patches)
-   call estimate_error(model, displacement, averages, by_averages)
+   call estimate_error(model, displacement, patches, estimate)
    true = norm2(true_errors(model, displacement, cracked))
-   call table%open("recovery.csv", "elements,patches,averages")
-   call table%row([true, norm2(true_errors(model, displacement, cracked, patches)), &
-                   norm2(true_errors(model, displacement, cracked, averages))]/by_patches%solution)
+   call table%open("recovery.csv", "elements,patches")
+   call table%row([true, norm2(true_errors(model, displacement, cracked, patches))] &
+                  /estimate%solution)
    call table%close()
-   call table%open("effectivity.csv", "patches,averages")
-   call table%row([by_patches%total/true, by_averages%total/true])
+   call table%open("effectivity.csv", "patches")
+   call table%row([estimate%total/true])
    call table%close()
    call finish()
 

@@ -1,6 +1,6 @@
 """Scenes of heat_sweeps as they are and with a third of the cells and tolerances, compared.
 
-    .venv/bin/python verification/programs/heat_truths.py FIRST LAST [FOLDER]
+    .venv/bin/python verification/programs/heat_truths.py FIRST LAST
 
 Each number is the seed of a scene. Printed are the shares of values in which stated errors hold,
 their median factor and the worst by quantity, and for each scene the error of the balance of heat.
@@ -9,24 +9,27 @@ their median factor and the worst by quantity, and for each scene the error of t
 from __future__ import annotations
 
 import json
-import math
-import os
 import random
 import re
-import resource
-import statistics
-import subprocess
 import sys
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from fluid_sweeps import SOLVER
 from heat_sweeps import DATUM, scene_text
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from verification.stated_errors_unseen.compare_states import Rows, compare, last_time, rows_of
+from verification.stated_errors_unseen.compare_states import (
+    SOLVER,
+    Pairs,
+    Rows,
+    compare,
+    last_time,
+    print_table,
+    rows_of,
+    solve_text,
+)
 
 FINER = 3.0
 CPU_S = {"coarse": 15.0, "fine": 120.0}  # of a run at most
@@ -66,22 +69,6 @@ def finer(text: str, end: float) -> str:
             changed = re.sub(rf"\bend = {NUMBER}", f"end = {end!r}", changed)
         lines.append(changed)
     return "\n".join(lines) + "\n"
-
-
-def solve(folder: Path, text: str, limit: float) -> Path | None:
-    """Folder of a finished run, or None."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "scene.nml").write_text(text)
-    cpu = math.ceil(limit)
-    done = subprocess.run(
-        ["nice", str(SOLVER), "run", "scene.nml", "--out", "out", "--quiet"],
-        cwd=folder,
-        capture_output=True,
-        check=False,
-        env={**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"},
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu)),
-    )
-    return folder / "out" if done.returncode == 0 else None
 
 
 def numbers(rows: Rows, column: str) -> np.ndarray:
@@ -146,16 +133,15 @@ def of_temperature(coarse: Path, fine: Path, text: str) -> list[Value]:
 
 def main() -> None:
     """Print the tables."""
-    folder = Path(sys.argv[3] if len(sys.argv) > 3 else "build/heat_truths")
-    ratios: dict[str, list[float]] = defaultdict(list)
+    pairs: dict[str, Pairs] = defaultdict(list)
     for number in range(int(sys.argv[1]), int(sys.argv[2]) + 1):
         text = with_probes(number)
-        coarse = solve(folder / f"{number}", text, CPU_S["coarse"])
+        coarse = solve_text(SOLVER, text, CPU_S["coarse"])
         if coarse is None:
             print(number, "not run, or stopped", flush=True)
             continue
         end = float(rows_of(coarse, "history.csv")[-1]["time_s"])
-        fine = solve(folder / f"{number}_fine", finer(text, end), CPU_S["fine"])
+        fine = solve_text(SOLVER, finer(text, end), CPU_S["fine"])
         if fine is None:
             print(number, "finer run not ended", flush=True)
             continue
@@ -170,12 +156,8 @@ def main() -> None:
             flush=True,
         )
         for what, _, stated, true in values:
-            ratios[what].append(true / max(stated, 1e-300))
-    print("\nquantity                        values held  factor  worst")
-    for what, shares in sorted(ratios.items()):
-        held_share = 100.0 * sum(share <= 1.0 for share in shares) / len(shares)
-        factor = 1.0 / max(statistics.median(shares), 1e-300)
-        print(f"{what:32}{len(shares):6d} {held_share:5.1f} {factor:7.2f} {max(shares):6.3g}")
+            pairs[what].append((stated, true))
+    print_table("with three times the resolution", pairs)
 
 
 if __name__ == "__main__":

@@ -70,6 +70,7 @@ program mutated_checkpoints
    type(base_t), allocatable :: bases(:)
    integer :: counts(is_refused:stops), i, n_faults
    integer(lk) :: number
+   type(error_t), allocatable :: error
 
    allocate (bases(command_argument_count() - 3))
    do i = 1, size(bases)
@@ -91,7 +92,6 @@ contains
    subroutine load_base(folder, base)
       character(len=*), intent(in) :: folder
       type(base_t), intent(out) :: base
-      type(error_t), allocatable :: error
       type(entry_t) :: entry
       integer(lk) :: at, extent, n
       integer(ik) :: i, length
@@ -282,7 +282,6 @@ contains
       integer(int8), intent(in) :: bytes(:)
       logical, intent(in) :: may_go_on
       type(archive_t) :: archive
-      type(error_t), allocatable :: error
       type(timers_t) :: timers
 
       archive%bytes = bytes

@@ -8,21 +8,16 @@
 !! Argument: `few` networks or `all`. Writes values.csv, a row per tip and window, and summary.csv,
 !! a row per window: 0 stands for the body.
 program network_windows
-   use, intrinsic :: iso_fortran_env, only: int64
-   use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
-   use base_timers, only: timers_t
    use fine_tip_types, only: intensity_t
    use mechanics_simulation, only: mechanics_simulation_t
    use report_simulation, only: simulation_t
-   use scene_namelist, only: read_scene
-   use scene_types, only: scene_t
    use twolevel_state, only: two_levels_t
-   use verification_files, only: finish, stop_on, table_t, text_argument
+   use verification_files, only: finish, table_t, text_argument
+   use verification_intensities, only: between, group, open_scene, run_to_intensities, &
+                                       write_faces, write_rock
    implicit none(type, external)
 
-   character(len=*), parameter :: group = "(a,*(g0))"  !< format of lines of a scene's file
-   real(rk), parameter :: side = 2.0_rk  !< of the body [m]
    real(rk), parameter :: slope = sqrt(0.5_rk)  !< x and y of a length at 45 degrees [-]
    real(rk), parameter :: closed = 6.8_rk, open = 24.0_rk  !< pressure of the fluid [MPa]
    real(rk), parameter :: windows(5) = [0.05_rk, 0.1_rk, 0.2_rk, 0.5_rk, 0.0_rk]  !< 0: body [m]
@@ -39,7 +34,6 @@ program network_windows
    type(table_t) :: table
    real(rk), allocatable :: values(:, :)  !< window, error, stated, cpu of the windows
    real(rk) :: cpu(size(windows)) = 0.0_rk, cpu_known = 0.0_rk  !< [s]
-   integer(int64) :: seed = 20261122_int64
    integer(ik) :: i
 
    allocate (values(3, 0))
@@ -139,14 +133,6 @@ contains
       network = network_t(ends, pressure, 0.35_rk)
    end function drawn
 
-   !> A number that looks random, the same on every machine (minimal standard generator).
-   real(rk) function between(lower, upper)
-      real(rk), intent(in) :: lower, upper
-
-      seed = mod(48271_int64*seed, 2147483647_int64)
-      between = lower + (upper - lower)*real(seed, rk)/2147483647.0_rk
-   end function between
-
    !> Both ends of a fracture.
    pure function along(centre, length, deg) result(ends)
       real(rk), intent(in) :: centre(2), length  !< [m]
@@ -211,21 +197,10 @@ contains
       character(len=*), intent(in) :: path
       class(simulation_t), intent(inout) :: simulation
       real(rk), intent(inout) :: cpu_s  !< what has been used so far [s]
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk) :: before, after
 
       call cpu_time(before)
-      call read_scene(path, scene, error)
-      call stop_on(error)
-      call timers%begin()
-      call simulation%begin(scene, timers, error)
-      call stop_on(error)
-      call simulation%next_state(timers, error)
-      call stop_on(error)
-      call simulation%grow(timers, error)
-      call stop_on(error)
+      call run_to_intensities(path, simulation)
       call cpu_time(after)
       cpu_s = cpu_s + after - before
    end subroutine run
@@ -237,44 +212,26 @@ contains
       real(rk), intent(in), optional :: window  !< [m]
       integer :: k, unit
 
-      open (newunit=unit, file=path, status="replace", action="write")
-      write (unit, group) "&domain x_min = 0.0, y_min = 0.0, x_max = ", side, ", y_max = ", side, &
-         " /"
-      write (unit, group) "&side name = 'left', x_displacement = 0.0 /"
-      write (unit, group) "&side name = 'bottom', y_displacement = 0.0 /"
-      write (unit, group) "&side name = 'right', x_traction = -20.0e6 /"
-      write (unit, group) "&side name = 'top', y_traction = -10.0e6 /"
-      write (unit, group) "&growth intensities = .true. /"
-      write (unit, group) "&output vtu = .false. /"
+      call open_scene(path, unit)
       do k = 1, size(network%ends, 2)
          associate (ends => network%ends(:, k))
             write (unit, group) "&fracture name = 'f", k, "', friction = ", network%friction
             write (unit, group) "  dilation_deg = 1.0, x = ", ends(1), ", ", ends(3)
             write (unit, group) "  y = ", ends(2), ", ", ends(4)
          end associate
-         if (present(window)) then
-            write (unit, group) "  aperture = 1.0e-3 /"
-         else
-            write (unit, group) "  face_pressure = ", network%pressure*1.0e6_rk, " /"
-         end if
+         call write_faces(unit, network%pressure, present(window))
       end do
-      write (unit, group) "&material young = 40.0e9, poisson = 0.2"
-      if (present(window)) then
-         write (unit, group) "  biot = 1.0e-6, porosity = 1.0e-6, permeability = 1.0e-30 /"
-         write (unit, group) "&fluid compressibility = 1.0e-3, viscosity = 1.0e-4 /"
-         write (unit, group) "&initial pressure = ", network%pressure*1.0e6_rk, " /"
-         write (unit, group) "&time end = 1.0, step = 1.0 /"
+      call write_rock(unit, 0.2_rk, network%pressure, present(window))
+      if (.not. present(window)) then
+         write (unit, group) "&fe size_fracture = 0.002, size_boundary = 0.2 /"
+         write (unit, group) "&adaptive enabled = .true., tolerance = 3.0e-4, passes = 10 /"
+      else
          write (unit, group) "&coarse size_fracture = 0.02, size_boundary = 0.1 /"
          if (window > 0.0_rk) then
             write (unit, group) "&fine window = ", window, " /"
          else
             write (unit, group) "&fine window = 'body' /"
          end if
-      else
-         write (unit, group) " /"
-         write (unit, group) "&load from = 0.0, to = 1.0, steps = 1 /"
-         write (unit, group) "&fe size_fracture = 0.002, size_boundary = 0.2 /"
-         write (unit, group) "&adaptive enabled = .true., tolerance = 3.0e-4, passes = 10 /"
       end if
       close (unit)
    end subroutine write_scene

@@ -42,6 +42,7 @@ program replay
       & new_line("a")//"&coarse size_fracture=0.01, size_boundary=0.1 /"//new_line("a")// &
       & "&fine window=0.5, size_ratio=0.5 /"
    real(rk), parameter :: changes(*) = [1.0e-6_rk, 1.0e-4_rk, 1.0e-3_rk]
+   type(error_t), allocatable :: error
 
    if (text_argument(1) == "onset") then
       call onset()
@@ -181,7 +182,6 @@ contains
 
    subroutine read (scene)
       type(scene_t), intent(out) :: scene
-      type(error_t), allocatable :: error
 
       call read_scene(file, scene, error)
       call stop_on(error)
@@ -194,7 +194,6 @@ contains
       type(states_t), intent(in), optional :: by  !< the run whose decisions are taken
       type(two_levels_t), allocatable :: simulation
       type(timers_t) :: timers
-      type(error_t), allocatable :: error
       integer(ik) :: i
 
       allocate (simulation)

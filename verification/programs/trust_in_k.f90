@@ -11,20 +11,15 @@
 !! Writes values.csv, a row for each K_I and K_II that is not zero, and summary.csv.
 program trust_in_k
    use, intrinsic :: iso_fortran_env, only: int64
-   use base_errors, only: error_t
    use base_kinds, only: degree => radians, ik, rk
-   use base_timers, only: timers_t
    use mechanics_simulation, only: mechanics_simulation_t
-   use report_simulation, only: simulation_t
-   use scene_namelist, only: read_scene
-   use scene_types, only: scene_t
    use twolevel_state, only: two_levels_t
-   use verification_files, only: finish, stop_on, table_t, text_argument
+   use verification_files, only: finish, table_t, text_argument
+   use verification_intensities, only: between, group, open_scene, run_to_intensities, side, &
+                                       start_draw, write_faces, write_rock
    implicit none(type, external)
 
    real(rk), parameter :: length = 0.1_rk  !< of a crack [m]
-   real(rk), parameter :: side = 2.0_rk  !< of the body [m]
-   character(len=*), parameter :: group = "(a,*(g0))"  !< format of lines of a scene's file
    real(rk), parameter :: nothing = 1.0_rk  !< K that stays out [Pa m^1/2]
 
    !> One or two cracks in a square body under -20 and -10 MPa.
@@ -85,7 +80,6 @@ program trust_in_k
    type(table_t) :: table
    integer(ik), parameter :: n = size(arrangements, kind=ik)
    integer(ik) :: i
-   integer(int64) :: seed = 20261122_int64
 
    allocate (values(8, 0))
    call table%open("values.csv", "arrangement,tip,mode,reference,found,corrected,stated,"// &
@@ -95,7 +89,7 @@ program trust_in_k
          call compare(arrangements(i))
       end do
    else
-      seed = 987654_int64
+      call start_draw(987654_int64)
    end if
    do i = n + 1, 2*n
       call compare(random_arrangement())
@@ -137,14 +131,6 @@ contains
       end if
    end function random_arrangement
 
-   !> A number that looks random, the same on every machine (minimal standard generator).
-   real(rk) function between(lower, upper)
-      real(rk), intent(in) :: lower, upper
-
-      seed = mod(48271_int64*seed, 2147483647_int64)
-      between = lower + (upper - lower)*real(seed, rk)/2147483647.0_rk
-   end function between
-
    !> The distance between two cracks, from points along them [m].
    pure function distance(arrangement)
       type(arrangement_t), intent(in) :: arrangement
@@ -175,9 +161,9 @@ contains
       allocate (levels, body)
       if (text_argument(2) == "edges") levels%reference_most = 0
       call write_scene("fluid.nml", arrangement, .true.)
-      call run("fluid.nml", levels)
+      call run_to_intensities("fluid.nml", levels)
       call write_scene("solid.nml", arrangement, .false.)
-      call run("solid.nml", body)
+      call run_to_intensities("solid.nml", body)
       do tip = 1, size(levels%tip, kind=ik)
          associate (found => levels%tip(tip)%intensity, known => body%tip(tip)%intensity, &
                     window => levels%now%windows%tip(tip)%found)
@@ -189,25 +175,6 @@ contains
       end do
    end subroutine compare
 
-   !> A scene until its first state with intensities.
-   subroutine run(path, simulation)
-      character(len=*), intent(in) :: path
-      class(simulation_t), intent(inout) :: simulation
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-
-      call read_scene(path, scene, error)
-      call stop_on(error)
-      call timers%begin()
-      call simulation%begin(scene, timers, error)
-      call stop_on(error)
-      call simulation%next_state(timers, error)
-      call stop_on(error)
-      call simulation%grow(timers, error)
-      call stop_on(error)
-   end subroutine run
-
    !> The scene's file, with or without a fluid.
    subroutine write_scene(path, arrangement, has_fluid)
       character(len=*), intent(in) :: path
@@ -216,16 +183,7 @@ contains
       real(rk) :: centre(2)
       integer :: unit
 
-      open (newunit=unit, file=path, status="replace", action="write")
-      write (unit, group) "&scene name = 'trust', title = 'trust' /"
-      write (unit, group) "&domain x_min = 0.0, y_min = 0.0, x_max = ", side, ", y_max = ", side, &
-         " /"
-      write (unit, group) "&side name = 'left', x_displacement = 0.0 /"
-      write (unit, group) "&side name = 'bottom', y_displacement = 0.0 /"
-      write (unit, group) "&side name = 'right', x_traction = -20.0e6 /"
-      write (unit, group) "&side name = 'top', y_traction = -10.0e6 /"
-      write (unit, group) "&growth intensities = .true. /"
-      write (unit, group) "&output vtu = .false. /"
+      call open_scene(path, unit)
       centre = 0.5_rk*(side - arrangement%away)
       if (arrangement%gap > 0.0_rk) then
          centre(1) = side - arrangement%gap - 0.5_rk*length*cos(arrangement%deg*degree)
@@ -235,23 +193,16 @@ contains
          call write_crack(unit, "f2", centre + arrangement%away, arrangement%deg_2, arrangement, &
                           has_fluid)
       end if
-      write (unit, group) "&material young = 40.0e9, poisson = ", arrangement%poisson
+      call write_rock(unit, arrangement%poisson, arrangement%pressure, has_fluid)
       if (has_fluid) then
-         write (unit, group) "  biot = 1.0e-6, porosity = 1.0e-6, permeability = 1.0e-30 /"
-         write (unit, group) "&fluid compressibility = 1.0e-3, viscosity = 1.0e-4 /"
-         write (unit, group) "&initial pressure = ", arrangement%pressure*1.0e6_rk, " /"
-         write (unit, group) "&time end = 1.0, step = 1.0 /"
          write (unit, group) "&coarse size_fracture = ", length/arrangement%cells, &
             ", size_boundary = 0.2 /"
          write (unit, group) "&fine window = ", arrangement%window*length, ", size_ratio = 0.5 /"
       else
-         write (unit, group) " /"
-         write (unit, group) "&load from = 0.0, to = 1.0, steps = 1 /"
          write (unit, group) "&fe size_fracture = ", length/40, ", size_boundary = 0.2 /"
          write (unit, group) "&adaptive enabled = .true., tolerance = 0.002, passes = 4 /"
       end if
       close (unit)
-
    end subroutine write_scene
 
    !> A fracture of the scene's file.
@@ -268,11 +219,7 @@ contains
       write (unit, group) "&fracture name = '", name, "', friction = ", arrangement%friction
       write (unit, group) "  x = ", centre(1) - half(1), ", ", centre(1) + half(1)
       write (unit, group) "  y = ", centre(2) - half(2), ", ", centre(2) + half(2)
-      if (has_fluid) then
-         write (unit, group) "  aperture = 1.0e-3 /"
-      else
-         write (unit, group) "  face_pressure = ", arrangement%pressure*1.0e6_rk, " /"
-      end if
+      call write_faces(unit, arrangement%pressure, has_fluid)
    end subroutine write_crack
 
    !> One value, unless it is zero: a closed tip has no K_I.

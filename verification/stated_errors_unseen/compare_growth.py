@@ -10,7 +10,6 @@ first step, of which the program warns.
 
 from __future__ import annotations
 
-import statistics
 import sys
 from collections import defaultdict
 from pathlib import Path
@@ -18,7 +17,15 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from verification.stated_errors_unseen.compare_states import SOLVER, Rows, finer, rows_of, solve
+from verification.stated_errors_unseen.compare_states import (
+    SOLVER,
+    Pairs,
+    Rows,
+    finer,
+    print_table,
+    rows_of,
+    solve,
+)
 from verification.stated_errors_unseen.draw_states import Draw, driven
 
 TIMES = (0.1, 0.3, 0.5, 0.7, 0.85, 0.95)  # of the duration
@@ -33,7 +40,6 @@ COLUMNS = (
 )
 CPU_S = {"coarse": 12.0, "fine": 120.0}  # of a run at most
 FEWEST = 10  # states of a run
-Pairs = list[tuple[float, float]]  # stated and true error
 
 
 def at(rows: Rows, times: np.ndarray, column: str) -> np.ndarray:
@@ -78,15 +84,8 @@ def main() -> None:
         for column in COLUMNS:
             tables[is_early][column] += compare(rows, rows_of(fine, "history.csv"), column)
     for is_early, table in tables.items():
-        print(f"\n{scenes[is_early]} scenes, {'unstable at first' if is_early else 'driven'}")
-        print("quantity               values held  factor  worst")
-        for column, pairs in table.items():
-            if not pairs:
-                continue
-            shares = [true / max(stated, 1e-300) for stated, true in pairs]
-            held = 100.0 * sum(share <= 1.0 for share in shares) / len(shares)
-            factor = 1.0 / statistics.median(shares)
-            print(f"{column:22} {len(shares):6d} {held:5.1f} {factor:7.2f} {max(shares):6.3g}")
+        kind = "unstable at first" if is_early else "driven"
+        print_table(f"{scenes[is_early]} scenes, {kind}", {k: v for k, v in table.items() if v})
 
 
 if __name__ == "__main__":

@@ -46,6 +46,7 @@ LEAST_BETWEEN = 2  # cells of the finer run between two wells
 Row = dict[str, str]
 Rows = list[Row]
 Reference = Callable[[str], float]
+Pairs = list[tuple[float, float]]  # stated and true error
 
 
 def items_of(scene: Scene) -> Iterator[tuple[str, int, Mapping[str, Any]]]:
@@ -79,6 +80,11 @@ def finer(scene: Scene, times: float = FINER) -> Scene:
 def solve(solver: Path, scene: Scene, limit: float, *, again: bool = True) -> Path | None:
     """Folder of a finished run, or None; `again` with another solver."""
     text = "".join(group_text(group, item) for group, _, item in items_of(scene))
+    return solve_text(solver, text, limit, again=again)
+
+
+def solve_text(solver: Path, text: str, limit: float, *, again: bool = True) -> Path | None:
+    """Folder of a finished run of a scene file's text, or None; `again` with another solver."""
     key = text + (str(solver.stat().st_mtime_ns) if again else "")
     key = hashlib.sha256(key.encode()).hexdigest()[:16]
     folder = STORE / key
@@ -409,6 +415,17 @@ def checks(
             )
 
 
+def print_table(title: str, table: Mapping[str, Pairs]) -> None:
+    """How many stated errors hold by quantity, their median factor, and the worst."""
+    print(f"\n{title}\n{'quantity':52} values held  factor  95 %  worst")
+    for what, pairs in sorted(table.items()):
+        held = 100.0 * sum(t <= s for s, t in pairs) / len(pairs)
+        factor = statistics.median(s / max(t, 1e-300) for s, t in pairs)
+        shares = [t / max(s, 1e-300) for s, t in pairs]
+        need = f"{np.quantile(shares, 0.95):.3g} {max(shares):.3g}"
+        print(f"{what:52} {len(pairs):6d} {held:5.1f} {factor:7.2f}  {need}")
+
+
 def main() -> None:
     """Print the table by quantity, or write check.toml."""
     solver = SOLVER
@@ -420,17 +437,11 @@ def main() -> None:
     families = [a for a in sys.argv[1:] if a in FAMILIES] or list(FAMILIES)
     seeds = [a for a in sys.argv[1:] if a not in FAMILIES] or ["1"]
     for family in families:
-        table: dict[str, list[tuple[float, float]]] = defaultdict(list)
+        table: dict[str, Pairs] = defaultdict(list)
         for seed, i in ((seed, i) for seed in seeds for i in range(STATES)):
             for what, _, stated, true in state(family, seed, i, solver):
                 table[what].append((stated, true))
-        print(f"\n{family}\n{'quantity':52} values held  factor  95 %  worst")
-        for what, pairs in sorted(table.items()):
-            held = 100.0 * sum(t <= s for s, t in pairs) / len(pairs)
-            factor = statistics.median(s / max(t, 1e-300) for s, t in pairs)
-            shares = [t / max(s, 1e-300) for s, t in pairs]
-            need = f"{np.quantile(shares, 0.95):.3g} {max(shares):.3g}"
-            print(f"{what:52} {len(pairs):6d} {held:5.1f} {factor:7.2f}  {need}")
+        print_table(family, table)
 
 
 if __name__ == "__main__":

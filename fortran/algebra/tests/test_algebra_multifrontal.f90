@@ -11,6 +11,7 @@ program test_algebra_multifrontal
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    call solves_a_chain()
    call condenses_springs()
@@ -37,7 +38,6 @@ contains
    subroutine solves_a_chain()
       integer(ik), parameter :: n = 50
       type(multifrontal_t) :: solver
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       integer(ik) :: i
       real(rk) :: x(n), h
@@ -66,7 +66,6 @@ contains
    subroutine condenses_springs()
       integer(ik), parameter :: n = 12, a = 9, b = 5
       type(multifrontal_t) :: solver
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk), allocatable :: s(:, :)
       real(rk) :: load(n), reduced(2), x(n)
@@ -101,7 +100,6 @@ contains
       integer(ik), intent(in), optional :: every  !< which unknowns have negative pivots
       real(rk), intent(in), optional :: size_of_negative  !< instead of 1
       type(multifrontal_t) :: solver
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk), allocatable :: dense(:, :), free(:, :), load(:), reduced(:), s(:, :), x(:)
       integer(ik), allocatable :: kept(:), kept_blocks(:), order(:), others(:), places(:)
@@ -237,7 +235,6 @@ contains
    subroutine eliminates_again(n_blocks, n_elements, n_kept)
       integer(ik), intent(in) :: n_blocks, n_elements, n_kept
       type(multifrontal_t) :: solver, whole
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk), allocatable :: s(:, :), s_whole(:, :), x(:), x_whole(:)
       logical, allocatable :: changes(:)
@@ -285,7 +282,6 @@ contains
    subroutine solves_a_grid(n)
       integer(ik), intent(in) :: n  !< along a side
       type(multifrontal_t) :: solver
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk) :: spring(4, 4), x(2*n*n)
       integer(ik) :: i, j, node
@@ -348,7 +344,6 @@ contains
    subroutine refuses_wrong_signs()
       integer(ik), parameter :: sizes(2) = [5_ik, 200_ik]
       type(multifrontal_t) :: solver
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       integer(ik) :: i, j, k, n
 
@@ -371,7 +366,6 @@ contains
 
    subroutine refuses()
       type(multifrontal_t) :: solver
-      type(error_t), allocatable :: error
       type(matrices_t) :: matrices
       real(rk) :: nothing, x(5)
       integer :: k

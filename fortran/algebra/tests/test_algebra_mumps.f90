@@ -8,6 +8,7 @@ program test_algebra_mumps
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    call solves_a_chain()
    call condenses()
@@ -21,7 +22,6 @@ contains
    subroutine solves_a_chain()
       integer(ik), parameter :: n = 50
       type(mumps_t) :: solver
-      type(error_t), allocatable :: error
       integer(ik) :: row(2*n - 1), col(2*n - 1), i
       real(rk) :: values(2*n - 1), x(n, 2), h
 
@@ -52,7 +52,6 @@ contains
    !> [A B; B^T C] with A = [4 1; 1 -3], B = [1 2; 0 1], C = [2 1; 1 5]: S = C - B^T A^-1 B by hand.
    subroutine condenses()
       type(mumps_t) :: solver
-      type(error_t), allocatable :: error
       integer(ik), parameter :: row(9) = [1, 2, 2, 3, 4, 4, 3, 4, 4]
       integer(ik), parameter :: col(9) = [1, 1, 2, 1, 1, 2, 3, 3, 4]
       real(rk), parameter :: values(9) = [4.0_rk, 1.0_rk, -3.0_rk, 1.0_rk, 2.0_rk, 1.0_rk, 2.0_rk, &
@@ -87,7 +86,6 @@ contains
    !> A = [0 2 1; 1 1 0; 3 0 2], an entry of it in two parts; A [1 2 3] and A' [1 2 3].
    subroutine solves_unsymmetric()
       type(mumps_t) :: solver
-      type(error_t), allocatable :: error
       integer(ik), parameter :: row(7) = [1, 1, 2, 2, 3, 3, 3]
       integer(ik), parameter :: col(7) = [2, 3, 1, 2, 1, 3, 3]
       real(rk), parameter :: values(7) = [2.0_rk, 1.0_rk, 1.0_rk, 1.0_rk, 3.0_rk, 0.5_rk, 1.5_rk]
@@ -117,7 +115,6 @@ contains
 
    subroutine refuses_singular()
       type(mumps_t) :: solver
-      type(error_t), allocatable :: error
       real(rk) :: nothing
 
       call solver%analyse(2_ik, [1_ik, 2_ik, 2_ik], [1_ik, 1_ik, 2_ik], mumps_indefinite, error)

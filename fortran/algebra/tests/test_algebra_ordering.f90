@@ -10,6 +10,7 @@ program test_algebra_ordering
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    call finds_neighbours()
    call dissects_grid()
@@ -81,7 +82,6 @@ contains
    subroutine dissects_grid()
       integer(ik), parameter :: n = 60
       type(lists_t) :: neighbours
-      type(error_t), allocatable :: error
       integer(ik), allocatable :: again(:), place(:)
 
       neighbours = neighbours_of(grid(n), n*n)
@@ -125,7 +125,6 @@ contains
    !> No node, one, and two that do not meet.
    subroutine orders_little()
       type(lists_t) :: neighbours
-      type(error_t), allocatable :: error
       integer(ik), allocatable :: place(:)
       integer(ik) :: n
 
@@ -150,7 +149,6 @@ contains
       integer(ik), parameter :: n = 20
       type(lists_t) :: columns
       type(mumps_t) :: condensed, ordered, plain
-      type(error_t), allocatable :: error
       integer(ik), allocatable :: place(:), row(:)
       integer(ik) :: i, k
       real(rk), allocatable :: values(:), x(:, :)

@@ -43,6 +43,7 @@ program test_app_geometry
    !&>
    character(len=100) :: good(8)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    good = wet
    call accept(5, good(5), "the scene with a fluid")
@@ -161,7 +162,6 @@ contains
    subroutine accept(line, text, name)
       integer, intent(in) :: line
       character(len=*), intent(in) :: text, name
-      type(error_t), allocatable :: error
 
       call judge(line, text, line, text, error)
       call checks%no_error(error, name)
@@ -178,7 +178,6 @@ contains
    subroutine refuse_two(line_1, text_1, line_2, text_2, words)
       integer, intent(in) :: line_1, line_2
       character(len=*), intent(in) :: text_1, text_2, words
-      type(error_t), allocatable :: error
 
       call judge(line_1, text_1, line_2, text_2, error)
       call checks%fails_with(error, words, words)

@@ -13,6 +13,8 @@ program test_app_run
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(scene_t) :: scene
 
    call test_switches()
    call test_failure()
@@ -80,8 +82,6 @@ contains
 
    !> Steps end where a well starts or ends, and start again from there.
    subroutine test_switches()
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
       real(rk), allocatable :: steps(:), times(:)
       real(rk), parameter :: expected(7) = [0.0_rk, 60.0_rk, 90.0_rk, 150.0_rk, 170.0_rk, &
                                             230.0_rk, 240.0_rk]
@@ -102,8 +102,6 @@ contains
    !> One Newton iteration is enough while nothing changes its state. When the well would open the
    !! fracture the step is cut to a tenth, and then the run gives up.
    subroutine test_failure()
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
       real(rk), allocatable :: steps(:), times(:)
       character(len=:), allocatable :: events, record
 

@@ -6,7 +6,10 @@ module sample_bodies
    use coarse_layout, only: end_block
    use coarse_matrix, only: matrix_t
    use coarse_model, only: coarse_model_t, new_state
-   use coarse_state, only: fracture_cells_t, state_t
+   use coarse_regions, only: regions_t
+   use coarse_rock, only: new_rock, rock_t
+   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_stencils, only: discretize
    use contact_law, only: contact_law_t
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_geometry, only: face_length
@@ -16,8 +19,9 @@ module sample_bodies
    implicit none(type, external)
    private
 
-   public :: boxes, cell_centre, cut_square, dense_matrix, linear_unknowns, load_sides, mesh_square
-   public :: porous_body, scattered, shake, straight_network, uniform_cells
+   public :: action, advance, boxes, cell_centre, cut_square, dense_matrix, equilibrate, hold
+   public :: linear_unknowns, load_sides, mesh_square, new_square, porous_body, prepare, scattered
+   public :: set_permeability, shake, straight_network, uniform_cells
 
 contains
 
@@ -35,6 +39,26 @@ contains
       scene%fluid%viscosity = 1.0e-4_rk
       allocate (scene%fractures(0), scene%injections(0), scene%probes(0))
    end function porous_body
+
+   pure subroutine set_permeability(scene, permeability)
+      type(scene_t), intent(inout) :: scene
+      real(rk), intent(in) :: permeability  !< [m2]
+
+      scene%material%permeability_xx = permeability
+      scene%material%permeability_yy = permeability
+   end subroutine set_permeability
+
+   !> Rollers at left and bottom, and perhaps normal stresses on the right side and on top.
+   pure subroutine hold(scene, stress)
+      type(scene_t), intent(inout) :: scene
+      real(rk), intent(in), optional :: stress(2)  !< xx, yy [Pa]
+
+      scene%sides(1)%displacement_given(1) = .true.
+      scene%sides(3)%displacement_given(2) = .true.
+      if (.not. present(stress)) return
+      scene%sides(2)%traction(1) = stress(1)
+      scene%sides(4)%traction(2) = stress(2)
+   end subroutine hold
 
    !> Let a uniform total stress act on all sides.
    pure subroutine load_sides(scene, stress)
@@ -60,16 +84,23 @@ contains
    end function straight_network
 
    !> Mesh of [0, 2] x [0, 2] m.
-   subroutine mesh_square(checks, network, size_fracture, size_boundary, mesher, mesh)
+   subroutine mesh_square(checks, network, size_fracture, size_boundary, mesh, mesher)
       type(checks_t), intent(inout) :: checks
       type(network_t), intent(in) :: network
       real(rk), intent(in) :: size_fracture, size_boundary  !< [m]
-      type(mesher_t), intent(inout) :: mesher
       type(mesh_t), intent(out) :: mesh
+      type(mesher_t), intent(inout), optional :: mesher  !< of a mesh that will change
+      type(mesh_spec_t) :: spec
+      type(mesher_t) :: own
       type(error_t), allocatable :: error
 
-      call build_mesh(mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
-                                  size_boundary=size_boundary), network, mesher, mesh, error)
+      spec = mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
+                         size_boundary=size_boundary)
+      if (present(mesher)) then
+         call build_mesh(spec, network, mesher, mesh, error)
+      else
+         call build_mesh(spec, network, own, mesh, error)
+      end if
       call checks%no_error(error, "mesh of the square")
    end subroutine mesh_square
 
@@ -241,6 +272,33 @@ contains
       end do
    end function dense_matrix
 
+   !> matrix*unknowns less the boundary's part, as (3, n_blocks).
+   function action(matrix, dt, unknowns) result(rows)
+      type(matrix_t), intent(in) :: matrix
+      real(rk), intent(in) :: dt, unknowns(:, :)
+      real(rk), allocatable :: rows(:, :)
+
+      allocate (rows(3, matrix%n_blocks))
+      rows = reshape(matmul(dense_matrix(matrix, dt), reshape(unknowns, [size(unknowns)])), &
+                     [3_ik, matrix%n_blocks]) - matrix%elastic_known
+      rows(3, :) = rows(3, :) - dt*matrix%flow_known
+   end function action
+
+   !> The discretized rock of a scene without regions.
+   subroutine prepare(checks, mesh, scene, rock, regions, matrix)
+      type(checks_t), intent(inout) :: checks
+      type(mesh_t), intent(in) :: mesh
+      type(scene_t), intent(in) :: scene
+      type(rock_t), intent(out) :: rock
+      type(regions_t), intent(out) :: regions
+      type(matrix_t), intent(out) :: matrix
+      type(error_t), allocatable :: error
+
+      rock = new_rock(scene%material, scene%fluid)
+      call discretize(mesh, rock, scene%sides, regions, matrix, error)
+      call checks%no_error(error, "discretization")
+   end subroutine prepare
+
    !> The square with one straight fracture, on cells of irregular shape, before anything happens.
    subroutine cut_square(checks, scene, line, law, aperture, mesh, model, state)
       type(checks_t), intent(inout) :: checks
@@ -251,17 +309,77 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(mesher_t) :: mesher
+
+      call mesh_square(checks, straight_network(reshape(line, [2, 2, 1])), 0.2_rk, 0.4_rk, mesh)
+      call shake(mesh)
+      call begin(checks, scene, law, aperture, mesh, model, state)
+   end subroutine cut_square
+
+   !> The square with a network, before anything happens.
+   subroutine new_square(checks, scene, network, sizes, law, aperture, mesh, model, state)
+      type(checks_t), intent(inout) :: checks
+      type(scene_t), intent(in) :: scene
+      type(network_t), intent(in) :: network
+      real(rk), intent(in) :: sizes(2)  !< of cells at fractures and at the boundary [m]
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: aperture  !< residual [m]
+      type(mesh_t), intent(out) :: mesh
+      type(coarse_model_t), intent(inout) :: model
+      type(state_t), intent(out) :: state
+
+      call mesh_square(checks, network, sizes(1), sizes(2), mesh)
+      call begin(checks, scene, law, aperture, mesh, model, state)
+   end subroutine new_square
+
+   subroutine begin(checks, scene, law, aperture, mesh, model, state)
+      type(checks_t), intent(inout) :: checks
+      type(scene_t), intent(in) :: scene
+      type(contact_law_t), intent(in) :: law
+      real(rk), intent(in) :: aperture  !< residual [m]
+      type(mesh_t), intent(inout) :: mesh
+      type(coarse_model_t), intent(inout) :: model
+      type(state_t), intent(out) :: state
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
-      call mesh_square(checks, straight_network(reshape(line, [2, 2, 1])), 0.2_rk, 0.4_rk, &
-                       mesher, mesh)
-      call shake(mesh)
       model%cells = uniform_cells(mesh, law, aperture)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization")
       call new_state(mesh, model%cells, scene%initial, model, state)
-   end subroutine cut_square
+   end subroutine begin
+
+   !> A time step, which must converge.
+   subroutine advance(checks, model, mesh, dt, state, report, name)
+      type(checks_t), intent(inout) :: checks
+      type(coarse_model_t), intent(inout) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(step_report_t), intent(out) :: report
+      character(len=*), intent(in) :: name
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call model%advance(mesh, dt, state, timers, report, error)
+      call checks%no_error(error, name)
+      call checks%is_true(report%converged, name//" converges")
+   end subroutine advance
+
+   !> The initial state, which must converge.
+   subroutine equilibrate(checks, model, mesh, dt, state, report, name)
+      type(checks_t), intent(inout) :: checks
+      type(coarse_model_t), intent(inout) :: model
+      type(mesh_t), intent(in) :: mesh
+      real(rk), intent(in) :: dt  !< [s]
+      type(state_t), intent(inout) :: state
+      type(step_report_t), intent(out) :: report
+      character(len=*), intent(in) :: name
+      type(timers_t) :: timers
+      type(error_t), allocatable :: error
+
+      call model%equilibrate(mesh, dt, state, timers, report, error)
+      call checks%no_error(error, name)
+      call checks%is_true(report%converged, name//" converges")
+   end subroutine equilibrate
 
 end module sample_bodies

@@ -1,15 +1,13 @@
 !> Blocks of a body that a fracture cuts in two: they stick, slide and separate exactly as they
 !! should.
 program test_coarse_blocks
-   use base_errors, only: error_t
    use base_kinds, only: ik, rk
-   use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
    use coarse_model, only: coarse_model_t
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use mesh_types, only: mesh_t
-   use sample_bodies, only: cut_square, load_sides, porous_body
+   use sample_bodies, only: cut_square, equilibrate, load_sides, porous_body
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -18,7 +16,7 @@ program test_coarse_blocks
    real(rk), parameter :: height = 2.0_rk  !< of the body [m]
    real(rk), parameter :: middle(2, 2) = reshape([0.0_rk, 1.0_rk, 2.0_rk, 1.0_rk], [2, 2])
    type(checks_t) :: checks
-   type(timers_t) :: timers
+   type(step_report_t) :: report
 
    call test_sliding_block(contact_law_t(friction=0.6_rk, dilation=0.0_rk))
    call test_sliding_block(contact_law_t(friction=0.6_rk, dilation=0.1_rk))
@@ -81,8 +79,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: stresses(:, :)
       real(rk) :: pressure, stress
 
@@ -91,9 +87,7 @@ contains
       call cut_square(checks, held_body([push, -press], stress), &
                       merge(middle, middle(:, 2:1:-1), drawn > 0), law, 1.0e-3_rk, mesh, model, &
                       state)
-      call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
-      call checks%no_error(error, "sliding block")
-      call checks%is_true(report%converged, "sliding block converges")
+      call equilibrate(checks, model, mesh, 1.0_rk, state, report, "sliding block")
       call checks%is_true(all(state%contact == expected), "all cells stick, or all slip")
       ! Drawn from right to left, tau points to the left and the upper half is side +: neither the
       ! slip [u]_tau nor the traction f_tau changes its sign with both of these.
@@ -117,16 +111,12 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: motion(2) = [0.7e-3_rk, 1.0e-3_rk]
 
       call cut_square(checks, held_body(motion, 0.0_rk), middle, contact_law_t(friction=0.6_rk, &
                                                                                dilation=0.1_rk), &
                       1.0e-3_rk, mesh, model, state)
-      call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
-      call checks%no_error(error, "separating block")
-      call checks%is_true(report%converged, "separating block converges")
+      call equilibrate(checks, model, mesh, 1.0_rk, state, report, "separating block")
       call checks%is_true(all(state%contact == state_open), "all open")
       call checks%is_close(maxval(abs(state%traction)), 0.0_rk, 1.0e-2_rk, "no contact traction")
       call checks%is_close(maxval(abs(state%jump(1, :, :) - motion(2))), 0.0_rk, 1.0e-12_rk, &

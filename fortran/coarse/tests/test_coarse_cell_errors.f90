@@ -2,25 +2,23 @@
 !! fractures; of first order, and no less than the true ones, where they are smooth; sizes that
 !! bring the error to a given one.
 program test_coarse_cell_errors
-   use base_errors, only: error_t
    use base_kinds, only: ik, pi, rk
    use coarse_cell_errors, only: cell_errors, rock_fields, rock_fields_t, sizes_for
    use coarse_fields, only: corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
-   use mesh_builder, only: mesher_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
-                            porous_body, shake, straight_network
+                            porous_body, prepare, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: dt = 1.0e6_rk, moved = 1.0e-5_rk, pressed = 1.0e6_rk
    type(checks_t) :: checks
+   type(scene_t) :: scene
    type(mesh_t) :: body
 
    call test_linear()
@@ -41,12 +39,9 @@ contains
       type(rock_fields_t) :: nothing
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: tractions(:)
 
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       call corner_tractions(regions, unknowns, tractions)
       call rock_fields(mesh, rock, regions, unknowns, tractions, fields)
       nothing = fields
@@ -58,8 +53,6 @@ contains
 
    !> Uniform stress, and linear pressure without flow through bottom and top.
    subroutine test_linear()
-      type(scene_t) :: scene
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(rock_fields_t) :: fields
       real(rk), parameter :: gradient(2, 2) = reshape([2.0e-4_rk, 9.0e-4_rk, -1.0e-4_rk, &
@@ -68,7 +61,7 @@ contains
       real(rk), allocatable :: squares(:)
 
       call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk], &
-                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, mesher, body)
+                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, body)
       scene = porous_body()
       shear = scene%material%young/(2.0_rk*(1.0_rk + scene%material%poisson))
       trace = 2.0_rk*shear*scene%material%poisson/(1.0_rk - 2.0_rk*scene%material%poisson) &
@@ -101,7 +94,6 @@ contains
    !! fluxes on sides that are held. Expected: estimate and error of first order (4 +- 15 % between
    !! meshes, of squares), the estimate 1 to 3 times the error.
    subroutine test_smooth()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(rock_fields_t) :: fields
       real(rk) :: energy, estimate(3), true(3)

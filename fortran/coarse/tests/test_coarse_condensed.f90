@@ -8,17 +8,17 @@ program test_coarse_condensed
    use coarse_layout, only: condensed_layout_t
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
-   use mesh_builder, only: mesher_t
+   use coarse_rock, only: rock_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, mesh_square, porous_body, scattered, shake, &
-                            straight_network
+   use sample_bodies, only: dense_matrix, hold, mesh_square, porous_body, prepare, scattered, &
+                            shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
 
    call test_with_fractures()
    call test_without_fracture()
@@ -28,24 +28,20 @@ program test_coarse_condensed
 
 contains
 
-   subroutine prepare(mesh, rock, matrix)
+   subroutine drained(mesh, rock, matrix)
       type(mesh_t), intent(in) :: mesh
       type(rock_t), intent(out) :: rock
       type(matrix_t), intent(out) :: matrix
       type(regions_t) :: regions
       type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides(4)%traction = [2.0e6_rk, -10.0e6_rk]
       scene%sides(2)%pressure_given = .true.
       scene%sides(2)%pressure = 2.0e6_rk
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
-   end subroutine prepare
+      call prepare(checks, mesh, scene, rock, regions, matrix)
+   end subroutine drained
 
    !> The whole system by Gauss elimination, scaled by its diagonal.
    subroutine solve_whole(matrix, dt, rhs, unknowns)
@@ -98,12 +94,9 @@ contains
 
    !> Forces and fluxes r on the fractures: S q = g + r, then all unknowns from q.
    subroutine test_with_fractures()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
-      type(error_t), allocatable :: error
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.7_rk, &
                                                        1.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
       real(rk), parameter :: steps(4) = [1.0_rk, 1800.0_rk, 1.0e8_rk, 1800.0_rk]
@@ -113,9 +106,9 @@ contains
       integer(ik), allocatable :: pivots(:)
       integer(ik) :: i, info, k, n
 
-      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
       call shake(mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       layout = condensed_layout_t(mesh%fracture%n_cells)
       n = layout%count()
       allocate (g(n), q(n, 1), pivots(n), unknowns(3, matrix%n_blocks))
@@ -196,19 +189,16 @@ contains
 
    !> Without fractures there is nothing to condense onto: expand solves the whole system.
    subroutine test_without_fracture()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed
-      type(error_t), allocatable :: error
       real(rk), allocatable :: expected(:, :), rhs(:, :), unknowns(:, :)
       real(rk) :: none(2, 2, 0), empty(0)
       integer(ik) :: k
 
-      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesh)
       call shake(mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       allocate (unknowns(3, matrix%n_blocks))
       do k = 1, 2
          call condensed%factorize(mesh, matrix, 100.0_rk**k, error)
@@ -225,12 +215,9 @@ contains
 
    !> The same forces, loads and unknowns where S is not formed.
    subroutine test_without_full_matrix()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: full, sparse
-      type(error_t), allocatable :: error
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.4_rk, &
                                                        0.6_rk, 0.7_rk, 1.5_rk], [2, 2, 2])
       real(rk), parameter :: steps(2) = [1.0_rk, 1.0e6_rk]
@@ -239,8 +226,8 @@ contains
       integer(ik), allocatable :: faces(:)
       integer(ik) :: i, k, n
 
-      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
-      call prepare(mesh, rock, matrix)
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
+      call drained(mesh, rock, matrix)
       sparse%is_full = .false.
       do k = 1, size(steps)
          call full%factorize(mesh, matrix, steps(k), error)
@@ -288,21 +275,18 @@ contains
    !! exchanges of pivots, for good, as if it had never tried without. What is well posed is then
    !! solved as well as ever.
    subroutine test_nearly_incompressible()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(rock_t) :: rock
       type(matrix_t) :: matrix
       type(condensed_t) :: condensed, exchanging
-      type(error_t), allocatable :: error
       real(rk), parameter :: parts(3) = [0.0_rk, 1.0e-14_rk, 1.0_rk]
       real(rk), parameter :: steps(3) = [1.0e-20_rk, 1.0e-20_rk, 100.0_rk]
       real(rk) :: none(2, 2, 0), empty(0)
       real(rk), allocatable :: expected(:, :), rhs(:, :), storing(:), unknowns(:, :)
       integer(ik) :: k
 
-      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.3_rk, 0.3_rk, mesh)
       call shake(mesh)
-      call prepare(mesh, rock, matrix)
+      call drained(mesh, rock, matrix)
       storing = matrix%elastic(3, 3, :)
       allocate (unknowns(3, matrix%n_blocks), expected(3, matrix%n_blocks))
       exchanging%factors%needs_exchanges = .true.

@@ -14,9 +14,9 @@ program test_coarse_equations
    use coarse_wells, only: control_limited, control_pressure, control_rate, control_shut
    use contact_law, only: contact_law_t, state_open, state_stick
    use contact_newton, only: step_quality_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: mesh_square, porous_body, scattered, straight_network, uniform_cells
+   use sample_bodies, only: hold, mesh_square, porous_body, scattered, set_permeability, &
+                            straight_network, uniform_cells
    use scene_fluid_law, only: new_fluid_law
    use scene_types, only: fluid_t, initial_t, scene_t
    use testing_checks, only: checks_t
@@ -56,7 +56,6 @@ contains
    !> Two fractures with laws and apertures that differ from cell to cell.
    subroutine start()
       type(scene_t) :: scene
-      type(mesher_t) :: mesher
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 1.7_rk, &
@@ -64,11 +63,9 @@ contains
       integer(ik) :: i
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%material%permeability_xx = 1.0e-15_rk
-      scene%material%permeability_yy = 1.0e-15_rk
-      call mesh_square(checks, straight_network(lines), 0.3_rk, 0.5_rk, mesher, mesh)
+      call hold(scene)
+      call set_permeability(scene, 1.0e-15_rk)
+      call mesh_square(checks, straight_network(lines), 0.3_rk, 0.5_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-4_rk)
       do i = 1, mesh%fracture%n_cells
          model%cells%law(i) = contact_law_t(friction=0.2_rk*mod(i, 4_ik), &

@@ -1,32 +1,30 @@
 !> Fields from the unknowns: exact where displacement and pressure are linear, also at loaded
 !! corners of the body, beside fractures, and where blocks of the body move against each other.
 program test_coarse_fields
-   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_fields, only: cell_contents, cell_stresses, corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_nodes, only: nodal_fields, node_values
    use coarse_own_pressure, only: own_pressure
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
-   use mesh_builder, only: mesher_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, cell_centre, linear_unknowns, load_sides, mesh_square, &
-                            porous_body, shake, straight_network
+                            porous_body, prepare, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk
    type(checks_t) :: checks
+   type(mesh_t) :: mesh
+   type(scene_t) :: scene
    type(mesh_t) :: body
-   type(mesher_t) :: its_mesher
 
    call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, 0.0_rk, &
                                                       1.5_rk, 0.8_rk, 1.5_rk], [2, 2, 2])), &
-                    0.25_rk, 0.4_rk, its_mesher, body)
+                    0.25_rk, 0.4_rk, body)
    call shake(body)
    call test_linear_displacement(body)
    call test_own_pressure(body)
@@ -49,14 +47,11 @@ contains
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: tractions(:)
       real(rk) :: worst
       integer(ik) :: v
 
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (stresses(3, mesh%n_cells), content(mesh%n_cells), values(3, mesh%n_nodes))
       call corner_tractions(regions, unknowns, tractions)
       call cell_stresses(mesh, regions, tractions, stresses)
@@ -74,7 +69,6 @@ contains
    !! tractions are all given, the rotation has to come from elsewhere.
    subroutine test_linear_displacement(mesh)
       type(mesh_t), intent(in) :: mesh
-      type(scene_t) :: scene
       real(rk), parameter :: gradient(2, 2) = reshape([2.0e-4_rk, 9.0e-4_rk, -1.0e-4_rk, &
                                                        -3.0e-4_rk], [2, 2])
       real(rk), parameter :: translation(2) = [0.1e-3_rk, -0.2e-3_rk], pressure = 7.0e6_rk
@@ -130,13 +124,10 @@ contains
    end subroutine test_own_pressure
 
    subroutine test_linear_pressure()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
-      type(scene_t) :: scene
       real(rk), allocatable :: content(:), stresses(:, :), values(:, :)
       real(rk) :: none(2, 2, 0)
 
-      call mesh_square(checks, straight_network(none), 0.4_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(none), 0.4_rk, 0.4_rk, mesh)
       call shake(mesh)
       scene = porous_body()
       scene%sides([1, 2])%pressure_given = .true.
@@ -165,7 +156,6 @@ contains
    !> A cut through the whole body: its upper part slides and opens as one block.
    subroutine test_two_blocks()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: block_motion(2, 2) = reshape([1.0e-3_rk, 0.4e-3_rk, -2.0e-3_rk, &
                                                            1.1e-3_rk], [2, 2])
       real(rk), allocatable :: content(:), stresses(:, :), unknowns(:, :), values(:, :)
@@ -173,7 +163,7 @@ contains
       integer(ik) :: c, part
 
       call mesh_square(checks, straight_network(reshape([0.0_rk, 0.6_rk, 2.0_rk, 1.4_rk], &
-                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.25_rk, 0.4_rk, mesh)
       call shake(mesh)
       allocate (unknowns, source=linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, 0.0_rk, &
                                                  [0.0_rk, 0.0_rk]))
@@ -199,15 +189,13 @@ contains
 
    !> Two cuts that cross: four blocks.
    subroutine test_four_blocks()
-      type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: lines(2, 2, 2) = reshape([0.0_rk, 1.0_rk, 2.0_rk, 1.0_rk, 0.7_rk, &
                                                        0.0_rk, 1.3_rk, 2.0_rk], [2, 2, 2])
       real(rk), allocatable :: content(:), stresses(:, :), unknowns(:, :), values(:, :)
       real(rk) :: worst
       integer(ik) :: c
 
-      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
       call shake(mesh)
       allocate (unknowns, source=linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, 0.0_rk, &
                                                  [0.0_rk, 0.0_rk]))

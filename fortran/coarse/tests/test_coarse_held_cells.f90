@@ -7,9 +7,9 @@ program test_coarse_held_cells
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_slip
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
+   use sample_bodies, only: hold, load_sides, mesh_square, porous_body, straight_network, &
+                            uniform_cells
    use scene_types, only: initial_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -28,7 +28,6 @@ contains
       logical, intent(in) :: with_dilation
       integer, parameter :: steps = 12
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(scene_t) :: scene
       type(coarse_model_t) :: model(2)
       type(state_t) :: state(2)
@@ -46,9 +45,8 @@ contains
       law = contact_law_t(friction=0.75_rk, dilation=merge(0.03_rk, 0.0_rk, with_dilation))
       scene = porous_body()
       call load_sides(scene, [-20.0e6_rk, -10.0e6_rk, 0.0_rk])
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      call mesh_square(checks, straight_network(ends), 0.03_rk, 0.2_rk, mesher, mesh)
+      call hold(scene)
+      call mesh_square(checks, straight_network(ends), 0.03_rk, 0.2_rk, mesh)
       do m = 1, 2
          model(m)%cells = uniform_cells(mesh, law, 1.0e-4_rk)
          call model(m)%set_mesh(mesh, scene, timers, error)

@@ -10,13 +10,16 @@ program test_coarse_in_situ
    use contact_law, only: contact_law_t, state_stick
    use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: porous_body, straight_network
+   use sample_bodies, only: advance, hold, porous_body, set_permeability, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: g = 9.81_rk  !< [m/s2]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(timers_t) :: timers
 
    call check_states()
@@ -39,13 +42,11 @@ contains
       scene%in_situ%per_y = [18.0e3_rk, 2500.0_rk*g]
       scene%in_situ%y_datum = 3000.0_rk
       scene%initial%pressure = 1.0e5_rk
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
    end function basin
 
    !> Which scenes have one, what it is, and what weight it carries.
    subroutine check_states()
-      type(scene_t) :: scene
       type(in_situ_state_t), allocatable :: state
       real(rk), parameter :: tight = 1.0e-9_rk  ! rounding of MPa [Pa]
       real(rk) :: traction(2)
@@ -120,12 +121,9 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
       real(rk), parameter :: ends(2, 2, 3) = reshape([0.4_rk, 0.5_rk, 1.2_rk, 1.3_rk, &
                                                       0.3_rk, 1.2_rk, 1.3_rk, 0.6_rk, &
                                                       1.6_rk, 1.0_rk, 2.0_rk, 1.5_rk], [2, 2, 3])
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: along, across, n(2), stress(2, 2), worst, y
       integer(ik) :: cell, end, step
 
@@ -138,9 +136,7 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
       call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
       call checks%no_error(error, "initial state")
       do step = 1, 3
-         call model%advance(mesh, 10.0_rk**(2*step), state, timers, report, error)
-         call checks%no_error(error, "a step at rest")
-         call checks%is_true(report%converged, "a step at rest converges")
+         call advance(checks, model, mesh, 10.0_rk**(2*step), state, report, "a step at rest")
       end do
       call checks%is_close(maxval(abs(state%unknowns)), 0.0_rk, 0.0_rk, "nothing moves")
       call checks%is_close(maxval(abs(state%jump)), 0.0_rk, 0.0_rk, "no jump")
@@ -169,12 +165,9 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
    !!   sigma_yy = -rho g (H - y), p = rho_f g (H - y), M u_y' = sigma_yy + alpha p.
    subroutine check_column()
       real(rk), parameter :: height = 100.0_rk
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: exact, modulus, slope, worst(2), y
       integer(ik) :: c, level
 
@@ -183,8 +176,7 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
       scene%in_situ%per_y = 0.0_rk
       scene%in_situ%y_datum = height
       scene%initial%pressure = 0.0_rk
-      scene%material%permeability_xx = 1.0e-12_rk
-      scene%material%permeability_yy = 1.0e-12_rk
+      call set_permeability(scene, 1.0e-12_rk)
       scene%domain%x_max = 20.0_rk
       scene%domain%y_max = height
       scene%sides(1:2)%displacement_given(1) = .true.
@@ -218,12 +210,9 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
    !! full, and its pressure higher, but by no more than the fluid above it weighs.
    subroutine check_vapour()
       real(rk), parameter :: ends(2, 2, 1) = reshape([0.7_rk, 0.8_rk, 1.3_rk, 1.2_rk], [2, 2, 1])
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: pressure(:)
 
       scene = basin()
@@ -232,9 +221,7 @@ call checks%is_close(maxval(abs(weight_of_scene(scene) - [0.0_rk, -2499.0_rk*g])
       scene%domain%y_max = 2.0_rk
       call begin(scene, ends, 0.1_rk, 5.0_rk, mesh, model, state)
       model%cells%injection = -1.0e-6_rk
-      call model%advance(mesh, 0.3_rk, state, timers, report, error)
-      call checks%no_error(error, "fluid is drawn")
-      call checks%is_true(report%converged, "fluid is drawn: converges")
+      call advance(checks, model, mesh, 0.3_rk, state, report, "fluid is drawn")
       pressure = state%pressure + model%cells%pressure_in_situ
       associate (n => mesh%fracture%n_cells)
          call checks%is_true(state%void(n) > 0.0_rk .and. .not. state%void(1) > 0.0_rk, &

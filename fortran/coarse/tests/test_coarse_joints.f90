@@ -7,21 +7,24 @@ program test_coarse_joints
    use coarse_fields, only: cell_stresses
    use coarse_fractures, only: flow_paths_t, prepare
    use coarse_full_step, only: full_slopes
-   use coarse_model, only: coarse_model_t, new_state
+   use coarse_model, only: coarse_model_t
    use coarse_newton, only: equations_t
    use coarse_nodes, only: nodal_fields
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_stick
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
-   use sample_bodies, only: load_sides, mesh_square, porous_body, scattered, straight_network, &
-                            uniform_cells
+   use sample_bodies, only: new_square, advance, equilibrate, hold, load_sides, mesh_square, &
+                            porous_body, scattered, set_permeability, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: side_pressure = 2.0e6_rk  !< of the left side, where it has one [Pa]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(flow_paths_t), target :: paths  !< of the equations that are set up last
 
    call test_places()
@@ -76,15 +79,9 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(mesher_t) :: mesher
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
-      call mesh_square(checks, network, size, max(size, 0.4_rk), mesher, mesh)
-      model%cells = uniform_cells(mesh, law, aperture)
-      call model%set_mesh(mesh, scene, timers, error)
-      call checks%no_error(error, "discretization")
-      call new_state(mesh, model%cells, scene%initial, model, state)
+      call new_square(checks, scene, network, [size, max(size, 0.4_rk)], law, aperture, mesh, &
+                      model, state)
    end subroutine start
 
    !> Rock that is pressed together and lets nothing through.
@@ -92,12 +89,8 @@ contains
       type(scene_t) :: scene
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction(1) = -60.0e6_rk
-      scene%sides(4)%traction(2) = -60.0e6_rk
-      scene%material%permeability_xx = 1.0e-30_rk
-      scene%material%permeability_yy = 1.0e-30_rk
+      call hold(scene, [-60.0e6_rk, -60.0e6_rk])
+      call set_permeability(scene, 1.0e-30_rk)
       scene%discretization%newton_tolerance = 1.0e-12_rk
    end function tight_body
 
@@ -107,7 +100,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model, sealed
       type(state_t) :: state
-      type(scene_t) :: scene
       integer(ik) :: b
 
       scene = tight_body()
@@ -141,9 +133,7 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t), target :: model
       type(state_t), target :: state
-      type(scene_t) :: scene
       type(equations_t) :: above, below, eq
-      type(error_t), allocatable :: error
       real(rk), parameter :: dt = 10.0_rk
       real(rk), allocatable :: jacobian(:, :), moved(:), x(:)
       real(rk), allocatable, target :: g(:)
@@ -230,7 +220,6 @@ contains
    !! mesh gives each at least two, also at few degrees, at sides and at bends.
    subroutine test_sectors()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: few_degrees(2, 2, 2) = reshape( &
                              [0.5_rk, 0.9_rk, 1.5_rk, 1.1_rk, 0.5_rk, 0.95_rk, 1.5_rk, 1.06_rk], &
                              [2, 2, 2])
@@ -242,15 +231,15 @@ contains
 
       do arms = 2, 8
          do k = 0, 8
-            call mesh_square(checks, star(arms, 5*k*pi/180.0_rk), 0.1_rk, 0.4_rk, mesher, mesh)
+            call mesh_square(checks, star(arms, 5*k*pi/180.0_rk), 0.1_rk, 0.4_rk, mesh)
             call expect_two_cells(mesh)
          end do
       end do
-      call mesh_square(checks, all_kinds(), 0.2_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, all_kinds(), 0.2_rk, 0.4_rk, mesh)
       call expect_two_cells(mesh)
-      call mesh_square(checks, straight_network(few_degrees), 0.1_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(few_degrees), 0.1_rk, 0.4_rk, mesh)
       call expect_two_cells(mesh)
-      call mesh_square(checks, straight_network(triangle), 0.1_rk, 0.4_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(triangle), 0.1_rk, 0.4_rk, mesh)
       call expect_two_cells(mesh)
       call expect_uniform(straight_network(triangle), 0.1_rk)
    end subroutine test_sectors
@@ -281,10 +270,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: stresses(:, :), values(:, :)
       real(rk) :: worst
 
@@ -293,13 +278,10 @@ contains
       scene%material%biot = 0.0_rk
       scene%material%poisson = 0.0_rk
       call load_sides(scene, stress)
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       call start(network, size, scene, contact_law_t(friction=5.0_rk), 1.0e-4_rk, mesh, model, &
                  state)
-      call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
-      call checks%no_error(error, "a uniform state")
-      call checks%is_true(report%converged, "a uniform state converges")
+      call equilibrate(checks, model, mesh, 1.0e-3_rk, state, report, "a uniform state")
       if (.not. report%converged) return
       call checks%is_true(all(state%contact == state_stick), "all stick")
       call checks%is_close(maxval(abs(state%jump)), 0.0_rk, 0.0_rk, "no jump")
@@ -321,10 +303,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: drop, expected
       integer(ik) :: cells(2), i, k, step
 
@@ -338,9 +316,7 @@ contains
                                       mask=mesh%fracture%cell_fracture == k)) = -rate*k
       end do
       do step = 1, 3
-         call model%advance(mesh, 1.0e4_rk, state, timers, report, error)
-         call checks%no_error(error, "flow through a star")
-         call checks%is_true(report%converged, "flow through a star converges")
+         call advance(checks, model, mesh, 1.0e4_rk, state, report, "flow through a star")
       end do
       call checks%is_true(all(state%contact == state_stick), "the star stays closed")
       do i = 1, mesh%fracture%n_cells
@@ -370,10 +346,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk) :: expected
       integer :: step
 
@@ -383,9 +355,7 @@ contains
       call start(straight_network(line), 0.2_rk, scene, contact_law_t(friction=5.0_rk), aperture, &
                  mesh, model, state)
       do step = 1, 3
-         call model%advance(mesh, dt, state, timers, report, error)
-         call checks%no_error(error, "flow from side to side")
-         call checks%is_true(report%converged, "flow from side to side converges")
+         call advance(checks, model, mesh, dt, state, report, "flow from side to side")
          call checks%is_close(report%mass_error, 0.0_rk, 1.0e-12_rk*dt*abs(state%flow(1)), &
                               "mass with flow through the sides")
       end do
@@ -405,25 +375,17 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       integer :: step
 
       scene = tight_body()
-      scene%material%permeability_xx = 1.0e-19_rk
-      scene%material%permeability_yy = 1.0e-19_rk
+      call set_permeability(scene, 1.0e-19_rk)
       scene%sides(4)%traction(2) = -30.0e6_rk
       call start(star(4, 0.5_rk), 0.1_rk, scene, contact_law_t(friction=0.5_rk, dilation=0.05_rk), &
                  1.0e-4_rk, mesh, model, state)
-      call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
-      call checks%is_true(report%converged, "a loaded cross converges")
+      call equilibrate(checks, model, mesh, 1.0e-3_rk, state, report, "a loaded cross converges")
       model%joints%injection = rate
       do step = 1, 8
-         call model%advance(mesh, dt, state, timers, report, error)
-         call checks%no_error(error, "injection into a cross")
-         call checks%is_true(report%converged, "injection into a cross converges")
+         call advance(checks, model, mesh, dt, state, report, "injection into a cross")
          call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*rate*dt, "fluid of a cross")
          call checks%is_close(sum(state%branch_flow) + rate, 0.0_rk, 1.0e-9_rk*rate, &
                               "what is injected leaves the joint")
@@ -440,10 +402,6 @@ contains
       type(mesh_t) :: mesh, mesh_of_halves
       type(coarse_model_t) :: model, model_of_halves
       type(state_t) :: state, state_of_halves
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       integer :: step
 
       scene = tight_body()
@@ -458,8 +416,7 @@ contains
       model%cells%injection(2) = 1.0e-6_rk
       model_of_halves%cells%injection(2) = 1.0e-6_rk
       do step = 1, 10
-         call model%advance(mesh, 2.0_rk, state, timers, report, error)
-         call checks%is_true(report%converged, "the whole converges")
+         call advance(checks, model, mesh, 2.0_rk, state, report, "the whole converges")
          call model_of_halves%advance(mesh_of_halves, 2.0_rk, state_of_halves, timers, report, &
                                       error)
          call checks%is_true(report%converged, "the halves converge")
@@ -478,10 +435,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(scene_t) :: scene
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       integer :: k
 
       scene = tight_body()

@@ -11,9 +11,9 @@ program test_coarse_layer_profiles
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
+   use sample_bodies, only: advance, hold, load_sides, mesh_square, porous_body, straight_network, &
+                            uniform_cells
    use scene_types, only: initial_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -21,6 +21,10 @@ program test_coarse_layer_profiles
    !> A fracture from side to side.
    real(rk), parameter :: line(2, 2, 1) = reshape([0.0_rk, 1.0_rk, 2.0_rk, 1.0_rk], [2, 2, 1])
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(mesh_t) :: mesh
    type(coarse_model_t) :: model
    type(state_t) :: state
@@ -35,17 +39,11 @@ contains
 
    !> Fluid goes into the layers, more of it the farther along the fracture.
    subroutine take_in_fluid()
-      type(mesher_t) :: mesher
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       integer(ik) :: i
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      call mesh_square(checks, straight_network(line), 0.25_rk, 0.3_rk, mesher, mesh)
+      call hold(scene)
+      call mesh_square(checks, straight_network(line), 0.25_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       model%first_step = 1.0e-2_rk
       call model%set_mesh(mesh, scene, timers, error)
@@ -132,28 +130,20 @@ contains
       real(rk), parameter :: across(2, 2, 1) = reshape([1.0_rk, 0.0_rk, 1.0_rk, 2.0_rk], [2, 2, 1])
       real(rk), parameter :: drop = 2.0e7_rk  ! per m [Pa/m]
       real(rk), parameter :: depth(5) = [1.0e-5_rk, 1.0e-3_rk, 0.03_rk, 0.08_rk, 0.15_rk]
-      type(mesher_t) :: mesher
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk) :: found, largest, weight(3), xy(2)
       integer(ik) :: c, i, k
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       call load_sides(scene, [-60.0e6_rk, -60.0e6_rk, 0.0_rk])
       scene%sides(1:2)%pressure_given = .true.
       scene%sides(2)%pressure = 2.0_rk*drop
-      call mesh_square(checks, straight_network(across), 0.25_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(across), 0.25_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization with drained sides")
       call new_state(mesh, model%cells, initial_t(), model, state)
-      call model%advance(mesh, 1.0e12_rk, state, timers, report, error)
-      call checks%no_error(error, "steady flow")
-      call checks%is_true(report%converged, "steady flow: converged")
+      call advance(checks, model, mesh, 1.0e12_rk, state, report, "steady flow")
       largest = 0.0_rk
       do i = 1, size(depth)
          xy = [depth(i), 0.31_rk]

@@ -10,10 +10,9 @@ program test_coarse_layers
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: boxes, load_sides, mesh_square, porous_body, shake, straight_network, &
-                            uniform_cells
+   use sample_bodies, only: boxes, hold, load_sides, mesh_square, porous_body, shake, &
+                            straight_network, uniform_cells
    use scene_types, only: initial_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -23,6 +22,10 @@ program test_coarse_layers
                                                      0.0_rk, 1.25_rk, 2.0_rk, 0.75_rk], [2, 2, 2])
    real(rk), parameter :: first_step = 1.0e-2_rk  !< [s]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(scene_t) :: scene
 
    call steady_state()
    call cell_with_two_layers()
@@ -42,13 +45,11 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(mesher_t) :: mesher
       type(timers_t) :: timers
       type(error_t), allocatable :: error
 
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      call mesh_square(checks, straight_network(lines), size, 0.3_rk, mesher, mesh)
+      call hold(scene)
+      call mesh_square(checks, straight_network(lines), size, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       if (has_layers) model%first_step = first_step
       call model%set_mesh(mesh, scene, timers, error)
@@ -61,10 +62,6 @@ contains
       type(mesh_t) :: mesh(2)
       type(coarse_model_t) :: model(2)
       type(state_t) :: state(2)
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk), parameter :: long = 1.0e12_rk  ! [s]
       real(rk) :: supply
       integer(ik) :: k, n
@@ -101,17 +98,12 @@ contains
       type(mesh_t) :: mesh(2)
       type(coarse_model_t) :: model(2)
       type(state_t) :: state(2)
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk), parameter :: steps(4) = [1.0e-2_rk, 1.0_rk, 1.0e3_rk, 1.0e13_rk]  ! [s]
       real(rk), parameter :: supply = 1.0e-11_rk  ! [m2/s]
       integer(ik) :: i, k
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides(2:3)%pressure_given = .true.
       scene%sides(2:3)%pressure = 1.0e3_rk
       do k = 1, 2
@@ -153,10 +145,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk) :: difference, largest
       integer(ik) :: l
 
@@ -187,10 +175,6 @@ contains
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk), allocatable :: undrained(:)
       real(rk) :: c, dt, exact, held, largest, mass_error, uniaxial, width
 

@@ -2,19 +2,16 @@
 !! the same as the tractions and fluxes that it stands for, symmetric and quasi-definite.
 program test_coarse_matrix
    use algebra_lapack, only: dpotrf
-   use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: cell_outflow
    use coarse_fields, only: cell_contents, corner_tractions
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t, traction_face
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize
-   use mesh_builder, only: mesher_t
+   use coarse_rock, only: rock_t
    use mesh_geometry, only: cell_area, corner_geometry
    use mesh_types, only: mesh_t
-   use sample_bodies, only: dense_matrix, linear_unknowns, load_sides, mesh_square, porous_body, &
-                            scattered, shake, straight_network
+   use sample_bodies, only: action, dense_matrix, hold, linear_unknowns, load_sides, mesh_square, &
+                            porous_body, prepare, scattered, shake, straight_network
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -24,11 +21,11 @@ program test_coarse_matrix
    real(rk), parameter :: lines(2, 2, 2) = reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk, &
                                                     0.0_rk, 1.5_rk, 0.8_rk, 1.5_rk], [2, 2, 2])
    type(checks_t) :: checks
+   type(scene_t) :: scene
    type(mesh_t) :: mesh
-   type(mesher_t) :: mesher
    integer(ik) :: cell
 
-   call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesher, mesh)
+   call mesh_square(checks, straight_network(lines), 0.25_rk, 0.4_rk, mesh)
    call shake(mesh)
    call checks%is_true(all([(cell_area(mesh, cell), cell=1, mesh%n_cells)] > 0.0_rk), "cells")
    call test_uniform_strain(.false.)
@@ -44,30 +41,6 @@ program test_coarse_matrix
    call checks%finish()
 
 contains
-
-   subroutine prepare(scene, rock, regions, matrix)
-      type(scene_t), intent(in) :: scene
-      type(rock_t), intent(out) :: rock
-      type(regions_t), intent(out) :: regions
-      type(matrix_t), intent(out) :: matrix
-      type(error_t), allocatable :: error
-
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
-   end subroutine prepare
-
-   !> matrix*unknowns less the boundary's part, as (3, n_blocks).
-   function action(matrix, dt, unknowns) result(rows)
-      type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: dt, unknowns(:, :)
-      real(rk), allocatable :: rows(:, :)
-
-      allocate (rows(3, matrix%n_blocks))
-      rows = reshape(matmul(dense_matrix(matrix, dt), reshape(unknowns, [size(unknowns)])), &
-                     [3_ik, matrix%n_blocks]) - matrix%elastic_known
-      rows(3, :) = rows(3, :) - dt*matrix%flow_known
-   end function action
 
    !> Force through half a fracture face, negated: -l/2 sigma n.
    subroutine check_fracture_rows(rows, stress, name)
@@ -92,7 +65,6 @@ contains
    !> Patch test: any uniform strain with any uniform pressure, in plane strain and plane stress.
    subroutine test_uniform_strain(plane_stress)
       logical, intent(in) :: plane_stress
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -120,7 +92,7 @@ contains
                      - scene%material%porosity)*3.0_rk*(1.0_rk - 2.0_rk*nu)/e)*pressure + biot*trace
       end associate
       call load_sides(scene, [stress(1, 1), stress(2, 2), stress(1, 2)])
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, [0.1e-3_rk, -0.2e-3_rk], gradient, &
                                                     pressure, [0.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(rows(1:2, :mesh%n_cells))), 0.0_rk, &
@@ -142,7 +114,7 @@ contains
       type(matrix_t) :: matrix
       real(rk), parameter :: turn(2, 2) = reshape([0.0_rk, 1.0e-3_rk, -1.0e-3_rk, 0.0_rk], [2, 2])
 
-      call prepare(porous_body(), rock, regions, matrix)
+      call prepare(checks, mesh, porous_body(), rock, regions, matrix)
       call checks%is_close(maxval(abs(matrix%elastic_known)), 0.0_rk, 0.0_rk, "free body: no load")
       associate (rows => action(matrix, 0.0_rk, linear_unknowns(mesh, [1.0e-3_rk, 2.0e-3_rk], &
                                                                 nothing, 0.0_rk, [0.0_rk, 0.0_rk])))
@@ -159,7 +131,6 @@ contains
 
    !> Uniform pressure in a clamped body moves nothing: sigma = -alpha p I, content S p.
    subroutine test_clamped_pressure()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -171,7 +142,7 @@ contains
       do i = 1, 4
          scene%sides(i)%displacement_given = .true.
       end do
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, pressure, &
                                                     [0.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(rows(1:2, :mesh%n_cells))), 0.0_rk, 1.0e-13_rk*pressure, &
@@ -189,12 +160,9 @@ contains
    !! bottom and top are closed in truth. Cells at the closed left and right sides are left out.
    subroutine test_linear_pressure()
       type(mesh_t) :: body
-      type(mesher_t) :: its_mesher
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), parameter :: slope(2) = [-0.5e6_rk, 0.9e6_rk]
       real(rk), parameter :: tensor(2, 2) = reshape([3.0e-14_rk, 1.0e-14_rk, 1.0e-14_rk, &
                                                      5.0e-14_rk/9.0_rk], [2, 2])
@@ -202,16 +170,14 @@ contains
       real(rk) :: flux(2), tangent(2), through, worst
       integer(ik) :: i
 
-      call mesh_square(checks, straight_network(lines(:, :, :1)), 0.25_rk, 0.4_rk, its_mesher, body)
+      call mesh_square(checks, straight_network(lines(:, :, :1)), 0.25_rk, 0.4_rk, body)
       call shake(body)
       scene = porous_body()
       scene%material%permeability_xx = tensor(1, 1)
       scene%material%permeability_yy = tensor(2, 2)
       scene%material%permeability_xy = tensor(1, 2)
       flux = -matmul(tensor, slope)/scene%fluid%viscosity
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(body, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
+      call prepare(checks, body, scene, rock, regions, matrix)
       unknowns = linear_unknowns(body, [0.0_rk, 0.0_rk], nothing, 3.0e6_rk, slope)
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
@@ -241,7 +207,6 @@ contains
    !> Constant pressure drives no flow: rows of the flow matrix add up to zero, and with given
    !! pressures on the sides to what these give.
    subroutine test_closed_sides()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -249,7 +214,7 @@ contains
       real(rk), allocatable :: ones(:, :), rows(:, :)
 
       scene = porous_body()
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (ones(3, matrix%n_blocks), source=0.0_rk)
       ones(3, :) = 1.0_rk
       matrix%elastic = 0.0_rk
@@ -258,7 +223,7 @@ contains
                            "closed sides: row sums")
       scene%sides([1, 4])%pressure_given = .true.
       scene%sides([1, 4])%pressure = pressure
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       call checks%is_true(maxval(abs(matrix%flow_known)) > 0.0_rk, "given pressures act")
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, pressure*ones)
@@ -269,7 +234,6 @@ contains
    !> For any unknowns at all: the matrix, half of which is kept, gives the forces of the tractions
    !! around each cell and the content that follows from them.
    subroutine test_tractions_behind_matrix()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -284,7 +248,7 @@ contains
       scene%sides(3)%displacement_given(2) = .true.
       scene%sides(3)%displacement(2) = 1.0e-4_rk
       scene%sides(4)%traction = [3.0e6_rk, -10.0e6_rk]
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (unknowns(3, matrix%n_blocks), content(mesh%n_cells), force(2, mesh%n_cells))
       unknowns = reshape(scattered(3*matrix%n_blocks), [3_ik, matrix%n_blocks])
       unknowns(1:2, :) = 1.0e-4_rk*unknowns(1:2, :)
@@ -314,7 +278,6 @@ contains
 
    !> The same for the flow.
    subroutine test_fluxes_behind_matrix()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -325,7 +288,7 @@ contains
       scene%material%permeability_xy = 2.0e-20_rk
       scene%sides([1, 4])%pressure_given = .true.
       scene%sides([1, 4])%pressure = [2.0e6_rk, 3.0e6_rk]
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (unknowns(3, matrix%n_blocks), outflow(mesh%n_cells), source=0.0_rk)
       unknowns(3, :) = 1.0e6_rk*scattered(matrix%n_blocks)
       matrix%elastic = 0.0_rk
@@ -335,7 +298,7 @@ contains
       call checks%is_close(maxval(abs(rows(3, :mesh%n_cells) + outflow)), 0.0_rk, &
                            1.0e-12_rk*maxval(abs(outflow)), "outflow by the matrix and by fluxes")
       ! Without open sides, what leaves the cells enters the fractures.
-      call prepare(porous_body(), rock, regions, matrix)
+      call prepare(checks, mesh, porous_body(), rock, regions, matrix)
       call cell_outflow(mesh, regions, regions%flux, unknowns(3, :), outflow)
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, unknowns)
@@ -348,7 +311,6 @@ contains
    !! (quasi-definite, Vanderbei 1995: then any order of elimination is stable without pivoting).
    subroutine test_quasi_definite(poisson)
       real(rk), intent(in) :: poisson
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -358,9 +320,8 @@ contains
 
       scene = porous_body()
       scene%material%poisson = poisson
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      call prepare(scene, rock, regions, matrix)
+      call hold(scene)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       allocate (full, source=dense_matrix(matrix, 1.0e-3_rk))
       allocate (of_pressure, source=[(3*i, i=1, matrix%n_blocks)])
       allocate (of_displacement, source=[([3*i - 2, 3*i - 1], i=1, matrix%n_blocks)])

@@ -5,13 +5,13 @@ program test_coarse_model
    use base_kinds, only: ik, pi, rk
    use base_timers, only: timers_t
    use coarse_fields, only: cell_stresses
-   use coarse_model, only: coarse_model_t, new_state
+   use coarse_model, only: coarse_model_t
    use coarse_nodes, only: nodal_fields
-   use coarse_state, only: fracture_cells_t, state_t, step_report_t
+   use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_slip, state_stick
-   use mesh_builder, only: build_mesh, mesh_spec_t, mesher_t
-   use mesh_types, only: mesh_t, network_t
-   use scene_types, only: initial_t, scene_t
+   use mesh_types, only: mesh_t
+   use sample_bodies, only: advance, equilibrate, hold, new_square, porous_body, straight_network
+   use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
@@ -19,6 +19,11 @@ program test_coarse_model
    !> at (2, 2) [m]
    real(rk), parameter :: undrained_u(2) = [-0.6412206423e-3_rk, -0.04122064228e-3_rk]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(mesh_t) :: mesh
+   type(scene_t) :: scene
 
    call undrained_square()
    call linear_pressure()
@@ -32,70 +37,26 @@ program test_coarse_model
 contains
 
    !> Body of Paper C.
-   subroutine paper_c(scene)
-      type(scene_t), intent(out) :: scene
+   function paper_c() result(scene)
+      type(scene_t) :: scene
 
-      scene%material%young = 40.0e9_rk
-      scene%material%poisson = 0.2_rk
-      scene%material%biot = 0.8_rk
-      scene%material%porosity = 0.01_rk
-      scene%material%permeability_xx = 5.0e-20_rk
-      scene%material%permeability_yy = 5.0e-20_rk
-      scene%fluid%compressibility = 4.0e-10_rk
-      scene%fluid%viscosity = 1.0e-4_rk
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction = [-20.0e6_rk, 0.0_rk]
-      scene%sides(4)%traction = [0.0_rk, -10.0e6_rk]
-   end subroutine paper_c
+      scene = porous_body()
+      call hold(scene, [-20.0e6_rk, -10.0e6_rk])
+   end function paper_c
 
-   subroutine make_mesh(xy, size_fracture, size_boundary, mesh)
-      real(rk), intent(in) :: xy(:, :)  !< vertices of the only fracture; none if empty
-      real(rk), intent(in) :: size_fracture, size_boundary
-      type(mesh_t), intent(out) :: mesh
-      type(mesher_t) :: mesher
-      type(network_t) :: network
-      type(mesh_spec_t) :: spec
-      type(error_t), allocatable :: error
-
-      spec = mesh_spec_t(x_max=2.0_rk, y_max=2.0_rk, size_fracture=size_fracture, &
-                         size_boundary=size_boundary)
-      network%first = [1_ik]
-      allocate (network%s_start(0))
-      if (size(xy) > 0) then
-         network%first = [1_ik, size(xy, 2) + 1_ik]
-         network%s_start = [0.0_rk]
-      end if
-      network%xy = xy
-      call build_mesh(spec, network, mesher, mesh, error)
-      call checks%no_error(error, "mesh")
-   end subroutine make_mesh
-
-   subroutine make_cells(mesh, friction, dilation, cells)
-      type(mesh_t), intent(in) :: mesh
-      real(rk), intent(in) :: friction, dilation
-      type(fracture_cells_t), intent(out) :: cells
-
-      allocate (cells%law(mesh%fracture%n_cells))
-      cells%law = contact_law_t(friction=friction, dilation=dilation)
-      allocate (cells%residual_aperture(mesh%fracture%n_cells), source=1.0e-3_rk)
-      allocate (cells%roughness(mesh%fracture%n_cells), source=0.0_rk)
-      allocate (cells%injection(mesh%fracture%n_cells), source=0.0_rk)
-   end subroutine make_cells
-
-   subroutine start(mesh, scene, friction, dilation, model, state)
-      type(mesh_t), intent(inout) :: mesh
+   !> The square with a fracture or without, before anything happens.
+   subroutine start(scene, ends, sizes, friction, dilation, mesh, model, state)
       type(scene_t), intent(in) :: scene
+      real(rk), intent(in) :: ends(:, :, :)  !< of the fracture [m]
+      real(rk), intent(in) :: sizes(2)  !< of cells at the fracture and at the boundary [m]
       real(rk), intent(in) :: friction, dilation
+      type(mesh_t), intent(out) :: mesh
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
-      call make_cells(mesh, friction, dilation, model%cells)
-      call model%set_mesh(mesh, scene, timers, error)
-      call checks%no_error(error, "discretization")
-      call new_state(mesh, model%cells, initial_t(), model, state)
+      call new_square(checks, scene, straight_network(ends), sizes, &
+                      contact_law_t(friction=friction, dilation=dilation), 1.0e-3_rk, mesh, model, &
+                      state)
    end subroutine start
 
    !> Displacement at the corner (2, 2), which belongs to one or two cells.
@@ -115,19 +76,13 @@ contains
 
    !> Uniform undrained state: exact on any mesh.
    subroutine undrained_square()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: stresses(:, :)
-      real(rk) :: none(2, 0)
+      real(rk) :: none(2, 2, 0)
 
-      call paper_c(scene)
-      call make_mesh(none, 0.3_rk, 0.3_rk, mesh)
-      call start(mesh, scene, 0.0_rk, 0.0_rk, model, state)
+      scene = paper_c()
+      call start(scene, none, [0.3_rk, 0.3_rk], 0.0_rk, 0.0_rk, mesh, model, state)
       call model%advance(mesh, 1800.0_rk, state, timers, report, error)
       call checks%no_error(error, "undrained step")
       call checks%is_close(maxval(abs(state%unknowns(3, :) - undrained_pressure)), 0.0_rk, &
@@ -144,26 +99,20 @@ contains
 
    !> Steady flow between two pressures with a full permeability tensor: the pressure is linear.
    subroutine linear_pressure()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), allocatable :: x(:)
-      real(rk) :: none(2, 0)
+      real(rk) :: none(2, 2, 0)
       integer(ik) :: c
 
-      call paper_c(scene)
+      scene = paper_c()
       scene%material%permeability_xx = 5.0e-14_rk
       scene%material%permeability_yy = 2.0e-14_rk
       scene%sides(1)%pressure_given = .true.
       scene%sides(1)%pressure = 3.0e6_rk
       scene%sides(2)%pressure_given = .true.
       scene%sides(2)%pressure = 1.0e6_rk
-      call make_mesh(none, 0.3_rk, 0.3_rk, mesh)
-      call start(mesh, scene, 0.0_rk, 0.0_rk, model, state)
+      call start(scene, none, [0.3_rk, 0.3_rk], 0.0_rk, 0.0_rk, mesh, model, state)
       call model%advance(mesh, 1.0e15_rk, state, timers, report, error)
       call checks%no_error(error, "steady step")
       allocate (x(mesh%n_cells))
@@ -177,21 +126,13 @@ contains
    !> A fracture with high friction in the uniform state changes nothing and carries the resolved
    !! stress.
    subroutine sticking_fracture()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
-      real(rk), parameter :: at(2, 2) = reshape([0.7_rk, 0.8_rk, 1.2_rk, 1.3_rk], [2, 2])
+      real(rk), parameter :: at(2, 2, 1) = reshape([0.7_rk, 0.8_rk, 1.2_rk, 1.3_rk], [2, 2, 1])
 
-      call paper_c(scene)
-      call make_mesh(at, 0.1_rk, 0.3_rk, mesh)
-      call start(mesh, scene, 5.0_rk, 0.0_rk, model, state)
-      call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
-      call checks%no_error(error, "sticking step")
-      call checks%is_true(report%converged, "sticking step converges")
+      scene = paper_c()
+      call start(scene, at, [0.1_rk, 0.3_rk], 5.0_rk, 0.0_rk, mesh, model, state)
+      call equilibrate(checks, model, mesh, 1.0e-3_rk, state, report, "sticking step")
       call checks%is_true(all(state%contact == state_stick), "all stick")
       ! At 45 degrees: sigma_n = -15 MPa, shear (sigma_yy - sigma_xx)/2 = 5 MPa
       call checks%is_close(maxval(abs(state%pressure - undrained_pressure)), 0.0_rk, 1.0e-1_rk, &
@@ -208,31 +149,24 @@ contains
    !> Closed frictional crack with dilation (catalogue 3.1, undrained elasticity): the slip
    !! converges with the cell size, and the tractions follow the law.
    subroutine slipping_fracture()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.05_rk, h = a/sqrt(2.0_rk), psi = tan(0.0174532925199433_rk)
-      real(rk), parameter :: at(2, 2) = reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], &
-                                                [2, 2])
+      real(rk), parameter :: at(2, 2, 1) = &
+                             reshape([1.0_rk - h, 1.0_rk - h, 1.0_rk + h, 1.0_rk + h], [2, 2, 1])
       real(rk) :: drop, slip, error_of(3), exact, modulus, x
       integer(ik) :: end, i, level, n
 
-      call paper_c(scene)
+      scene = paper_c()
       drop = (5.0e6_rk - 0.5_rk*(15.0e6_rk - undrained_pressure))/(1.0_rk + 0.5_rk*psi)
       ! Undrained plane-strain modulus E_u/(1-nu_u^2) = 2G/(1-nu_u), nu_u = 0.3104329765 (catalogue
       ! 4.3)
       modulus = 2.0_rk*40.0e9_rk/2.4_rk/(1.0_rk - 0.3104329765_rk)
       slip = 4.0_rk*drop*a/modulus
       do level = 1, 3
-         call make_mesh(at, 0.02_rk/2**(level - 1), 0.2_rk/2**(level - 1), mesh)
-         call start(mesh, scene, 0.5_rk, psi, model, state)
-         call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
-         call checks%no_error(error, "slipping step")
-         call checks%is_true(report%converged, "slipping step converges")
+         call start(scene, at, [0.02_rk, 0.2_rk]/2**(level - 1), 0.5_rk, psi, mesh, model, &
+                    state)
+         call equilibrate(checks, model, mesh, 1.0e-6_rk, state, report, "slipping step")
          call checks%is_true(all(state%contact == state_slip), "all slip")
          call checks%is_close(report%contact_residual, 0.0_rk, 1.0e-9_rk, "contact law")
          n = mesh%fracture%n_cells
@@ -261,29 +195,22 @@ contains
    !! the mean, with the other sign. A fracture that stays closed has this pressure, or that of its
    !! vapour if it is larger, and the contact traction of the stress across it; it is full.
    subroutine closed_at_vapour_pressure()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
-      real(rk), parameter :: at(2, 2) = reshape([0.7_rk, 1.0_rk, 1.3_rk, 1.0_rk], [2, 2])
+      real(rk), parameter :: at(2, 2, 1) = reshape([0.7_rk, 1.0_rk, 1.3_rk, 1.0_rk], [2, 2, 1])
       real(rk), parameter :: vapour(3) = [0.0_rk, -1.0e6_rk, -3.0e6_rk]
       real(rk), parameter :: rock = -undrained_pressure/3.0_rk
       real(rk) :: expected
       integer :: k
 
-      call paper_c(scene)
+      scene = paper_c()
       scene%sides(2)%traction = [20.0e6_rk, 0.0_rk]
-      call make_mesh(at, 0.1_rk, 0.3_rk, mesh)
       do k = 1, size(vapour)
          scene%fluid%vapour_pressure = vapour(k)
          expected = max(rock, vapour(k))
-         call start(mesh, scene, 0.5_rk, 0.0_rk, model, state)
-         call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
-         call checks%no_error(error, "initial state above vapour")
-         call checks%is_true(report%converged, "initial state above vapour converges")
+         call start(scene, at, [0.1_rk, 0.3_rk], 0.5_rk, 0.0_rk, mesh, model, state)
+         call equilibrate(checks, model, mesh, 1.0e-3_rk, state, report, &
+                          "initial state above vapour")
          call checks%is_close(maxval(abs(state%pressure - expected)), 0.0_rk, 1.0e-1_rk, &
                               "fracture pressure, not below vapour")
          call checks%is_close(maxval(abs(state%traction(1, :, :) + 10.0e6_rk - expected)), &
@@ -298,61 +225,44 @@ contains
    !! net tension s in undrained rock is 2 pi s a^2/E', whatever the pressure of the rock. The next
    !! step goes on from there.
    subroutine open_at_vapour_pressure()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.05_rk, tension = 1.0e6_rk
-      real(rk), parameter :: at(2, 2) = reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2])
+      real(rk), parameter :: at(2, 2, 1) = &
+                             reshape([1.0_rk - a, 1.0_rk, 1.0_rk + a, 1.0_rk], [2, 2, 1])
       real(rk) :: exact, volume
 
-      call paper_c(scene)
+      scene = paper_c()
       scene%sides(2)%traction = [20.0e6_rk, 0.0_rk]
       scene%sides(4)%traction = [0.0_rk, tension]
       scene%fluid%vapour_pressure = 0.0_rk
-      call make_mesh(at, 0.005_rk, 0.1_rk, mesh)
-      call start(mesh, scene, 0.5_rk, 0.0_rk, model, state)
-      call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
-      call checks%no_error(error, "open at vapour pressure")
-      call checks%is_true(report%converged, "open at vapour pressure: converges")
+      call start(scene, at, [0.005_rk, 0.1_rk], 0.5_rk, 0.0_rk, mesh, model, state)
+      call equilibrate(checks, model, mesh, 1.0e-6_rk, state, report, "open at vapour pressure")
       call checks%is_close(maxval(abs(state%pressure)), 0.0_rk, 1.0e-3_rk, "it has this pressure")
       exact = 2.0_rk*pi*tension*a**2*(1.0_rk - 0.3104329765_rk)/(2.0_rk*40.0e9_rk/2.4_rk)
       volume = sum(0.5_rk*sum(state%jump(1, :, :), dim=1)*model%condensed%length)
       ! 2 % of the cells (theory.md, tips), 1 % of the finite body
       call checks%is_close(volume, exact, 0.03_rk*exact, "volume against vapour pressure")
       call checks%is_close(maxval(abs(state%void)), 0.0_rk, 0.0_rk, "it is full")
-      call model%advance(mesh, 1.0e-6_rk, state, timers, report, error)
-      call checks%no_error(error, "the next step")
-      call checks%is_true(report%converged, "the next step converges")
+      call advance(checks, model, mesh, 1.0e-6_rk, state, report, "the next step")
       call checks%is_close(report%mass_error, 0.0_rk, 1.0e-12_rk*exact, "fluid mass")
       call checks%is_true(all(state%pressure >= 0.0_rk), "still not below vapour")
    end subroutine open_at_vapour_pressure
 
    !> Ten steps of injection: fluid is neither made nor lost.
    subroutine injection_conserves_mass()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(timers_t) :: timers
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
-      real(rk), parameter :: at(2, 2) = reshape([0.9_rk, 0.95_rk, 1.1_rk, 1.05_rk], [2, 2])
+      real(rk), parameter :: at(2, 2, 1) = reshape([0.9_rk, 0.95_rk, 1.1_rk, 1.05_rk], [2, 2, 1])
       real(rk), parameter :: dt = 1800.0_rk, rate = 5.0e-9_rk
       integer :: i
 
-      call paper_c(scene)
-      call make_mesh(at, 0.02_rk, 0.1_rk, mesh)
-      call start(mesh, scene, 0.5_rk, 0.0175_rk, model, state)
+      scene = paper_c()
+      call start(scene, at, [0.02_rk, 0.1_rk], 0.5_rk, 0.0175_rk, mesh, model, state)
       call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
       model%cells%injection(1) = rate
       do i = 1, 10
-         call model%advance(mesh, dt, state, timers, report, error)
-         call checks%no_error(error, "injection step")
-         call checks%is_true(report%converged, "injection step converges")
+         call advance(checks, model, mesh, dt, state, report, "injection step")
          call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*rate*dt, &
                               "fluid mass in injection")
          call checks%is_close(report%contact_residual, 0.0_rk, 1.0e-8_rk, &

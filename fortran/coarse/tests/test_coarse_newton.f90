@@ -8,7 +8,7 @@ program test_coarse_newton
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_open, state_stick
    use mesh_types, only: mesh_t
-   use sample_bodies, only: cut_square, porous_body
+   use sample_bodies, only: advance, cut_square, hold, porous_body, set_permeability
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -17,6 +17,9 @@ program test_coarse_newton
    real(rk), parameter :: opening_rate = 2.0e-5_rk  !< Q that opens a fracture [m2/s] ...
    real(rk), parameter :: opening_time = 20.0_rk  !< ... within this time [s]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(step_report_t) :: report
+   type(scene_t) :: scene
    type(timers_t) :: timers
 
    call test_cubic_law()
@@ -32,21 +35,14 @@ contains
    subroutine test_cubic_law()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: aperture = 1.0e-5_rk, rate = 1.0e-7_rk
       real(rk) :: slope
       integer(ik) :: i, n, step
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction(1) = -30.0e6_rk
-      scene%sides(4)%traction(2) = -30.0e6_rk
-      scene%material%permeability_xx = 1.0e-30_rk
-      scene%material%permeability_yy = 1.0e-30_rk
+      call hold(scene, [-30.0e6_rk, -30.0e6_rk])
+      call set_permeability(scene, 1.0e-30_rk)
       scene%discretization%newton_tolerance = 1.0e-13_rk
       call cut_square(checks, scene, inside, contact_law_t(friction=5.0_rk, dilation=0.0_rk), &
                       aperture, mesh, model, state)
@@ -54,9 +50,7 @@ contains
       n = mesh%fracture%n_cells
       model%cells%injection([1_ik, n]) = [rate, -rate]
       do step = 1, 3
-         call model%advance(mesh, 1.0_rk, state, timers, report, error)
-         call checks%no_error(error, "flow along a fracture")
-         call checks%is_true(report%converged, "flow along a fracture converges")
+         call advance(checks, model, mesh, 1.0_rk, state, report, "flow along a fracture")
       end do
       call checks%is_true(all(state%contact == state_stick), "the fracture stays closed")
       slope = 12.0_rk*scene%fluid%viscosity*rate/aperture**3
@@ -74,21 +68,14 @@ contains
    subroutine test_pressure_spreads()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: aperture = 1.0e-3_rk, rate = 1.0e-6_rk, dt = 10.0_rk
       real(rk) :: before, capacity, plane_bulk, rise
       integer(ik) :: i
 
       scene = porous_body()
-      scene%material%permeability_xx = 1.0e-15_rk
-      scene%material%permeability_yy = 1.0e-15_rk
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction(1) = -30.0e6_rk
-      scene%sides(4)%traction(2) = -25.0e6_rk
+      call set_permeability(scene, 1.0e-15_rk)
+      call hold(scene, [-30.0e6_rk, -25.0e6_rk])
       call cut_square(checks, scene, inside, contact_law_t(friction=5.0_rk, dilation=0.0_rk), &
                       aperture, mesh, model, state)
       call model%equilibrate(mesh, 1.0e-6_rk, state, timers, report, error)
@@ -96,8 +83,7 @@ contains
       before = state%pressure(1)
       ! Nothing happens by itself.
       do i = 1, 3
-         call model%advance(mesh, 1.0e3_rk, state, timers, report, error)
-         call checks%is_true(report%converged, "rest")
+         call advance(checks, model, mesh, 1.0e3_rk, state, report, "rest")
          call checks%is_close(maxval(abs(state%pressure - before)), 0.0_rk, 1.0e-8_rk*before, &
                               "rest: fracture pressure")
          call checks%is_close(maxval(abs(state%unknowns(3, :) - before)), 0.0_rk, &
@@ -105,12 +91,10 @@ contains
          call checks%is_close(maxval(abs(state%jump)), 0.0_rk, 1.0e-14_rk, "rest: no jump")
       end do
       model%cells%injection(2) = rate
-      call model%advance(mesh, dt, state, timers, report, error)
-      call checks%is_true(report%converged, "injection")
+      call advance(checks, model, mesh, dt, state, report, "injection")
       model%cells%injection = 0.0_rk
       do i = 1, 5
-         call model%advance(mesh, 1.0e4_rk, state, timers, report, error)
-         call checks%is_true(report%converged, "spreading")
+         call advance(checks, model, mesh, 1.0e4_rk, state, report, "spreading")
       end do
       call checks%is_true(all(state%contact == state_stick), "closed throughout")
       ! lambda + G in plane strain, E/(2 (1 + nu)(1 - 2 nu)).
@@ -131,12 +115,8 @@ contains
       type(scene_t), intent(out) :: scene
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction(1) = -10.0e6_rk
-      scene%sides(4)%traction(2) = -8.0e6_rk
-      scene%material%permeability_xx = 1.0e-18_rk
-      scene%material%permeability_yy = 1.0e-18_rk
+      call hold(scene, [-10.0e6_rk, -8.0e6_rk])
+      call set_permeability(scene, 1.0e-18_rk)
    end subroutine opening_scene
 
    !> Viscous fluid opens a fracture from one end; then it is drawn off there, and the fracture
@@ -144,10 +124,7 @@ contains
    subroutine test_quadratic_convergence()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
 
       call opening_scene(scene)
       scene%fluid%viscosity = 0.02_rk
@@ -198,17 +175,13 @@ contains
    subroutine test_vapour()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(error_t), allocatable :: error
       real(rk), parameter :: aperture = 1.0e-5_rk, bearable = 1.0e5_rk, dt = 1.0_rk
       real(rk) :: held, total
       integer :: k
 
       call opening_scene(scene)
-      scene%material%permeability_xx = 1.0e-30_rk
-      scene%material%permeability_yy = 1.0e-30_rk
+      call set_permeability(scene, 1.0e-30_rk)
       scene%fluid%compressibility = 0.0_rk
       scene%fluid%vapour_pressure = bearable
       scene%initial%pressure = 2.0e5_rk
@@ -232,8 +205,7 @@ contains
          call checks%is_close(report%mass_error, 0.0_rk, 1.0e-9_rk*total, "vapour: balance")
       end do
       model%cells%injection(2) = sum(model%condensed%length*state%aperture)/dt
-      call model%advance(mesh, dt, state, timers, report, error)
-      call checks%is_true(report%converged, "full: converged")
+      call advance(checks, model, mesh, dt, state, report, "full: converged")
       call checks%is_true(all(state%void <= 0.0_rk) .and. all(state%pressure > bearable), "full")
       model%cells%injection(2) = -2.0_rk*sum(model%condensed%length*state%aperture)/dt
       call model%advance(mesh, dt, state, timers, report, error)
@@ -263,10 +235,7 @@ contains
    subroutine test_refused_steps()
       type(mesh_t) :: mesh
       type(coarse_model_t) :: model
-      type(scene_t) :: scene
       type(state_t) :: before, state
-      type(error_t), allocatable :: error
-      type(step_report_t) :: report
 
       call opening_scene(scene)
       call cut_square(checks, scene, inside, contact_law_t(friction=0.5_rk, dilation=0.02_rk), &
@@ -280,8 +249,8 @@ contains
       model%cells%residual_aperture = -1.0e-3_rk
       call refuse(mesh, model, before, .true., "aperture")
       model%cells%residual_aperture = 2.0e-5_rk
-      call model%advance(mesh, opening_time, state, timers, report, error)
-      call checks%is_true(report%converged, "with the right values it goes on")
+      call advance(checks, model, mesh, opening_time, state, report, &
+                   "with the right values it goes on")
       call checks%is_true(.not. same(before, state), "and changes the state")
    end subroutine test_refused_steps
 

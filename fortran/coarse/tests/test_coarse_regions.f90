@@ -3,7 +3,6 @@
 program test_coarse_regions
    use base_kinds, only: ik, rk
    use coarse_regions, only: find_regions, fracture_end_region, regions_t, traction_face
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: corner_geometry, face_length
    use mesh_types, only: mesh_t, network_t
    use sample_bodies, only: mesh_square, shake, straight_network
@@ -106,9 +105,8 @@ contains
       type(mesh_t), intent(out) :: mesh
       type(regions_t), intent(out) :: regions
       character(len=*), intent(in) :: name
-      type(mesher_t) :: mesher
 
-      call mesh_square(checks, network, 0.2_rk, 0.5_rk, mesher, mesh)
+      call mesh_square(checks, network, 0.2_rk, 0.5_rk, mesh)
       call find_regions(mesh, regions)
       call check_regions(mesh, regions, name)
    end subroutine mesh_and_regions
@@ -197,14 +195,13 @@ contains
    !> sigma = sum of sign t (x) lever gives back any constant tensor; lengths and area are right.
    subroutine test_corner_geometry()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       real(rk), parameter :: stress(2, 2) = reshape([3.0_rk, -1.0_rk, 2.0_rk, 5.0_rk], [2, 2])
       real(rk) :: rebuilt(2, 2), traction(2), sign_out(2), length(2), lever(2, 2), area, total
       integer(ik) :: c, faces(2), j, k, n_wrong
       real(rk) :: worst
 
       call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk], &
-                                                        [2, 2, 1])), 0.2_rk, 0.5_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.2_rk, 0.5_rk, mesh)
       call shake(mesh)
       worst = 0.0_rk
       total = 0.0_rk
@@ -252,12 +249,11 @@ contains
    !> Both sides of a fracture share the traction of side +; other faces stay as they are.
    subroutine test_traction_face()
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       integer(ik) :: face, i
       real(rk) :: sign_out
 
       call mesh_square(checks, straight_network(reshape([0.5_rk, 0.7_rk, 1.4_rk, 1.2_rk], &
-                                                        [2, 2, 1])), 0.3_rk, 0.5_rk, mesher, mesh)
+                                                        [2, 2, 1])), 0.3_rk, 0.5_rk, mesh)
       do i = 1, mesh%fracture%n_cells
          face = mesh%fracture%cell_faces(2, i)
          sign_out = 1.0_rk

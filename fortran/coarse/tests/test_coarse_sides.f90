@@ -6,16 +6,17 @@ program test_coarse_sides
    use coarse_loads, only: add_point_forces, hold_points
    use coarse_matrix, only: matrix_t
    use coarse_regions, only: regions_t
-   use coarse_rock, only: new_rock, rock_t
-   use coarse_stencils, only: discretize, renew_sides
+   use coarse_rock, only: rock_t
+   use coarse_stencils, only: renew_sides
    use mesh_types, only: mesh_t
-   use sample_bodies, only: boxes, dense_matrix, linear_unknowns, porous_body, shake
+   use sample_bodies, only: action, boxes, hold, linear_unknowns, porous_body, prepare, shake
    use scene_types, only: point_load_t, restraint_t, scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: nothing(2, 2) = 0.0_rk
    type(checks_t) :: checks
+   type(scene_t) :: scene
    type(mesh_t) :: mesh
 
    mesh = boxes(5_ik)
@@ -28,30 +29,6 @@ program test_coarse_sides
    call checks%finish()
 
 contains
-
-   subroutine prepare(scene, rock, regions, matrix)
-      type(scene_t), intent(in) :: scene
-      type(rock_t), intent(out) :: rock
-      type(regions_t), intent(out) :: regions
-      type(matrix_t), intent(out) :: matrix
-      type(error_t), allocatable :: error
-
-      rock = new_rock(scene%material, scene%fluid)
-      call discretize(mesh, rock, scene%sides, regions, matrix, error)
-      call checks%no_error(error, "discretization")
-   end subroutine prepare
-
-   !> matrix*unknowns less the boundary's part, as (3, n_blocks).
-   function action(matrix, dt, unknowns) result(rows)
-      type(matrix_t), intent(in) :: matrix
-      real(rk), intent(in) :: dt, unknowns(:, :)
-      real(rk), allocatable :: rows(:, :)
-
-      allocate (rows(3, matrix%n_blocks))
-      rows = reshape(matmul(dense_matrix(matrix, dt), reshape(unknowns, [size(unknowns)])), &
-                     [3_ik, matrix%n_blocks]) - matrix%elastic_known
-      rows(3, :) = rows(3, :) - dt*matrix%flow_known
-   end function action
 
    !> Stress of a strain without shear: xx, yy [Pa].
    pure function stress_of(scene, strain) result(stress)
@@ -66,7 +43,6 @@ contains
 
    !> Uniform strain between rollers and springs, against which tractions press: exact.
    subroutine test_springs()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -77,13 +53,12 @@ contains
       scene = porous_body()
       gradient = reshape([strain(1), 0.0_rk, 0.0_rk, strain(2)], [2, 2])
       stress = stress_of(scene, strain)
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides(2)%spring(1) = spring(1)
       scene%sides(2)%traction(1) = stress(1) + spring(1)*2.0_rk*strain(1)
       scene%sides(4)%spring(2) = spring(2)
       scene%sides(4)%normal_traction = stress(2) + spring(2)*2.0_rk*strain(2)
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, [0.0_rk, 0.0_rk], gradient, 0.0_rk, &
                                                     [0.0_rk, 0.0_rk]))
       call checks%is_close(maxval(abs(rows(1:2, :))), 0.0_rk, 1.0e-12_rk*maxval(abs(stress)), &
@@ -92,7 +67,6 @@ contains
 
    !> Pure shear by tractions along the sides, with the body on their left.
    subroutine test_shear()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -103,7 +77,7 @@ contains
       scene = porous_body()
       ! On the left the normal points back and the way down, and so on.
       scene%sides%shear_traction = shear*[1.0_rk, 1.0_rk, -1.0_rk, -1.0_rk]
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       gradient = 0.0_rk
       gradient(1, 2) = shear/rock%shear(1)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, [0.0_rk, 0.0_rk], gradient, 0.0_rk, &
@@ -115,7 +89,6 @@ contains
    !> Fluid comes in on the right and leaves on the left, where the pressure is given: a linear
    !! pressure, and no cell gains any.
    subroutine test_inflow()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -128,7 +101,7 @@ contains
       scene%sides(1)%pressure = pressure
       scene%sides(2)%inflow = inflow
       slope = inflow*scene%fluid%viscosity/scene%material%permeability_xx
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       matrix%elastic = 0.0_rk
       rows = action(matrix, 1.0_rk, linear_unknowns(mesh, [0.0_rk, 0.0_rk], nothing, pressure, &
                                                     [slope, 0.0_rk]))
@@ -137,7 +110,6 @@ contains
 
    !> What is known of the sides, and how tractions and fluxes answer to it.
    subroutine test_other_values()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: anew, regions
       type(matrix_t) :: matrix, other
@@ -148,7 +120,7 @@ contains
       scene%sides(1)%displacement_given = .true.
       scene%sides(3)%pressure_given = .true.
       scene%sides(2)%spring(1) = 1.0e10_rk
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       scene%sides(1)%displacement = [1.0e-4_rk, -2.0e-4_rk]
       scene%sides(2)%traction = [-1.0e7_rk, 3.0e6_rk]
       scene%sides(3)%pressure = 2.0e6_rk
@@ -156,7 +128,7 @@ contains
       scene%sides(4)%normal_traction = -4.0e6_rk
       call renew_sides(mesh, rock, scene%sides, regions, matrix, error)
       call checks%no_error(error, "other values")
-      call prepare(scene, rock, anew, other)
+      call prepare(checks, mesh, scene, rock, anew, other)
       call checks%is_close(maxval(abs(matrix%elastic_known - other%elastic_known)), 0.0_rk, &
                            0.0_rk, "other values: forces")
       call checks%is_close(maxval(abs(matrix%flow_known - other%flow_known)), 0.0_rk, 0.0_rk, &
@@ -172,7 +144,6 @@ contains
    !> Cells around a node share a force; one in which a point lies has all of it; what holds a point
    !! bears what its displacement lacks of the given one.
    subroutine test_points()
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
@@ -195,7 +166,7 @@ contains
       call checks%is_close(sum(force(2, :)), 8.0_rk, 1.0e-14_rk, "forces: all of them, y")
      call checks%is_true(count(force(1, :) > 0.0_rk) == count(any(mesh%cell_nodes == node, dim=1)) &
                           .and. force(2, 7) >= 5.0_rk, "forces: on the cells there")
-      call prepare(scene, rock, regions, matrix)
+      call prepare(checks, mesh, scene, rock, regions, matrix)
       force = 0.0_rk
       call hold_points(scene, mesh, matrix, force)
       rows = action(matrix, 0.0_rk, linear_unknowns(mesh, move, nothing, 0.0_rk, [0.0_rk, 0.0_rk]))

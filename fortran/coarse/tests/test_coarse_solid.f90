@@ -22,6 +22,9 @@ program test_coarse_solid
    real(rk), parameter :: contrasts(5) = [1.0e-3_rk, 1.0_rk/3.0_rk, 1.0_rk, 3.0_rk, 1.0e3_rk]
    real(rk), parameter :: ratios(3) = [0.0_rk, 0.25_rk, 0.49_rk]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
+   type(scene_t) :: scene
    integer :: i, j, k
 
    do k = 1, size(ratios)
@@ -100,12 +103,9 @@ contains
    !> Cells away from the sides, whatever the direction of the interface.
    subroutine test_patch(contrast, nu, normal)
       real(rk), intent(in) :: contrast, nu(2), normal(2)
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: content(:), rows(:, :), stresses(:, :), tractions(:), unknowns(:, :)
      real(rk) :: biot(2), gradient(2, 2, 2), lack(2), lame(2), shear(2), storage(2), stress(2, 2, 2)
       real(rk) :: across, scale
@@ -164,12 +164,9 @@ contains
    !! the interface is the same in both rocks.
    subroutine test_loaded_sides(nu)
       real(rk), intent(in) :: nu(2)
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       type(regions_t) :: regions
       type(matrix_t) :: matrix
-      type(error_t), allocatable :: error
       real(rk), allocatable :: rows(:, :), stresses(:, :), tractions(:), unknowns(:, :)
       real(rk), allocatable :: values(:, :), gradients(:, :, :)
       real(rk) :: biot(2), gradient(2, 2, 2), lame(2), shear(2), storage(2), stress(3), young(2)
@@ -237,8 +234,6 @@ contains
 
    !> A cell that an outline cuts: layers across the pull are exact in the mean over the body.
    subroutine test_cut_cells()
-      type(mesh_t) :: mesh
-      type(scene_t) :: scene
       type(rock_t) :: rock
       real(rk) :: area(2), biot(2), lame(2), shear(2), storage(2), total
       integer(ik) :: c
@@ -266,8 +261,6 @@ contains
 
    !> Regions with nothing but another permeability leave the rest as it is without them.
    subroutine test_same_stiffness()
-      type(scene_t) :: scene
-      type(mesh_t) :: mesh
       type(rock_t) :: rock
 
       mesh = boxes(4_ik)

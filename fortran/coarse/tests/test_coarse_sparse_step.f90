@@ -11,15 +11,16 @@ program test_coarse_sparse_step
    use coarse_model, only: coarse_model_t, new_state
    use coarse_state, only: state_t, step_report_t
    use contact_law, only: contact_law_t, state_open, state_slip, state_stick
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t, network_t
-   use sample_bodies, only: mesh_square, porous_body, straight_network, uniform_cells
+   use sample_bodies, only: hold, mesh_square, porous_body, straight_network, uniform_cells
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 
    real(rk), parameter :: same = 1.0e-9_rk  !< relative
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
 
    call compare("apart", straight_network(lines([0.4_rk, 0.5_rk, 0.9_rk, 0.7_rk, &
                                                  1.2_rk, 1.5_rk, 1.6_rk, 1.1_rk, &
@@ -45,7 +46,6 @@ contains
       type(network_t), intent(in) :: network
       integer(ik), intent(in) :: joints  !< expected
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(scene_t) :: scene
       type(coarse_model_t) :: full, sparse
       type(state_t) :: by_full, by_sparse
@@ -54,11 +54,8 @@ contains
       logical :: has_occurred(state_stick:state_open)
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      scene%sides(2)%traction(1) = -20.0e6_rk
-      scene%sides(4)%traction(2) = -10.0e6_rk
-      call mesh_square(checks, network, 0.08_rk, 0.3_rk, mesher, mesh)
+      call hold(scene, [-20.0e6_rk, -10.0e6_rk])
+      call mesh_square(checks, network, 0.08_rk, 0.3_rk, mesh)
       scene%discretization%condensation = "full"
       call start(mesh, scene, full, by_full)
       scene%discretization%condensation = "sparse"
@@ -100,8 +97,6 @@ contains
       type(scene_t), intent(in) :: scene
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(out) :: state
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       integer(ik) :: i
 
       model%cells = uniform_cells(mesh, contact_law_t(friction=0.5_rk, dilation=0.02_rk), 1.0e-4_rk)
@@ -119,8 +114,6 @@ contains
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(out) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
       call model%equilibrate(mesh, 1.0e-3_rk, state, timers, report, error)
       call checks%no_error(error, "equilibrium")
@@ -132,8 +125,6 @@ contains
       type(coarse_model_t), intent(inout) :: model
       type(state_t), intent(inout) :: state
       type(step_report_t), intent(out) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
       call model%advance(mesh, dt, state, timers, report, error)
       call checks%no_error(error, "step")

@@ -10,9 +10,9 @@ program test_coarse_tips
    use coarse_state, only: state_t, step_report_t
    use coarse_tips, only: tip_springs
    use contact_law, only: contact_law_t
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
-   use sample_bodies, only: load_sides, mesh_square, porous_body, straight_network, uniform_cells
+   use sample_bodies, only: advance, equilibrate, hold, load_sides, mesh_square, porous_body, &
+                            set_permeability, straight_network, uniform_cells
    use scene_types, only: scene_t
    use testing_checks, only: checks_t
    implicit none(type, external)
@@ -20,6 +20,10 @@ program test_coarse_tips
    real(rk), parameter :: a = 0.05_rk  !< half-length of the mesh's crack [m]
    integer(ik), parameter :: n_cells = 20
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(step_report_t) :: report
+   type(scene_t) :: scene
 
    call test_lengths(.true., 0.2_rk)
    call test_lengths(.true., 0.45_rk)
@@ -38,14 +42,9 @@ contains
       real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
       real(rk), parameter :: stress = 5.0e6_rk  ! released [Pa]
       real(rk), parameter :: cell = 2.0_rk*a/n_cells  ! [m]
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk) :: half_length, modulus, volume
       integer(ik) :: component
       integer :: k
@@ -61,11 +60,10 @@ contains
       else  ! frictionless, at 45 degrees
          call load_sides(scene, [-4.0_rk*stress, -2.0_rk*stress, 0.0_rk])
       end if
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       if (.not. opens) scene%initial%pressure = 0.1_rk*stress
       call mesh_square(checks, straight_network(reshape(1.0_rk + a*sqrt(0.5_rk)*[-1, -1, 1, 1], &
-                                                        [2, 2, 1])), cell, 0.2_rk, mesher, mesh)
+                                                        [2, 2, 1])), cell, 0.2_rk, mesh)
       call checks%is_true(mesh%fracture%n_cells == n_cells, "cells along the crack")
       model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
       call model%set_mesh(mesh, scene, timers, error)
@@ -75,9 +73,7 @@ contains
       do k = 1, size(ahead)
          model%ends%ahead = ahead(k)*cell
          call new_state(mesh, model%cells, scene%initial, model, state)
-         call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
-         call checks%no_error(error, "a crack")
-         call checks%is_true(report%converged, "a crack")
+         call equilibrate(checks, model, mesh, 1.0_rk, state, report, "a crack")
          volume = abs(sum(0.5_rk*sum(state%jump(component, :, :), dim=1)*model%condensed%length))
          half_length = sqrt(volume*modulus/(2.0_rk*pi*stress))
          ! In cells; 0.03 is what meshes differ by, 0.02 the body's size and the fit.
@@ -94,26 +90,19 @@ contains
       real(rk), parameter :: ahead(7) = [0.0_rk, 0.1_rk, 0.35_rk, 0.6_rk, 0.9_rk, 1.0_rk, 1.4_rk]
       real(rk), parameter :: a = 0.1_rk, cell = 2.0_rk*a/10.0_rk, radius = 1.0787052023767587_rk
       real(rk), parameter :: stress = -1.0e6_rk  ! keeps it closed [Pa]
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk) :: half_length, rate
       integer :: k
 
       scene = porous_body()
-      scene%material%permeability_xx = 1.0e-15_rk
-      scene%material%permeability_yy = 1.0e-15_rk
+      call set_permeability(scene, 1.0e-15_rk)
       call load_sides(scene, [stress, stress, 0.0_rk])
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
+      call hold(scene)
       scene%sides%pressure_given = .true.
       call mesh_square(checks, straight_network(reshape(1.0_rk + a*sqrt(0.5_rk)*[-1, -1, 1, 1], &
-                                                        [2, 2, 1])), cell, 0.04_rk, mesher, mesh)
+                                                        [2, 2, 1])), cell, 0.04_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(), 1.0e-3_rk)
       rate = 1.0e-8_rk  ! [m2/s]
       model%cells%injection(5) = rate
@@ -122,9 +111,7 @@ contains
       do k = 1, size(ahead)
          model%ends%ahead = ahead(k)*cell
          call new_state(mesh, model%cells, scene%initial, model, state)
-         call model%advance(mesh, 1.0e9_rk, state, timers, report, error)
-         call checks%no_error(error, "a crack")
-         call checks%is_true(report%converged, "a crack")
+         call advance(checks, model, mesh, 1.0e9_rk, state, report, "a crack")
          half_length = 2.0_rk*radius/exp(2.0_rk*pi*model%rock%mobility*state%pressure(5)/rate)
          ! In cells, as above.
          call checks%is_close(half_length/cell, a/cell - ahead(k), 0.05_rk, "length that leaks")
@@ -143,28 +130,21 @@ contains
                                                      0.6_rk + a, 1.0_rk + gap, &
                                                      1.4_rk - a, 1.0_rk, 1.4_rk + a, 1.0_rk], &
                                                      [2, 2, 3])
-      type(scene_t) :: scene
       type(mesh_t) :: mesh
-      type(mesher_t) :: mesher
       type(coarse_model_t) :: model
       type(state_t) :: state
-      type(step_report_t) :: report
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), allocatable :: spring(:)
       real(rk) :: lowest
       integer(ik) :: at, cell, k, tip
 
       scene = porous_body()
-      scene%sides(1)%displacement_given(1) = .true.
-      scene%sides(3)%displacement_given(2) = .true.
-      call mesh_square(checks, straight_network(ends), 0.02_rk, 0.3_rk, mesher, mesh)
+      call hold(scene)
+      call mesh_square(checks, straight_network(ends), 0.02_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=0.5_rk, dilation=0.0_rk), 1.0e-4_rk)
       call model%set_mesh(mesh, scene, timers, error)
       call checks%no_error(error, "discretization of three cracks")
       call new_state(mesh, model%cells, scene%initial, model, state)
-      call model%equilibrate(mesh, 1.0_rk, state, timers, report, error)
-      call checks%is_true(report%converged, "three cracks")
+      call equilibrate(checks, model, mesh, 1.0_rk, state, report, "three cracks")
       spring = tip_springs(model%ends, model%rock, mesh, model%condensed)
       call checks%is_true(mesh%fracture%n_tips == 6, "six tips")
       do tip = 1, mesh%fracture%n_tips

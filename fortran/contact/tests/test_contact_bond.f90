@@ -1,22 +1,20 @@
 !> Bonds: derivatives, states, history, the energy that breaking takes, and bodies that a bond lets
 !! go of at once.
 program test_contact_bond
-   use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t, state_name, state_open, state_slip, state_stick
+   use base_kinds, only: rk
+   use contact_law, only: contact_law_t, state_open, state_slip, state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
-   use contact_point, only: contact_equations, contact_equations_t, contact_residual
-   use testing_checks, only: checks_t
+   use contact_point, only: contact_residual
+   use sample_points, only: checks, compare_slopes, expect, point_on_springs, stiffness
    implicit none(type, external)
 
-   real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]
    real(rk), parameter :: mpa = 1.0e6_rk, um = 1.0e-6_rk
    !> 2 MPa of tension over 10 um, 4 MPa of shear over 20 um.
    type(contact_law_t), parameter :: bonded = contact_law_t(friction=0.5_rk, tension=2.0_rk*mpa, &
                                                             cohesion=4.0_rk*mpa, &
                                                             wear_by_opening=1.0e5_rk, &
                                                             wear_by_slip=5.0e4_rk)
-   type(checks_t) :: checks
 
    call test_derivatives()
    call test_admissible()
@@ -32,61 +30,38 @@ contains
    subroutine test_derivatives()
       type(contact_law_t) :: dilating, joint, opened, tough
 
-      call compare(bonded, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
-      call compare(bonded, [1.0_rk, 1.0_rk]*mpa, [0.1_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
-      call compare(bonded, [-5.0_rk, 7.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare(bonded, [1.0_rk, -7.0_rk]*mpa, [-0.3_rk, -4.0_rk]*um, -2.0_rk*um, state_slip)
-      call compare(bonded, [1.5_rk, 1.0_rk]*mpa, [3.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
-      call compare(bonded, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
-      call compare(bonded, [1.5_rk, -5.0_rk]*mpa, [13.0_rk, -4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(bonded, [-5.0_rk, 1.0_rk]*mpa, [0.3_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
+      call compare_slopes(bonded, [1.0_rk, 1.0_rk]*mpa, [0.1_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
+      call compare_slopes(bonded, [-5.0_rk, 7.0_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(bonded, [1.0_rk, -7.0_rk]*mpa, [-0.3_rk, -4.0_rk]*um, -2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(bonded, [1.5_rk, 1.0_rk]*mpa, [3.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(bonded, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(bonded, [1.5_rk, -5.0_rk]*mpa, [13.0_rk, -4.0_rk]*um, 2.0_rk*um, &
+                          state_open)
       opened = bonded%aged(1.0_rk*um, 4.0_rk*um)
-      call compare(opened, [0.5_rk, 4.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
-      call compare(opened, [0.5_rk, 4.0_rk]*mpa, [5.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
-      call compare(opened, [-1.5_rk, 6.0_rk]*mpa, [0.1_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(opened, [0.5_rk, 4.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(opened, [0.5_rk, 4.0_rk]*mpa, [5.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(opened, [-1.5_rk, 6.0_rk]*mpa, [0.1_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
       joint = bonded
       joint%compliance = 1.0e-11_rk
       joint%closure_end = 1.0e4_rk
-      call compare(joint, [-5.0_rk, 7.5_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare(joint, [1.0_rk, 6.5_rk]*mpa, [20.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(joint, [-5.0_rk, 7.5_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(joint, [1.0_rk, 6.5_rk]*mpa, [20.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
       dilating = bonded
       dilating%dilation = 0.1_rk
       dilating%weakening = 4.0e4_rk
       dilating%weakening_slip = 1.0e-5_rk
-      call compare(dilating, [-5.0_rk, 7.5_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare(dilating, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(dilating, [-5.0_rk, 7.5_rk]*mpa, [0.3_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(dilating, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_open)
       tough = bonded
       tough%wears = .false.
-      call compare(tough, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(tough, [1.5_rk, 5.0_rk]*mpa, [3.0_rk, 4.0_rk]*um, 2.0_rk*um, state_open)
    end subroutine test_derivatives
-
-   subroutine compare(law, traction, jump, slip_before, expected)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: traction(2), jump(2), slip_before
-      integer(ik), intent(in) :: expected
-      real(rk), parameter :: step(4) = [3.0e2_rk, 3.0e2_rk, 1.0e-10_rk, 1.0e-10_rk]
-      real(rk) :: difference(2), ends(2, 2), slope(2, 4), x(4)
-      integer(ik) :: way
-      type(contact_equations_t) :: found
-      integer :: k, side
-
-      way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      slope = reshape([found%by_traction, found%by_jump], [2, 4])
-      call checks%is_true(found%state == expected, "state: "//state_name(found%state)//" for " &
-                          //state_name(expected))
-      do k = 1, 4
-         do side = 1, 2
-            x = [traction, jump]
-            x(k) = x(k) + step(k)*merge(-1.0_rk, 1.0_rk, side == 1)
-            way = 0
-            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, found)
-            ends(:, side) = found%residual
-         end do
-         difference = (ends(:, 2) - ends(:, 1))/(2.0_rk*step(k))
-         call checks%is_close(maxval(abs(difference - slope(:, k)))*step(k), 0.0_rk, 1.0e-6_rk, &
-                              "derivative in state "//state_name(expected))
-      end do
-   end subroutine compare
 
    !> What fulfils the law: b = 0.7 after 3 um of opening, 0.9 after 2 um of slip.
    subroutine test_admissible()
@@ -105,22 +80,6 @@ contains
       call expect(bonded%aged(0.0_rk, 5.0_rk*um), [-1.0_rk, 0.0_rk]*mpa, [0.0_rk, 0.0_rk]*um, &
                   0.0_rk, state_stick)
    end subroutine test_admissible
-
-   subroutine expect(law, traction, jump, slip_before, expected)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: traction(2), jump(2), slip_before
-      integer(ik), intent(in) :: expected
-      integer(ik) :: way
-      type(contact_equations_t) :: found
-
-      way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      call checks%is_true(found%state == expected, "admissible: "//state_name(found%state) &
-                          //" for "//state_name(expected))
-      call checks%is_close(maxval(abs(found%residual)), 0.0_rk, 1.0e-8_rk, "equations")
-      call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), 0.0_rk, &
-                           1.0e-8_rk, "law")
-   end subroutine expect
 
    !> Beyond what the bond bears.
    subroutine test_violations()
@@ -241,17 +200,7 @@ contains
       type(iteration_report_t) :: report
       real(rk) :: x(2)
 
-      pairs%n = 1
-      pairs%stiffness = stiffness
-      pairs%condensed = reshape([spring, 0.0_rk, 0.0_rk, spring], [2, 2])
-      pairs%length = [1.0_rk]
-      pairs%law = [law]
-      pairs%slip_given = [.false.]
-      pairs%load = load
-      pairs%slip_before = [slip_before]
-      allocate (pairs%given(1), pairs%traction(2, 1), pairs%residual(2), source=0.0_rk)
-      allocate (pairs%slip_sign(1), source=0_ik)
-      allocate (pairs%state(1), source=-1_ik)
+      pairs = point_on_springs(law, load, spring, slip_before, 1.0_rk)
       x = stiffness*[0.0_rk, slip_before]
       call iterate(pairs, x, iteration_settings_t(), report)
       call checks%is_true(report%outcome == outcome_converged, "converges")

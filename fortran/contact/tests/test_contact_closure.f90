@@ -2,15 +2,13 @@
 !! method on one point between springs from far away, in any units.
 program test_contact_closure
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t, is_same, is_valid, state_name, state_open, state_slip, &
-                          state_stick
+   use contact_law, only: contact_law_t, is_same, is_valid, state_open, state_slip, state_stick
    use contact_newton, only: iterate, iteration_report_t, iteration_settings_t, outcome_converged
    use contact_pairs, only: contact_pairs_t
-   use contact_point, only: contact_equations, contact_equations_t, contact_residual
-   use testing_checks, only: checks_t
+   use contact_point, only: contact_residual
+   use sample_points, only: checks, compare_slopes, expect, point_on_springs, stiffness
    implicit none(type, external)
 
-   real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]
    real(rk), parameter :: initial = 1.0e11_rk  !< k_ni [Pa/m]
    real(rk), parameter :: largest = 1.0e-4_rk  !< d_max [m]
    !> Soft against c, and stiff against it.
@@ -21,7 +19,6 @@ program test_contact_closure
                                                            compliance=1.0e-14_rk, &
                                                            closure_end=1.0e6_rk)
    real(rk), parameter :: mpa = 1.0e6_rk, um = 1.0e-6_rk
-   type(checks_t) :: checks
 
    call test_hyperbola()
    call test_inverse()
@@ -84,44 +81,18 @@ contains
    end subroutine test_inverse
 
    subroutine test_derivatives()
-      call compare(joint, [-5.0_rk, 1.0_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
-      call compare(joint, [-5.0_rk, 3.0_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
-      call compare(joint, [-5.0_rk, -3.0_rk]*mpa, [-30.0_rk, -4.0_rk]*um, -2.0_rk*um, state_slip)
-      call compare(joint, [-1.0_rk, 0.3_rk]*mpa, [30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
-      call compare(joint, [2.0_rk, 0.3_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
-      call compare(stiff, [-5.0_rk, 1.0_rk]*mpa, [0.1_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
-      call compare(stiff, [-5.0_rk, 3.0_rk]*mpa, [-0.1_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
+      call compare_slopes(joint, [-5.0_rk, 1.0_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
+      call compare_slopes(joint, [-5.0_rk, 3.0_rk]*mpa, [-30.0_rk, 4.0_rk]*um, 2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(joint, [-5.0_rk, -3.0_rk]*mpa, [-30.0_rk, -4.0_rk]*um, -2.0_rk*um, &
+                          state_slip)
+      call compare_slopes(joint, [-1.0_rk, 0.3_rk]*mpa, [30.0_rk, 2.0_rk]*um, 2.0_rk*um, state_open)
+      call compare_slopes(joint, [2.0_rk, 0.3_rk]*mpa, [-30.0_rk, 2.0_rk]*um, 2.0_rk*um, &
+                          state_stick)
+      call compare_slopes(stiff, [-5.0_rk, 1.0_rk]*mpa, [0.1_rk, 2.0_rk]*um, 2.0_rk*um, state_stick)
+      call compare_slopes(stiff, [-5.0_rk, 3.0_rk]*mpa, [-0.1_rk, 4.0_rk]*um, 2.0_rk*um, state_slip)
    end subroutine test_derivatives
-
-   subroutine compare(law, traction, jump, slip_before, expected)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: traction(2), jump(2), slip_before
-      integer(ik), intent(in) :: expected
-      real(rk), parameter :: step(4) = [3.0e2_rk, 3.0e2_rk, 1.0e-10_rk, 1.0e-10_rk]
-      real(rk) :: difference(2), ends(2, 2), slope(2, 4), x(4)
-      integer(ik) :: way
-      type(contact_equations_t) :: found
-      integer :: k, side
-
-      way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      slope = reshape([found%by_traction, found%by_jump], [2, 4])
-      call checks%is_true(found%state == expected, "state: "//state_name(found%state)//" for " &
-                          //state_name(expected))
-      do k = 1, 4
-         do side = 1, 2
-            x = [traction, jump]
-            x(k) = x(k) + step(k)*merge(-1.0_rk, 1.0_rk, side == 1)
-            way = 0
-            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, found)
-            ends(:, side) = found%residual
-            call checks%is_true(found%state == expected, "difference within one state")
-         end do
-         difference = (ends(:, 2) - ends(:, 1))/(2.0_rk*step(k))
-         call checks%is_close(maxval(abs(difference - slope(:, k)))*step(k), 0.0_rk, 1.0e-6_rk, &
-                              "derivative in state "//state_name(expected))
-      end do
-   end subroutine compare
 
    !> Pressed with 4 MPa these faces are 4/(1e5 + 4e4) m nearer; with slip they dilate as ever.
    subroutine test_admissible()
@@ -136,22 +107,6 @@ contains
                   state_slip)
       call expect(joint, [0.0_rk, 0.0_rk], [0.3e-6_rk, -2.5e-6_rk], 1.0e-6_rk, state_open)
    end subroutine test_admissible
-
-   subroutine expect(law, traction, jump, slip_before, expected)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: traction(2), jump(2), slip_before
-      integer(ik), intent(in) :: expected
-      integer(ik) :: way
-      type(contact_equations_t) :: found
-
-      way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      call checks%is_true(found%state == expected, "admissible: "//state_name(found%state) &
-                          //" for "//state_name(expected))
-      call checks%is_close(maxval(abs(found%residual)), 0.0_rk, 1.0e-8_rk, "equations")
-      call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), 0.0_rk, &
-                           1.0e-8_rk, "law")
-   end subroutine expect
 
    !> Too far closed for the pressure, and not far enough, seen through two springs in a row.
    subroutine test_violations()
@@ -205,18 +160,9 @@ contains
       type(iteration_report_t) :: report
       real(rk) :: b, closed, x(2)
 
-      pairs%n = 1
-      pairs%stiffness = stiffness/unit
-      pairs%condensed = reshape([spring, 0.0_rk, 0.0_rk, spring], [2, 2])/unit
-      pairs%length = [1.0_rk]
-      pairs%law = [contact_law_t(friction=0.5_rk, compliance=unit/initial, &
-                                 closure_end=1.0_rk/largest)]
-      pairs%slip_given = [.false.]
-      pairs%load = [-load, shear*load]/unit
-      allocate (pairs%slip_before(1), pairs%given(1), pairs%traction(2, 1), source=0.0_rk)
-      allocate (pairs%residual(2), source=0.0_rk)
-      allocate (pairs%slip_sign(1), source=0_ik)
-      allocate (pairs%state(1), source=-1_ik)
+      pairs = point_on_springs(contact_law_t(friction=0.5_rk, compliance=unit/initial, &
+                                             closure_end=1.0_rk/largest), &
+                               load*[-1.0_rk, shear], spring, 0.0_rk, unit)
       x = 0.0_rk
       call iterate(pairs, x, iteration_settings_t(), report)
       call checks%is_true(report%outcome == outcome_converged, "converges")

@@ -2,13 +2,11 @@
 program test_contact_law
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, rk
-   use contact_law, only: contact_law_t, is_same, is_valid, state_name, state_open, state_slip, &
-                          state_stick
+   use contact_law, only: contact_law_t, is_same, is_valid, state_open, state_slip, state_stick
    use contact_point, only: contact_equations, contact_equations_t, contact_residual
-   use testing_checks, only: checks_t
+   use sample_points, only: checks, compare_slopes, expect, stiffness
    implicit none(type, external)
 
-   real(rk), parameter :: stiffness = 2.0e12_rk  !< c [Pa/m]
    type(contact_law_t), parameter :: rough = contact_law_t(friction=0.5_rk, dilation=0.0_rk)
    type(contact_law_t), parameter :: dilating = contact_law_t(friction=0.5_rk, dilation=0.1_rk)
    type(contact_law_t), parameter :: smooth = contact_law_t(friction=0.0_rk, dilation=0.0_rk)
@@ -22,7 +20,6 @@ program test_contact_law
                                      contact_law_t(friction=0.6_rk, weakening=4.0e4_rk, &
                                                    weakening_slip=1.0e-5_rk, dilation=0.1_rk, &
                                                    dilation_end=1.0e6_rk/3.0_rk)
-   type(checks_t) :: checks
 
    call test_derivatives()
    call test_admissible()
@@ -85,38 +82,6 @@ contains
       call compare_slopes(tied, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 3.0_rk]*um, 2.0_rk*um, state_slip)
       call compare_slopes(tied, [2.0_rk, 0.3_rk]*mpa, [1.0_rk, 1.0_rk]*um, 2.0_rk*um, state_slip)
    end subroutine test_derivatives
-
-   !> The equations are piecewise linear, so that central differences are exact up to rounding.
-   subroutine compare_slopes(law, traction, jump, slip_before, expected)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: traction(2), jump(2), slip_before
-      integer(ik), intent(in) :: expected
-
-      real(rk), parameter :: step(4) = [1.0e3_rk, 1.0e3_rk, 1.0e-9_rk, 1.0e-9_rk]
-      real(rk) :: slope(2, 4), difference(2), x(4), ends(2, 2)
-      integer(ik) :: way
-      type(contact_equations_t) :: found
-      integer :: k, side
-
-      way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      slope = reshape([found%by_traction, found%by_jump], [2, 4])
-      call checks%is_true(found%state == expected, "state: "//state_name(found%state)//" for " &
-                          //state_name(expected))
-      do k = 1, 4
-         do side = 1, 2
-            x = [traction, jump]
-            x(k) = x(k) + step(k)*merge(-1.0_rk, 1.0_rk, side == 1)
-            way = 0
-            call contact_equations(law, stiffness, x(1:2), x(3:4), slip_before, way, found)
-            ends(:, side) = found%residual
-            call checks%is_true(found%state == expected, "difference within one state")
-         end do
-         difference = (ends(:, 2) - ends(:, 1))/(2.0_rk*step(k))
-         call checks%is_close(maxval(abs(difference - slope(:, k)))*step(k), 0.0_rk, 1.0e-6_rk, &
-                              "derivative in state "//state_name(expected))
-      end do
-   end subroutine compare_slopes
 
    !> States that fulfil the law: no residual of either kind, and the name that the law gives them.
    subroutine test_admissible()
@@ -195,24 +160,6 @@ contains
       call checks%is_close(jump(2), -slip, 1.0e-9_rk*slip, "as far as the springs let it")
       call checks%is_close(jump(1), law%dilation*slip, 1.0e-9_rk*slip, "and opens")
    end subroutine test_slip_of_rounding
-
-   subroutine expect(law, traction, jump, slip_before, expected)
-      type(contact_law_t), intent(in) :: law
-      real(rk), intent(in) :: traction(2), jump(2), slip_before
-      integer(ik), intent(in) :: expected
-
-      integer(ik) :: way
-      type(contact_equations_t) :: found
-
-      way = 0
-      call contact_equations(law, stiffness, traction, jump, slip_before, way, found)
-      call checks%is_true(found%state == expected, "admissible: "//state_name(found%state) &
-                          //" for "//state_name(expected))
-      call checks%is_close(maxval(abs(found%residual)), 0.0_rk, 1.0e-8_rk, "equations of " &
-                           //state_name(expected))
-      call checks%is_close(contact_residual(law, stiffness, traction, jump, slip_before), &
-                           0.0_rk, 1.0e-8_rk, "law in state "//state_name(expected))
-   end subroutine expect
 
    !> Each way to break the law by itself: both measures see it, and contact_residual has its size.
    subroutine test_violations()

@@ -16,6 +16,8 @@ program test_fine_contact
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 0.8_rk, .false.)
    real(rk), parameter :: pressure = 1.0e6_rk, slip = 3.0e-5_rk
    real(rk), parameter :: angle = 0.4_rk  ! of the cut with the x axis [rad]
@@ -59,12 +61,10 @@ contains
       real(rk), intent(in) :: slip_before  !< [m]
       integer(ik), intent(in) :: state
       real(rk), parameter :: along = -3.0e6_rk
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       real(rk) :: stress(3)
       integer(ik) :: cell, k
@@ -120,7 +120,6 @@ contains
    subroutine set_crack(model, boxes)
       type(fine_model_t), intent(inout) :: model
       integer(ik), intent(in) :: boxes  !< on the half crack
-      type(mesh_t) :: mesh
       type(error_t), allocatable :: error
 
       associate (b => boxes)
@@ -162,7 +161,6 @@ contains
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: difference, whole, exact, weight
       integer(ik) :: cell, k
@@ -218,7 +216,6 @@ contains
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), slipped(:, :)
 
       call set_crack(model, 4_ik)
@@ -247,12 +244,10 @@ contains
    !> Bending: the crack opens from -a/3 on, where the tractions fade and the faces part smoothly.
    subroutine partly_open()
       real(rk), parameter :: slope = 1.0e6_rk, bound = -1.0_rk/3.0_rk
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: exact(2), opposite(2), whole, difference, place, size_h, weight
       integer(ik) :: cell, k, node, wrong
@@ -301,13 +296,11 @@ contains
    !! friction it is at rest; pulled upwards, nothing holds it, and that is said.
    subroutine resting_block()
       real(rk), parameter :: weight = 26000.0_rk
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_boundary_t) :: boundary
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: carried
       integer(ik) :: cell

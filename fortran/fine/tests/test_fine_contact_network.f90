@@ -23,6 +23,7 @@ program test_fine_contact_network
    integer(ik), parameter :: left = 1, right = 2, bottom = 3, top = 4
    real(rk), parameter :: half(2) = [3.5_rk, 2.5_rk]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
    type(fine_model_t) :: model
    type(fine_boundary_t) :: boundary
    integer(ik) :: seen(0:2) = 0
@@ -43,7 +44,6 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
 
       ! The second fracture has a kink, the third ends on the first, which the fourth crosses.
       network = network_t(first=[1_ik, 3_ik, 6_ik, 8_ik, 10_ik], s_start=spread(0.0_rk, 1, 4), &
@@ -78,7 +78,6 @@ contains
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: exact(2, model%mesh%n_nodes), tau(2), normal(2), across(2), apart
       integer(ik) :: cell, k, node
@@ -127,7 +126,6 @@ contains
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: stress(3), direction
       integer(ik) :: state, step

@@ -26,6 +26,7 @@ program test_fine_contact_random
                                       contact_law_t(0.6_rk, 0.1_rk), contact_law_t(1.0_rk), &
                                       contact_law_t(1.5_rk, 0.3_rk), contact_law_t(2.0_rk)]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
    type(fine_model_t) :: model
    integer(ik) :: seen(0:2) = 0, n_solved = 0, n_failed = 0, n_iterations = 0, n_most = 0
    integer(ik) :: n_restarted = 0, n_pairs_most = 0
@@ -77,7 +78,6 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       real(rk) :: line(2, 3), angle
       integer(ik) :: k, n_points
 
@@ -187,7 +187,6 @@ contains
       type(fine_boundary_t) :: boundary
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: stress(3)
       integer(ik) :: state, step

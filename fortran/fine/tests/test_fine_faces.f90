@@ -13,6 +13,8 @@ program test_fine_faces
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
    real(rk), parameter :: angle = 0.4_rk  ! of the crack with the x axis [rad]
    real(rk), parameter :: tau(2) = [cos(angle), sin(angle)], n(2) = [-sin(angle), cos(angle)]
    real(rk), parameter :: stress(3) = [-3.0e6_rk, -5.0e6_rk, 1.5e6_rk]
@@ -43,7 +45,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
 
       call cut_block(model, exact, turning)
@@ -64,7 +65,6 @@ contains
       type(fine_model_t), intent(inout) :: model
       real(rk), allocatable, intent(out) :: exact(:, :)
       real(rk), intent(in) :: turning
-      type(mesh_t) :: mesh
       type(error_t), allocatable :: error
       integer(ik) :: cell, k
 
@@ -151,7 +151,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads, jumps
       type(face_conditions_t) :: conditions
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
 
       call cut_block(model, exact, 0.0_rk)
@@ -174,11 +173,9 @@ contains
 
    !> A crack with two tips held together by zero jumps is no crack.
    subroutine inside()
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: exact(2), largest
       integer(ik) :: node
@@ -207,7 +204,6 @@ contains
    subroutine refusals()
       type(fine_model_t) :: model
       type(face_conditions_t) :: conditions
-      type(error_t), allocatable :: error
       real(rk), allocatable :: exact(:, :)
 
       call cut_block(model, exact, 0.0_rk)

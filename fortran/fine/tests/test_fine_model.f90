@@ -16,6 +16,8 @@ program test_fine_model
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesh_t) :: mesh
 
    call patch_test(.false.)
    call patch_test(.true.)
@@ -35,10 +37,8 @@ contains
    subroutine patch_test(plane_stress)
       logical, intent(in) :: plane_stress
       real(rk), parameter :: stress(3) = [-3.0e6_rk, -5.0e6_rk, 1.5e6_rk], pressure = 2.0e6_rk
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       real(rk) :: found(2, 2), largest
       integer(ik) :: node, cell
@@ -80,12 +80,10 @@ contains
       real(rk), parameter :: pore_pressure = 2.0e6_rk, nothing = 0.0_rk
       type(elasticity_t) :: rock(2)
       type(rocks_t) :: rocks
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(recovery_t) :: recovery
       type(energy_error_t) :: estimate
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       real(rk) :: found(2, 2), gradient(2, 2, 2), lack(2), largest, stress(2, 2, 2), total(2, 2)
       integer(ik) :: c, node
@@ -147,10 +145,8 @@ contains
    !! 2 mu (u + i v) = kappa phi - z conj(phi') - conj(psi) is in equilibrium (Muskhelishvili).
    subroutine convergence()
       integer(ik), parameter :: n_meshes = 3
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: energy(n_meshes), norm(n_meshes), points(3, 7), weights(7), values(6), &
                   gradients(2, 6)
@@ -223,10 +219,8 @@ contains
    !> A uniform pore pressure in a fixed box, cracked and with the same fluid pressure times
    !! Biot's coefficient on its faces, moves nothing; the total stress is -biot*p.
    subroutine initial_stress()
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: stress(2, 2), gradient(2, 2)
 
@@ -252,10 +246,8 @@ contains
    !! too where they reproduce x.
    subroutine linear_pressure()
       real(rk), parameter :: slope = 3.0e6_rk
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :), exact(:, :)
       real(rk) :: modulus
 
@@ -276,10 +268,8 @@ contains
 
    !> Wrong order of calls, and input that makes no sense.
    subroutine refusals()
-      type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
 
       mesh = cracked_rectangle([0.0_rk, 1.0_rk], [0.0_rk, 1.0_rk], [4_ik, 4_ik], 2_ik, 2_ik, 3_ik)

@@ -18,6 +18,7 @@ program test_fine_tip_contact
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
    real(rk), parameter :: a = 0.05_rk  ! half-length [m]
    type(elasticity_t), parameter :: stiff_rock = elasticity_t(4.0e10_rk, 0.2_rk, 0.0_rk, .false.)
    type(elasticity_t) :: rock = stiff_rock
@@ -170,7 +171,6 @@ contains
       type(fine_loads_t) :: loads
       type(contact_t) :: contact
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: drop, most
       integer(ik) :: tip
@@ -229,7 +229,6 @@ contains
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
 
       call window(angle, model)
@@ -255,7 +254,6 @@ contains
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: exact
       integer(ik) :: node
@@ -293,7 +291,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: stress, place
       integer(ik) :: cell, k
@@ -327,7 +324,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: slopes(2), scale, side, rotation(2, 2), place(2)
       complex(rk) :: z, root, factor, value
@@ -382,7 +378,6 @@ contains
       type(face_conditions_t) :: conditions
       type(contact_t) :: contact
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: kink(2), vertices(2, 4), centre
       integer(ik) :: tip

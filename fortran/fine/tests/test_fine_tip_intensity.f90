@@ -15,6 +15,7 @@ program test_fine_tip_intensity
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
    real(rk), parameter :: half_length = 0.05_rk  ! a [m]
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 1.0_rk, .false.)
    integer(ik) :: i
@@ -92,7 +93,6 @@ contains
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
       real(rk), intent(in) :: tolerance, tolerance_dc  !< shares of the total intensity [-]
-      type(error_t), allocatable :: error
       type(intensity_t) :: intensity
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: scale
@@ -159,7 +159,6 @@ contains
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(in) :: k1, k2  !< [Pa m^1/2]
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       integer(ik) :: tip
 
@@ -282,7 +281,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: c, modulus, scale, k1
       complex(rk) :: z, root, phi, slope, value
@@ -343,7 +341,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
 
       call window(0.0_rk, rock, model)

@@ -17,6 +17,8 @@ program test_fine_tip_networks
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesher_t) :: mesher
    real(rk), parameter :: tolerance = 0.002_rk  ! half of it is what the window's size leaves
    type(elasticity_t), parameter :: rock = elasticity_t(4.0e10_rk, 0.2_rk, 1.0_rk, .false.)
 
@@ -40,9 +42,7 @@ contains
       type(fine_model_t), intent(inout) :: model
       type(fine_loads_t), intent(out) :: loads
       real(rk), allocatable, intent(out) :: displacement(:, :)
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       integer(ik) :: node
 
       call build_mesh(mesh_spec_t(-half_width, half_width, -half_width, half_width, size, &
@@ -70,7 +70,6 @@ contains
       real(rk), intent(in) :: k1, k2  !< in units of scale [-]
       real(rk), intent(in) :: scale  !< [Pa m^1/2]
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       integer(ik) :: tip
 
       associate (tips => model%mesh%xy(:, model%mesh%fracture%tip_node))
@@ -149,13 +148,11 @@ contains
    subroutine crossing()
       real(rk), parameter :: remote(3) = [-3.0e6_rk, -5.0e6_rk, 1.5e6_rk]
       type(network_t) :: network
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(face_conditions_t) :: conditions
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       real(rk) :: largest
       integer(ik) :: tip
@@ -201,7 +198,6 @@ contains
       type(fine_model_t) :: model
       type(fine_loads_t) :: loads
       type(intensity_t) :: intensity
-      type(error_t), allocatable :: error
       real(rk), allocatable :: displacement(:, :)
       integer(ik) :: node
 

@@ -186,7 +186,7 @@ contains
       ! Without loads on the faces the intensities are the work of the extraction's forces.
       call probe_of_tip(model, 1_ik, probe, error)
       call checks%no_error(error, "the tip has a probe")
-      force = probe%interactions%extraction_forces(1_ik, model%mesh%n_nodes)
+      force = probe%interactions%extraction_forces(model%mesh%n_nodes)
       call checks%is_close(sum(force(:, :, 1)*displacement)/scale, dimensionless%k1, 1.0e-9_rk, &
                            "K_I is linear in the displacement")
       call checks%is_close(sum(force(:, :, 2)*displacement)/scale, dimensionless%k2, 1.0e-9_rk, &

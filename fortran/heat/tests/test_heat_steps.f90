@@ -19,7 +19,6 @@ program test_heat_steps
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    use heat_steps, only: advance_heat
-   use mesh_builder, only: mesher_t
    use mesh_geometry, only: cell_area
    use mesh_types, only: mesh_t
    use sample_bodies, only: boxes, load_sides, mesh_square, porous_body, shake, straight_network, &
@@ -245,7 +244,6 @@ contains
       type(state_t) :: state
       type(heat_model_t) :: heat
       type(heat_state_t) :: now
-      type(mesher_t) :: mesher
       type(step_report_t) :: report
       type(timers_t) :: timers
       type(error_t), allocatable :: error
@@ -260,7 +258,7 @@ contains
       scene%sides(1)%inflow = 1.0e-7_rk
       scene%sides(1)%temperature_given = .true.
       scene%sides(1)%temperature = merge(30.0_rk, 100.0_rk, is_cold)
-      call mesh_square(checks, straight_network(across), 0.2_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(across), 0.2_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       model%first_step = 1.0e-2_rk
       call model%set_mesh(mesh, scene, timers, error)
@@ -296,7 +294,6 @@ contains
       type(state_t) :: state
       type(heat_model_t) :: heat
       type(heat_state_t) :: now
-      type(mesher_t) :: mesher
       type(step_report_t) :: report
       type(timers_t) :: timers
       type(error_t), allocatable :: error
@@ -307,7 +304,7 @@ contains
       scene = hot_body(2.6_rk)
       call load_sides(scene, [-20.0e6_rk, -20.0e6_rk, 0.0_rk])
       scene%sides(:)%pressure_given = .true.
-      call mesh_square(checks, straight_network(line), 0.1_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(line), 0.1_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       model%first_step = 1.0_rk
       call model%set_mesh(mesh, scene, timers, error)
@@ -337,7 +334,6 @@ contains
       type(state_t) :: state
       type(heat_model_t) :: heat
       type(heat_state_t) :: now
-      type(mesher_t) :: mesher
       type(timers_t) :: timers
       type(error_t), allocatable :: error
       real(rk), parameter :: line(2, 2, 1) = reshape([0.6_rk, 0.7_rk, 1.3_rk, 1.3_rk], [2, 2, 1])
@@ -348,7 +344,7 @@ contains
       scene%sides(3:4)%temperature_given = .true.
       scene%sides(3)%temperature = 100.0_rk
       scene%sides(4)%temperature = 0.0_rk
-      call mesh_square(checks, straight_network(line), 0.1_rk, 0.3_rk, mesher, mesh)
+      call mesh_square(checks, straight_network(line), 0.1_rk, 0.3_rk, mesh)
       model%cells = uniform_cells(mesh, contact_law_t(friction=2.0_rk), 1.0e-4_rk)
       call model%set_mesh(mesh, scene, timers, error)
       call new_state(mesh, model%cells, initial_t(), model, state)

@@ -16,6 +16,7 @@ program test_mechanics_bodies
    real(rk), parameter :: young = 2.0e9_rk, poisson = 0.3_rk
    real(rk), parameter :: round_off = 1.0e-10_rk  !< of solutions that the elements hold exactly
    type(checks_t) :: checks
+   type(scene_t) :: scene
 
    call check_outline()
    call check_column()
@@ -96,7 +97,6 @@ contains
 
    !> Given clockwise, the corners are turned round and keep the sides of their edges.
    subroutine check_outline()
-      type(scene_t) :: scene
       type(outline_t) :: outline
       integer(ik) :: k, next
       real(rk) :: middle(2)
@@ -127,7 +127,6 @@ contains
       real(rk), parameter :: height = 3.0_rk, weight = 2500.0_rk*9.81_rk
       real(rk), parameter :: oedometric = young*(1.0_rk - poisson) &
                              /((1.0_rk + poisson)*(1.0_rk - 2.0_rk*poisson))
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
       type(timers_t) :: timers
       type(error_t), allocatable :: error
@@ -155,7 +154,6 @@ contains
    !> A stress that carries the weight leaves a body with oblique edges, a notch and a crack as it
    !! is: no displacements but those of rounding.
    subroutine check_in_situ()
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
       real(rk) :: stress_scale
 
@@ -180,7 +178,6 @@ contains
    !> Shear tractions of alternating sign around a square: the stress is xy alone.
    subroutine check_pure_shear()
       real(rk), parameter :: shear = 1.0e6_rk, modulus = young/(2.0_rk*(1.0_rk + poisson))
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
       real(rk), allocatable :: exact(:, :)
 
@@ -203,7 +200,6 @@ contains
    !! body gives the stress -K_dr b_s theta; a front has its heat, however thin.
    subroutine check_temperature()
       real(rk), parameter :: bulk = young/(3.0_rk*(1.0_rk - 2.0_rk*poisson)), expansion = 3.0e-5_rk
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
       real(rk), allocatable :: exact(:, :), stress(:, :)
       real(rk) :: scale
@@ -262,7 +258,6 @@ contains
    subroutine check_disc()
       real(rk), parameter :: pressure = 1.0e6_rk
       real(rk), parameter :: centre(2) = [0.3_rk, -0.2_rk]
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
       type(boundary_part_t) :: rim
       real(rk), allocatable :: exact(:, :)
@@ -283,7 +278,6 @@ contains
    !> However small the cells are, the rim of a disc has no more corners than a polygon may have:
    !! each pair of its edges is compared.
    subroutine check_rim()
-      type(scene_t) :: scene
       type(outline_t) :: outline
 
       scene = disc_scene([0.0_rk, 0.0_rk], 42.0_rk)
@@ -317,7 +311,6 @@ contains
    !! 1959). The mean of the elements at the centre of a polygon of 256 corners.
    subroutine check_arcs()
       real(rk), parameter :: pressure = 1.0e6_rk, half = 10.0_rk*pi/180.0_rk
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
       type(boundary_part_t) :: arc
       real(rk), allocatable :: stress(:, :)

@@ -12,6 +12,8 @@ program test_mechanics_equilibrium
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
 
    call check_strip("length")
    call check_strip("dead")
@@ -62,8 +64,6 @@ contains
    subroutine check_strip(control)
       character(len=*), intent(in) :: control
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), parameter :: formula = 3.0e-3_rk
       real(rk) :: a, first
       integer :: increment
@@ -102,8 +102,6 @@ contains
    !> From below and from above the same factor; none below the limit is said to be none.
    subroutine check_balance()
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), parameter :: starts(3) = [0.01_rk, 1.0_rk, 50.0_rk]
       real(rk) :: slope(2)
       logical :: holds, is_loose
@@ -138,8 +136,6 @@ contains
       real(rk), intent(in) :: way  !< of the programme; the sides push where it is negative
       logical, intent(in) :: is_shared
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       type(scene_t) :: scene
       real(rk) :: lack, slope(2)
       logical :: holds, is_loose

@@ -14,6 +14,9 @@ program test_mechanics_faces
    real(rk), parameter :: quadrature = 1.0e-6_rk  !< of the integrals' singular auxiliary fields
    real(rk), parameter :: pressure = 3.0_rk  !< [Pa]
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(scene_t) :: scene
 
    call compare("open", [0.0_rk, 0.0_rk])
    call compare("frictionless", [-9.0_rk, -4.0_rk])
@@ -58,8 +61,6 @@ contains
       type(scene_t), intent(in) :: scene
       real(rk), intent(in) :: factor  !< [-]
       type(mechanics_simulation_t), intent(inout) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
 
       call timers%begin()
       call simulation%begin(scene, timers, error)
@@ -72,7 +73,6 @@ contains
       character(len=*), intent(in) :: law
       real(rk), intent(in) :: stress(2)  !< xx, yy [Pa]
       real(rk), parameter :: factor = 2.5_rk
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: pressed, pulled
       real(rk) :: largest
 
@@ -98,7 +98,6 @@ contains
 
    !> Faces that are held closed carry tension; others part.
    subroutine closed_under_tension()
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: held, free
       integer(ik), parameter :: tau = 1, n = 2
 
@@ -119,10 +118,7 @@ contains
 
    !> Under compression wings grow from the ends of a closed crack, and open.
    subroutine wings_of_a_closed_crack()
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       logical :: has_onset, any_grew
       real(rk) :: opening(2)
       integer(ik) :: cell

@@ -11,6 +11,8 @@ program test_mechanics_simulation
    implicit none(type, external)
    real(rk), parameter :: exact = 1.0e-8_rk  !< of a factor found from linear responses
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
 
    call check_onset("open", -1.0_rk)
    call check_onset("open", 1.0_rk)
@@ -55,8 +57,6 @@ contains
    !> Where growth ends the scene, it is done as far as the end that has grown most has come.
    subroutine check_share_done()
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), parameter :: gains(2, 4) = reshape([0.0_rk, 0.0_rk, 0.3_rk, 0.0_rk, 0.3_rk, &
                                                     0.4_rk, 0.2_rk, 0.1_rk], [2, 4])  ! [m]
       real(rk) :: along(2)
@@ -82,8 +82,6 @@ contains
       character(len=*), intent(in) :: law
       real(rk), intent(in) :: traction
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       logical :: has_onset
       real(rk) :: per_factor, expected
 
@@ -109,8 +107,6 @@ contains
    !> The onset is found where it lies at a tiny share of the programme.
    subroutine check_tiny_onset()
       type(mechanics_simulation_t) :: usual, strong
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       logical :: has_onset
 
       call timers%begin()
@@ -128,8 +124,6 @@ contains
    !> Both tips grow together, at a load that does not change, and the next rise starts there.
    subroutine check_growth()
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       logical :: has_onset, any_grew
       real(rk) :: factor
 
@@ -155,8 +149,6 @@ contains
    !! estimated error.
    subroutine check_patched_meshes()
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), parameter :: formula = 1.0e-3_rk
       logical :: has_onset, any_grew
       real(rk) :: share, expected

@@ -14,6 +14,9 @@ program test_mechanics_unloading
    real(rk), parameter :: young = 1.0e9_rk, poisson = 0.25_rk
    real(rk), parameter :: shear = 1.0e6_rk, pressure = 1.0e6_rk, friction = 0.3_rk
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(timers_t) :: timers
+   type(scene_t) :: scene
 
    call check_reversal()
    call check_onset_down()
@@ -55,10 +58,7 @@ contains
       real(rk), parameter :: finite_body = 0.02_rk  ! the crack has a tenth of its width
       real(rk), parameter :: locked = 1.0e-6_rk  ! K_II counts the tractions, which change
       real(rk), parameter :: discrete = 1.0e-3_rk  ! the mesh, unlike the crack, has no symmetry
-      type(scene_t) :: scene
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       real(rk), allocatable :: forward(:, :)
       real(rk) :: k2
       logical :: has_onset
@@ -126,7 +126,6 @@ contains
    !! by a rising load does.
    subroutine check_onset_down()
       real(rk) :: onset(2)
-      type(scene_t) :: scene
       integer(ik) :: i
 
       do i = 1, 2
@@ -140,7 +139,6 @@ contains
    !> A body under tension, of which a load takes as much away as it is large: as the load falls,
    !! the crack grows where the two leave what is enough without the stress in situ.
    subroutine check_onset_against_stress()
-      type(scene_t) :: scene
       real(rk) :: enough, onset, tension
 
       scene = growing(1.0_rk)
@@ -174,8 +172,6 @@ contains
       character(len=*), intent(in) :: name
       type(scene_t) :: whole
       type(mechanics_simulation_t) :: simulation
-      type(timers_t) :: timers
-      type(error_t), allocatable :: error
       logical :: has_onset
 
       onset = 0.0_rk

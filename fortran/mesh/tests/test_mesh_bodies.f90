@@ -9,6 +9,7 @@ program test_mesh_bodies
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    call test_disc(checks)
    call test_sized(checks)
@@ -80,7 +81,6 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       integer, parameter :: n = 120
       real(rk) :: polygon, half, length(2)
       integer :: face, k
@@ -125,7 +125,6 @@ contains
       type(mesh_spec_t) :: spec
       type(mesher_t) :: mesher, mesher_new
       type(mesh_t) :: mesh, mesh_new
-      type(error_t), allocatable :: error
       type(network_t) :: network
       real(rk), allocatable :: sizes(:)
       real(rk) :: smallest, u(2), v(2)
@@ -172,7 +171,6 @@ contains
       type(mesher_t) :: mesher, none
       type(mesh_t) :: mesh
       type(network_t) :: network
-      type(error_t), allocatable :: error
       real(rk) :: angle
       integer(ik) :: cell
 

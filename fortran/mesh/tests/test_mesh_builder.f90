@@ -11,6 +11,8 @@ program test_mesh_builder
    implicit none(type, external)
 
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(mesher_t) :: mesher
 
    call test_without_fracture(checks)
    call test_single_fracture(checks)
@@ -143,10 +145,8 @@ contains
    !> A network without arrays is no network.
    subroutine test_without_fracture(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
       type(network_t) :: network
-      type(error_t), allocatable :: error
       real(rk) :: length
       integer :: side, face
 
@@ -171,9 +171,7 @@ contains
    !> Scene C1.
    subroutine test_single_fracture(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh, again
-      type(error_t), allocatable :: error
       type(network_t) :: network
       real(rk) :: d
       integer :: i, t
@@ -220,9 +218,7 @@ contains
    !> Sides and tips in all directions.
    subroutine test_directions(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       real(rk) :: angle, ahead(2)
       integer :: k
 
@@ -244,9 +240,7 @@ contains
    !> An X, a T and an end on the boundary in one network (AB and CD of Paper D with two more).
    subroutine test_crossing(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       type(network_t) :: network
       real(rk), parameter :: place_x(2) = [1.0_rk, 1.0_rk]
 
@@ -272,9 +266,7 @@ contains
    !> A window with rosettes that cuts a fracture.
    subroutine test_window(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       type(mesh_spec_t) :: spec
 
       spec = mesh_spec_t(0.5_rk, 1.0_rk, 0.0_rk, 0.5_rk, 0.01_rk, 0.05_rk, is_window=.true., &
@@ -296,9 +288,7 @@ contains
    !> Errors arrive with the library's words.
    subroutine test_refusals(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       type(mesh_spec_t) :: spec
       type(network_t) :: network
       integer(ik) :: cells(1)
@@ -325,9 +315,7 @@ contains
    !> Cells count from 1, 0 is outside.
    subroutine test_locate(checks)
       type(checks_t), intent(inout) :: checks
-      type(mesher_t) :: mesher
       type(mesh_t) :: mesh
-      type(error_t), allocatable :: error
       real(rk), allocatable :: centres(:, :)
       integer(ik), allocatable :: cells(:)
       integer(ik) :: outside(2)
@@ -353,7 +341,6 @@ contains
       type(mesher_t) :: before_mesher, mesher
       type(mesh_t) :: before, mesh
       type(mesh_map_t) :: map
-      type(error_t), allocatable :: error
       type(network_t) :: network
       real(rk), allocatable :: old_areas(:), areas(:), covered(:)
       integer :: c, k, wrong
@@ -425,7 +412,6 @@ contains
       type(mesher_t) :: mesher, other
       type(mesh_t) :: mesh
       type(network_t) :: network
-      type(error_t), allocatable :: error
       integer(ik) :: cells(1)
       real(rk), parameter :: place(2, 1) = reshape([0.5_rk, 0.5_rk], [2, 1])
 

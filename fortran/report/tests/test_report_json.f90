@@ -1,9 +1,9 @@
-!> Tests of report_text: the escape rules of RFC 8259, and the shape of the text.
+!> Tests of report_json: the escape rules of RFC 8259, and the shape of the text.
 program test_report_json
    use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
    use base_kinds, only: ik, lk, rk
    use base_texts, only: text_t
-   use report_text, only: escaped, json_t
+   use report_json, only: escaped, json_t
    use testing_checks, only: checks_t
    implicit none(type, external)
 

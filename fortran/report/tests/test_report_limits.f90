@@ -12,6 +12,7 @@ program test_report_limits
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    call test_verdicts()
    call test_watch()
@@ -54,7 +55,6 @@ contains
    subroutine test_watch()
       type(watch_t) :: watch
       type(text_t), allocatable :: list(:)
-      type(error_t), allocatable :: error
 
       call watch%see(limit_forward_error, 1.0e-9_rk, "1 s")
       call watch%stop_run(error)
@@ -146,7 +146,6 @@ contains
    subroutine test_doubt()
       type(watch_t) :: watch
       type(tip_t) :: tips(4)
-      type(error_t), allocatable :: error
 
       tips%drive%intensity = [0.93e6_rk, 0.95e6_rk, 1.0e6_rk, 3.0e6_rk]
       tips%intensity%k1_error = 0.06e6_rk

@@ -11,6 +11,7 @@ program test_report_scene
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(scene_t) :: scene
 
    call test_places()
    call test_interfaces()
@@ -41,7 +42,6 @@ contains
 
    subroutine test_places()
       type(rock_places_t) :: places
-      type(scene_t) :: scene
 
       scene = square()
       call places%set(scene)
@@ -59,7 +59,6 @@ contains
 
    !> A tip may have another toughness by a region, or by its fracture, or by both.
    subroutine test_other_toughness()
-      type(scene_t) :: scene
       logical :: by_region, by_fracture
       integer :: k
 
@@ -78,7 +77,6 @@ contains
    !> Other toughness or permeability is no interface of elasticity; other stiffness is.
    subroutine test_interfaces()
       type(error_t), allocatable :: error
-      type(scene_t) :: scene
       real(rk) :: radius
 
       scene = square()
@@ -105,7 +103,6 @@ contains
 
    !> A tip on its way to the right, y = 1.5: K_IC rises over the last tenth of an increment.
    subroutine test_toughness()
-      type(scene_t) :: scene
       real(rk), parameter :: x(5) = [0.5_rk, 0.9899_rk, 0.995_rk, 0.99999_rk, 1.2_rk]
       real(rk), parameter :: expected(5) = [1.0_rk, 1.0_rk, 1.25_rk, 1.4995_rk, 1.5_rk]
       integer :: k

@@ -35,6 +35,7 @@ program test_scene_bodies
    !&>
    character(len=100) :: good(9)
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
 
    good = polygon
    call accept(8, trim(good(8)), "the polygon without a fault")
@@ -159,7 +160,6 @@ contains
    subroutine accept_two(line_1, text_1, line_2, text_2, name)
       integer, intent(in) :: line_1, line_2
       character(len=*), intent(in) :: text_1, text_2, name
-      type(error_t), allocatable :: error
 
       call read_changed(line_1, text_1, line_2, text_2, error)
       call checks%no_error(error, name)
@@ -176,7 +176,6 @@ contains
    subroutine refuse_two(line_1, text_1, line_2, text_2, words)
       integer, intent(in) :: line_1, line_2
       character(len=*), intent(in) :: text_1, text_2, words
-      type(error_t), allocatable :: error
 
       call read_changed(line_1, text_1, line_2, text_2, error)
       call checks%fails_with(error, words, words)

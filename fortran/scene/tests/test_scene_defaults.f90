@@ -6,6 +6,7 @@ program test_scene_defaults
    use testing_checks, only: checks_t
    implicit none(type, external)
    type(checks_t) :: checks
+   type(scene_t) :: scene
 
    call check_fluid()
    call check_mechanics()
@@ -30,8 +31,6 @@ contains
    end function small_scene
 
    subroutine check_fluid()
-      type(scene_t) :: scene
-
       scene = small_scene()
       scene%fluid%viscosity = 1.0_rk
       scene%time%end = 9.0_rk
@@ -58,8 +57,6 @@ contains
    end subroutine check_fluid
 
    subroutine check_mechanics()
-      type(scene_t) :: scene
-
       scene = small_scene()
       scene%load%steps = 4
       call resolve_defaults(scene)
@@ -94,7 +91,6 @@ contains
 
    !> Cells and increments follow from the length of each fracture and the tolerance.
    subroutine check_sizes()
-      type(scene_t) :: scene
       integer :: i
 
       scene = growing([20.0_rk])
@@ -139,8 +135,6 @@ contains
 
    !> Given windows stay; what is given of one fracture is only its own.
    subroutine check_windows()
-      type(scene_t) :: scene
-
       scene = growing([20.0_rk, 4.0_rk])
       scene%discretization%window = 60.0_rk
       call resolve_defaults(scene)
@@ -154,7 +148,6 @@ contains
 
    !> The body is the window where squares would be too large together, or cannot be.
    subroutine check_bodies_of_windows()
-      type(scene_t) :: scene
       integer :: i
 
       scene = growing([(20.0_rk, i=1, 9)])  ! 18 squares of 100 m

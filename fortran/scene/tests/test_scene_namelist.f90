@@ -9,6 +9,8 @@ program test_scene_namelist
    implicit none(type, external)
    character(len=*), parameter :: path = "test_scene_namelist.nml"
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
+   type(scene_t) :: scene
 
    call check_syntax()
    call check_defaults()
@@ -23,7 +25,6 @@ contains
    !> Everything the syntax allows, groups in an odd order, every group in use.
    subroutine check_syntax()
       type(scene_t) :: scene
-      type(error_t), allocatable :: error
 
       call put_lines(path, [character(len=80) :: "! a comment with &group and 'quote", &
                             "&injection fracture='b',rate=1d-7,start=10,end=20,x=0.5,y=0.25 /", &
@@ -121,8 +122,6 @@ contains
 
    !> The defaults of the table are those of the types.
    subroutine check_defaults()
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
       type(discretization_t) :: discretization
       type(growth_t) :: growth
       type(initial_t) :: initial
@@ -162,9 +161,6 @@ contains
 
    !> Without a fluid, a fracture needs neither aperture nor flow properties.
    subroutine check_mechanics_only()
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-
       call put_lines(path, [character(len=80) :: smallest(), &
                             "&fracture name='f' x=0.4,0.6 y=0.5,0.5 law='open' /"])
       call read_scene(path, scene, error)
@@ -198,9 +194,6 @@ contains
    end subroutine check_mechanics_only
 
    subroutine check_onset()
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-
       call read_scene(source_path("inputs/paper_c/onset.nml"), scene, error)
       call checks%no_error(error, "onset.nml")
       if (allocated(error)) return
@@ -229,9 +222,6 @@ contains
    end subroutine check_onset
 
    subroutine check_other_scenes()
-      type(scene_t) :: scene
-      type(error_t), allocatable :: error
-
       call read_scene(source_path("inputs/paper_c/wing_crack.nml"), scene, error)
       call checks%no_error(error, "wing_crack.nml")
       if (.not. allocated(error)) then

@@ -32,6 +32,7 @@ program test_scene_regions
       "&coarse size_boundary=0.1 /"]  ! 15
    !&>
    type(checks_t) :: checks
+   type(error_t), allocatable :: error
    type(scene_t) :: scene
 
    call check_outlines()
@@ -47,8 +48,6 @@ contains
 
    !> Areas of regions, and of their parts in the body.
    subroutine check_outlines()
-      type(error_t), allocatable :: error
-
       call put_lines(path, good)
       call read_scene(path, scene, error)
       call checks%no_error(error, "the scene without a fault")
@@ -199,7 +198,6 @@ contains
 
    subroutine check_round_trip()
       type(scene_t) :: first, second
-      type(error_t), allocatable :: error
 
       call put_lines(path, good)
       call read_scene(path, first, error)
@@ -214,7 +212,6 @@ contains
       integer, intent(in) :: line
       character(len=*), intent(in) :: text, words
       character(len=*), intent(in), optional :: and_4  !< the fourth line too
-      type(error_t), allocatable :: error
       type(scene_t) :: changed
 
       if (present(and_4)) then

@@ -133,8 +133,6 @@ contains
 
    !> A word in the place of a number. Nothing is measured with the number then.
    subroutine check_word()
-      type(scene_t) :: scene
-
       call put_lines(path, [character(len=100) :: "&domain x_min=0 x_max=1 y_min=0 y_max=1 /", &
                             "&material young=1e9 poisson=0.2 biot=0.5 porosity=0.1 "// &
                             "permeability=1e-18 toughness=1e6 /", &

@@ -58,7 +58,7 @@ contains
       scene%sides(1)%temperature = 350.0_rk
       scene%heat = heat_t(temperature=400.0_rk)
       network = straight_network(lines)
-      call mesh_square(checks, network, cell, 3.0_rk*cell, mesher(1), mesh(1))
+      call mesh_square(checks, network, cell, 3.0_rk*cell, mesh(1), mesher(1))
       call extend(network, 1_ik, 2_ik, to)
       call remesh(mesher(1), network, reshape(to, [2, 1]), 3.0_rk*cell, cell, mesher(2), mesh(2), &
                   map, error)

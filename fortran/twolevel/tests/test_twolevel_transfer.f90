@@ -43,7 +43,7 @@ contains
       real(rk), parameter :: tips(2, 2) = reshape([0.55_rk, 0.9_rk, 1.25_rk, 1.02_rk], [2, 2])
 
       network = straight_network(lines)
-      call mesh_square(checks, network, 0.1_rk, 0.3_rk, mesher_before, mesh_before)
+      call mesh_square(checks, network, 0.1_rk, 0.3_rk, mesh_before, mesher_before)
       call extend(network, 1_ik, 1_ik, tips(:, 1))
       call extend(network, 1_ik, 2_ik, tips(:, 2))
       call remesh(mesher_before, network, tips, 0.3_rk, 0.1_rk, mesher, mesh, map, error)
@@ -196,7 +196,7 @@ contains
       integer(ik) :: c, i
 
       network = straight_network(lines)
-      call mesh_square(checks, network, 0.1_rk, 0.3_rk, mesher_before, mesh_before)
+      call mesh_square(checks, network, 0.1_rk, 0.3_rk, mesh_before, mesher_before)
       call extend(network, 1_ik, 2_ik, [1.0_rk, 1.0_rk + 0.1_rk*share])
       call remesh(mesher_before, network, reshape([1.0_rk, 1.0_rk], [2, 1]), 0.3_rk, 0.1_rk, &
                   mesher_joined, joined, map_joined, error)

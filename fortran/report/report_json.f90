@@ -1,33 +1,14 @@
-!> A text buffer with spare capacity, and JSON (RFC 8259) built in it member by member. A number
-!! that JSON cannot represent (NaN, infinity) becomes null.
-module report_text
-   use base_archive, only: archive_t
-   use base_errors, only: error_t
+!> JSON (RFC 8259) built member by member. A number that JSON cannot represent (NaN, infinity)
+!! becomes null.
+module report_json
+   use base_buffer, only: newline, text_buffer_t
    use base_kinds, only: ik, lk, rk
-   use base_number, only: format_real, integer_text, number_width
+   use base_number, only: integer_text
    use base_texts, only: text_t, utf8_length
-   use report_files, only: write_text_file
    implicit none(type, external)
    private
 
-   public :: escaped, json_t, newline, text_buffer_t
-
-   character(len=*), parameter :: newline = achar(10)
-
-   !> A long text, built by appending.
-   type :: text_buffer_t
-      integer(lk) :: length = 0_lk  !< characters in use
-      character(len=:), allocatable, private :: storage
-      integer(lk), private :: stored = 0_lk  !< length in the last archive
-   contains
-      procedure :: append
-      procedure :: append_real
-      procedure :: replace_last
-      procedure :: text => buffer_text
-      procedure :: write_file
-      procedure :: visit => visit_length
-      procedure :: visit_text
-   end type text_buffer_t
+   public :: escaped, json_t
 
    integer, parameter :: deepest = 16  !< largest nesting of objects and arrays
 
@@ -56,94 +37,6 @@ module report_text
    end type json_t
 
 contains
-
-   !> Append a text.
-   pure subroutine append(self, item)
-      class(text_buffer_t), intent(inout) :: self
-      character(len=*), intent(in) :: item
-      character(len=:), allocatable :: larger
-      integer(lk) :: length  ! afterwards
-
-      length = self%length + len(item, kind=lk)
-      if (.not. allocated(self%storage)) allocate (character(len=1024) :: self%storage)
-      if (length > len(self%storage, kind=lk)) then
-         allocate (character(len=2_lk*length) :: larger)
-         larger(1:self%length) = self%storage(1:self%length)
-         call move_alloc(larger, self%storage)
-      end if
-      self%storage(self%length + 1:length) = item
-      self%length = length
-   end subroutine append
-
-   !> Append a number with as many digits as needed to read it back exactly.
-   pure subroutine append_real(self, x)
-      class(text_buffer_t), intent(inout) :: self
-      real(rk), intent(in) :: x  !< [any unit]
-      character(len=number_width) :: item
-      integer :: length
-
-      call format_real(x, item, length)
-      call self%append(item(1:length))
-   end subroutine append_real
-
-   !> Replace the last character.
-   pure subroutine replace_last(self, letter)
-      class(text_buffer_t), intent(inout) :: self
-      character(len=1), intent(in) :: letter
-
-      if (self%length > 0) self%storage(self%length:self%length) = letter
-   end subroutine replace_last
-
-   !> The whole text.
-   pure function buffer_text(self) result(text)
-      class(text_buffer_t), intent(in) :: self
-      character(len=:), allocatable :: text
-
-      if (allocated(self%storage)) then
-         text = self%storage(1:self%length)
-      else
-         text = ""
-      end if
-   end function buffer_text
-
-   !> Store or load the length. The text so far does not change any more: it is in an archive of its
-   !! own, which is made when it is written.
-   subroutine visit_length(self, archive)
-      class(text_buffer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-
-      call archive%item("length", self%length)
-      if (archive%is_loading .and. self%length /= len(self%storage, kind=lk)) then
-         call archive%set_fault("length")
-      end if
-      self%stored = self%length
-   end subroutine visit_length
-
-   !> Store the text as long as it was in the last archive, or load it.
-   subroutine visit_text(self, archive)
-      class(text_buffer_t), intent(inout) :: self
-      type(archive_t), intent(inout) :: archive
-      character(len=:), allocatable :: text
-
-      if (.not. archive%is_loading .and. self%stored > 0_lk) text = self%storage(:self%stored)
-      call archive%list("text", text)
-      if (.not. archive%is_loading) return
-      if (.not. allocated(text)) text = ""
-      call move_alloc(text, self%storage)
-   end subroutine visit_text
-
-   !> Write the text as a file.
-   subroutine write_file(self, path, error)
-      class(text_buffer_t), intent(in) :: self
-      character(len=*), intent(in) :: path
-      type(error_t), allocatable, intent(out) :: error
-
-      if (allocated(self%storage)) then
-         call write_text_file(path, self%storage(1:self%length), error)
-      else
-         call write_text_file(path, "", error)
-      end if
-   end subroutine write_file
 
    subroutine begin_object(self, key)
       class(json_t), intent(inout) :: self
@@ -373,4 +266,4 @@ contains
       end if
    end subroutine append_number
 
-end module report_text
+end module report_json
