@@ -4,7 +4,6 @@
 program test_coarse_tip_drainage
    use base_kinds, only: ik, rk
    use coarse_tip_drainage, only: drained_tip_t, drained_tips, pressure_at, pressure_of_face
-   use mesh_builder, only: mesher_t
    use mesh_types, only: mesh_t
    use sample_bodies, only: mesh_square, straight_network
    use testing_checks, only: checks_t
@@ -13,11 +12,10 @@ program test_coarse_tip_drainage
    real(rk), parameter :: beyond = 4.0e6_rk, slope = 2.0e6_rk  ! [Pa], [Pa/m]
    type(checks_t) :: checks
    type(mesh_t) :: mesh
-   type(mesher_t) :: mesher
 
    call mesh_square(checks, straight_network(reshape([0.3_rk, 1.0_rk, 1.7_rk, 1.0_rk], &
                                                      [2, 2, 1])), &
-                    0.2_rk, 0.4_rk, mesher, mesh)
+                    0.2_rk, 0.4_rk, mesh)
    call test_no_change()
    call test_faces()
    call test_continuity()
