@@ -126,8 +126,10 @@ contains
       do side = 1, 2
          face = mesh%fracture%cell_faces(side, cell)
          nodes = mesh%face_nodes(:, face)
-         if (norm2(mesh%xy(:, nodes(2)) - ends(:, 1)) < norm2(mesh%xy(:, nodes(1)) - ends(:, 1))) &
+         if (norm2(mesh%xy(:, nodes(2)) - ends(:, 1)) &
+             < norm2(mesh%xy(:, nodes(1)) - ends(:, 1))) then
             nodes = nodes(2:1:-1)
+         end if
          associate (p => (1.0_rk - share)*nodal(nodes(1)) + share*nodal(nodes(2)))
             if (is_left(ends, cell_centre(mesh, mesh%face_cells(1, face)))) then
                pressure(1) = p

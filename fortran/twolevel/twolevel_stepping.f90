@@ -127,7 +127,7 @@ module twolevel_stepping
       !> growth begins in the present step however short it is, because others grow at its start
       logical :: has_sudden_onset = .false.
       integer :: arrival_cuts = 0  !< cuts of the present step to the arrival at a target
-      real(rk) :: late(2) = 0.0_rk  !< length [s] and excess [-] of the step before its last such cut
+      real(rk) :: late(2) = 0.0_rk  !< length [s] and excess [-] before the last such cut
       integer :: at_switches = 0  !< cuts of the present step at limits of wells
       !> time error of the present step before its last cut for this error [-]
       real(rk) :: error_before = huge(1.0_rk)
