@@ -7,7 +7,7 @@
 !! the length of the jump is part of the error of the position.
 !!
 !! A tip that grows in equilibrium rests now and then, as K_eq falls along a path segment and rises
-!! with the next one by some per cent of K_IC. The slope within a segment is steeper than that over
+!! with the next one by up to 1 % of K_IC. The slope within a segment is steeper than that over
 !! many, by which an error of K_eq changes the position. The rate of K_eq at rest shows the latter:
 !! the error of K_eq over that rate is one of the time, and what the tip has grown within half of it
 !! one of the position. Near the end of stable growth the tips grow faster, and so does this error:
