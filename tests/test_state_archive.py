@@ -93,7 +93,7 @@ STORED = {
     "run_output_t": ("report_run:visit",),
     "tables_t": ("report_tables:visit",),
     "series_t": ("report_series:visit",),
-    "text_buffer_t": ("report_text:visit_length", "report_text:visit_text"),
+    "text_buffer_t": ("base_buffer:visit_length", "base_buffer:visit_text"),
     "snapshots_t": ("report_snapshots:visit",),
     "collection_t": ("report_snapshots:visit",),
     "network_record_t": ("report_network:visit",),
