@@ -177,10 +177,13 @@ contains
       real(rk) :: distance(2), share(2)
       integer :: k, side
 
+      distance = huge(1.0_rk)
       do k = 1, 2
-         share(k) = nearest_share(at, tip%ends(:, :, k))
-         distance(k) = norm2(at - tip%ends(:, 1, k) - share(k)*(tip%ends(:, 2, k) &
-                                                                - tip%ends(:, 1, k)))
+         associate (along => tip%ends(:, 2, k) - tip%ends(:, 1, k))
+            if (.not. any(abs(along) > 0.0_rk)) cycle  ! a part without length has no sides
+            share(k) = nearest_share(at, tip%ends(:, :, k))
+            distance(k) = norm2(at - tip%ends(:, 1, k) - share(k)*along)
+         end associate
       end do
       k = minloc(distance, dim=1)
       nearness = max(0.0_rk, 1.0_rk - distance(k)/tip%reach)

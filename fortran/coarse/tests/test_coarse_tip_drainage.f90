@@ -12,6 +12,7 @@ program test_coarse_tip_drainage
    real(rk), parameter :: beyond = 4.0e6_rk, slope = 2.0e6_rk  ! [Pa], [Pa/m]
    type(checks_t) :: checks
    type(mesh_t) :: mesh
+   integer :: i
 
    call mesh_square(checks, straight_network(reshape([0.3_rk, 1.0_rk, 1.7_rk, 1.0_rk], &
                                                      [2, 2, 1])), &
@@ -19,6 +20,12 @@ program test_coarse_tip_drainage
    call test_no_change()
    call test_faces()
    call test_continuity()
+   do i = 1, 12
+      call mesh_square(checks, straight_network(reshape([0.11_rk, 0.13_rk, 1.61_rk, &
+                                                         0.6_rk + 0.07_rk*i], [2, 2, 1])), &
+                       0.2_rk, 0.4_rk, mesh)
+      call test_end_of_cell()
+   end do
    call checks%finish()
 
 contains
@@ -92,7 +99,9 @@ contains
          tips = drained_tips(mesh, nodal, fluid(), passed(share(k)))
          worst = 0.0_rk
          do behind = 0, 4  ! in quarters of a cell behind the tip
-            associate (from_end => 1.0_rk - share(k) + 0.25_rk*behind)
+            ! Just beyond the last of these places, as on the next cell.
+            associate (from_end => 1.0_rk - share(k) + 0.25_rk*behind + merge(1.0e-10_rk, 0.0_rk, &
+                                                                              behind == 4))
                c = merge(1_ik, 2_ik, from_end <= 1.0_rk)
                x = 0.3_rk + from_end*cell
                do side = 1, 2
@@ -135,6 +144,20 @@ contains
       call checks%is_close(maxval(abs(at_faces(ahead, nodal) - at_faces(back, nodal))), 0.0_rk, &
                            1.0e-4_rk*1.0e6_rk, "continuous from cell to cell")
    end subroutine test_continuity
+
+   !> A tip at the end of its cell, of whose drained faces none are those of another cell, has the
+   !! pressures of one just before the end, on both sides of an inclined fracture.
+   subroutine test_end_of_cell()
+      real(rk), parameter :: little = 1.0e-9_rk
+      real(rk) :: nodal(mesh%n_nodes)
+
+      nodal = rock(1.0e6_rk)
+      call checks%is_close(maxval(abs(at_faces(drained_tips(mesh, nodal, fluid(), &
+                                                            passed(1.0_rk)), nodal) &
+                                      - at_faces(drained_tips(mesh, nodal, fluid(), &
+                                                              passed(1.0_rk - little)), nodal))), &
+                           0.0_rk, 10.0_rk*little*beyond, "at the end of the cell")
+   end subroutine test_end_of_cell
 
    !> Mean of the pressures on both faces of a fracture cell [Pa].
    pure real(rk) function mean_of_sides(tips, nodal, c, x) result(p)
