@@ -7,9 +7,11 @@
 !! The caller evaluates the tips at `place`, passes their excess to `improve`, and evaluates them at
 !! the new `place` until `place` is constant. Each proposal solves the linear complementarity
 !! problem of the matrix d(excess)/da within a trust region (growth_competition); Broyden updates
-!! improve the matrix. A proposal is accepted if the norm of the natural residual falls (Facchinei
-!! and Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003,
-!! sections 1.5 and 8.3); otherwise the trust region shrinks. Where this does not converge, as at
+!! improve the matrix. A proposal is accepted if the norm of the natural residual (Facchinei and
+!! Pang, Finite-Dimensional Variational Inequalities and Complementarity Problems, 2003, sections
+!! 1.5 and 8.3) is below one of the last two; otherwise the trust region shrinks. A residual that
+!! must always fall stops tips where K_eq hardly changes as they advance (Grippo, Lampariello and
+!! Lucidi, SIAM J. Numer. Anal. 23, 1986). Where this does not converge, as at
 !! jumps of K_eq, each tip advances from its lower bound until K_eq <= K_IC, and its position is
 !! found by bisection. The farthest position with K_eq > K_IC never decreases, so that this search
 !! ends. The search may leave a tip between its bounds with K_eq < K_IC: beyond a drop of K_eq, or
@@ -17,8 +19,8 @@
 !!
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
-!! resolution. After two rejected proposals K_eq of a tip between its bounds may be below K_IC by a
-!! given share of the error (`slack`), and above it by the same, up to three times the tolerance.
+!! resolution. After two rejected proposals, or four evaluations, K_eq of a tip between its bounds
+!! may be below K_IC by a given share of the error (`slack`), and above it by the same, up to three times the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -52,9 +54,10 @@ module growth_advances
       real(rk), allocatable, private :: sliver(:)
       !> (tips) scale of the natural residual: the steepest fall of the excess so far [1/m]
       real(rk), allocatable, private :: scale(:)
-      real(rk), allocatable, private :: best(:)  !< position with the least residual so far [m]
+      real(rk), allocatable, private :: best(:)  !< position accepted last [m]
       real(rk), allocatable, private :: excess(:)  !< value at `best` [-]
-      real(rk), allocatable, private :: residual(:)  !< (tips) value at `best` [-]
+      ! Position and excess accepted before them.
+      real(rk), allocatable, private :: best_before(:), excess_before(:)
       !> (tips) trust region, over the distance between the bounds [-]
       real(rk), allocatable, private :: radius(:)
       integer, private :: rejected = 0  !< number of proposals rejected in succession
@@ -111,7 +114,7 @@ contains
 
       self%evaluations = self%evaluations + 1
       if (self%evaluations > 1) call self%update_matrix(excess)
-      if (.not. self%is_monotone) call self%judge(excess)
+      if (.not. self%is_monotone) call self%judge(excess, tolerance)
       has_moved = .not. all(in_equilibrium(self%place, excess, self%lower, self%upper, tolerance, &
                                            self%allowed(tolerance)))
       if (.not. has_moved) return
@@ -142,12 +145,16 @@ contains
    pure function allowed(self, tolerance) result(lack)
       class(advances_t), intent(in) :: self
       real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
-      integer, parameter :: stalled = 2  ! rejected proposals
+      integer, parameter :: stalled = 2, long = 4  ! rejected proposals, evaluations
       real(rk) :: lack(size(self%place))
+      integer :: i
 
-      lack = tolerance
+      ! A tip that would retreat by less than the sliver stays at its upper bound.
+      lack = [(max(tolerance, merge(-self%matrix(i, i)*self%sliver(i), 0.0_rk, &
+                                    self%place(i) >= self%upper(i))), i=1, size(lack))]
       if (.not. allocated(self%slack)) return
-      if (self%is_monotone .or. self%rejected_in_all >= stalled) lack = max(tolerance, self%slack)
+      if (self%is_monotone .or. self%rejected_in_all >= stalled .or. self%evaluations > long) &
+         lack = max(lack, self%slack)
    end function allowed
 
    !> Whether a tip satisfies its complementarity condition within the tolerance.
@@ -168,49 +175,65 @@ contains
       end if
    end function in_equilibrium
 
-   !> Accept the evaluated position if the residual has fallen. Otherwise shrink the trust region of
-   !! the tips whose residual has grown.
-   pure subroutine judge(self, excess)
+   !> Accept the evaluated position if its residual is below that of one of the last two accepted
+   !! positions. Tips that advance and still exceed their toughness, by hardly more than before, need
+   !! not count: their equilibrium lies ahead. Otherwise shrink the trust region of the others.
+   pure subroutine judge(self, excess, tolerance)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) [-]
-      real(rk) :: residual(size(excess))
-      logical :: is_better
+      real(rk), intent(in) :: tolerance  !< tolerance of the excess [-]
+      real(rk), parameter :: level = 2.0_rk  ! change that does not count, over the tolerance
+      real(rk), dimension(size(excess)) :: residual, at_best, before
+      logical :: is_better, is_on_way(size(excess))
       integer :: i
 
       self%scale = max(self%scale, [(-self%matrix(i, i), i=1, size(excess))])
-      residual = natural_residual(self, self%place, excess)
-      is_better = .not. allocated(self%residual)
+      is_better = .not. allocated(self%best)
       if (.not. is_better) then
-         self%residual = natural_residual(self, self%best, self%excess)
-         is_better = norm2(residual) < 0.95_rk*norm2(self%residual)
+         residual = residuals(self, self%place, excess, tolerance)
+         at_best = residuals(self, self%best, self%excess, tolerance)
+         before = at_best
+         if (allocated(self%best_before)) &
+            before = residuals(self, self%best_before, self%excess_before, tolerance)
+         is_on_way = self%place > self%best .and. min(excess, self%excess) > 0.0_rk .and. &
+                     excess < self%excess + level*tolerance
+         is_better = norm2(residual) < max(norm2(at_best), norm2(before))
+         if (norm2(residual) < 0.5_rk*norm2(at_best)) self%radius = min(1.0_rk, 2.0_rk*self%radius)
+         where (is_on_way)
+            residual = 0.0_rk
+            at_best = 0.0_rk
+            before = 0.0_rk
+         end where
+         is_better = is_better .or. norm2(residual) <= max(norm2(at_best), norm2(before))
       end if
       if (is_better) then
-         if (allocated(self%residual)) then
-            if (norm2(residual) < 0.5_rk*norm2(self%residual)) then
-               self%radius = min(1.0_rk, 2.0_rk*self%radius)
-            end if
+         if (allocated(self%best)) then
+            self%best_before = self%best
+            self%excess_before = self%excess
          end if
          self%best = self%place
          self%excess = excess
-         self%residual = residual
          self%rejected = 0
       else
-         self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place - self%best)/self%length))
+         where (.not. is_on_way) self%radius = 0.5_rk*min(self%radius, maxval(abs(self%place &
+                                                                          - self%best)/self%length))
          self%rejected = self%rejected + 1
          self%rejected_in_all = self%rejected_in_all + 1
       end if
    end subroutine judge
 
-   !> What is missed of the complementarity conditions: the excess, or the distance from a bound as
-   !! an excess.
-   pure function natural_residual(self, place, excess) result(residual)
+   !> What is missed of the complementarity conditions, beyond the tolerance: the excess, or the
+   !! distance from a bound as an excess.
+   pure function residuals(self, place, excess, tolerance) result(residual)
       type(advances_t), intent(in) :: self
       real(rk), intent(in) :: place(:)  !< (tips) [m]
       real(rk), intent(in) :: excess(:)  !< (tips) value there [-]
+      real(rk), intent(in) :: tolerance  !< [-]
       real(rk) :: residual(size(place))
 
-      residual = self%scale*(place - min(self%upper, max(self%lower, place + excess/self%scale)))
-   end function natural_residual
+      residual = self%scale*abs(place - min(self%upper, max(self%lower, place + excess/self%scale)))
+      residual = max(0.0_rk, residual - tolerance)
+   end function residuals
 
    !> Update of the matrix: the smallest change, relative to its terms, with which it predicts the
    !! measured change of the excess. K_eq of a tip depends more on its own position than on those of

@@ -39,6 +39,8 @@ program test_growth_advances
    call test_retreat()
    call test_steep_guess()
    call test_noise()
+   call test_plateau()
+   call test_end_of_segment()
    call checks%finish()
 
 contains
@@ -123,6 +125,53 @@ contains
       call checks%is_true(real(total, rk)/problems <= 5.0_rk, "noise: 5 evaluations on average")
       call checks%is_true(most <= 25, "noise: 25 evaluations at most")
    end subroutine test_noise
+
+   !> Twelve tips that load each other, of which one has a K_eq that hardly changes over most of its
+   !! segment, with a hump (K of such a tip in a network of 30 fractures): the others do not wait
+   !! for it, nor does it stop where K_eq rises.
+   subroutine test_plateau()
+      integer, parameter :: n = 12
+      type(advances_t) :: advances
+      real(rk) :: matrix(n, n), excess(n)
+      integer :: i, j
+
+      do j = 1, n
+         matrix(:, j) = [(merge(-0.1_rk*i, 0.01_rk, i == j), i=1, n)]
+      end do
+      call solve(with_plateau, matrix, spread(1.0_rk, 1, n), advances)
+      excess = with_plateau(advances%place)
+      call checks%is_true(all(in_equilibrium(advances%place, excess, spread(0.0_rk, 1, n), &
+                                             spread(1.0_rk, 1, n), tolerance)), &
+                          "plateau: in equilibrium")
+      call checks%is_true(advances%place(1) > 0.75_rk, "plateau: beyond it")
+      call checks%is_true(advances%evaluations <= 8, "plateau: few evaluations")
+   end subroutine test_plateau
+
+   pure function with_plateau(place) result(excess)
+      real(rk), intent(in) :: place(:)
+      real(rk) :: excess(size(place))
+      integer :: i
+
+      excess = [(0.03_rk*i - 0.1_rk*i*place(i) + 0.01_rk*(sum(place) - place(i)), i=1, size(place))]
+      excess(1) = 0.015_rk + 0.004_rk*sin(12.0_rk*place(1)) &
+                  - 0.2_rk*max(0.0_rk, place(1) - 0.7_rk) + 0.01_rk*(sum(place(2:)) - 3.6_rk)
+   end function with_plateau
+
+   !> A tip that would retreat from its upper bound by less than the distance at which it is put
+   !! onto the bound is in equilibrium there.
+   subroutine test_end_of_segment()
+      type(advances_t) :: advances
+      logical :: has_moved
+
+      call advances%begin([0.0_rk], [0.1_rk], [0.1_rk], reshape([-1.0_rk], [1, 1]), &
+                          sliver=[0.03_rk])
+      call advances%improve([-0.02_rk], tolerance, has_moved)
+      call checks%is_true(.not. has_moved, "end of a segment: stays")
+      call advances%begin([0.0_rk], [0.1_rk], [0.1_rk], reshape([-1.0_rk], [1, 1]), &
+                          sliver=[0.03_rk])
+      call advances%improve([-0.04_rk], tolerance, has_moved)
+      call checks%is_true(has_moved, "end of a segment: retreats")
+   end subroutine test_end_of_segment
 
    !> Double cantilever beam of 1 m at a given opening: K falls as the length to the power of -2.
    subroutine test_cantilever()
