@@ -11,6 +11,7 @@ module coarse_full_step
    use algebra_blocks, only: is_in_team
    use algebra_links, only: equations_together, links_t, new_links
    use base_kinds, only: ik, rk
+   use base_plane, only: norm2
    use coarse_slopes, only: slopes_t
    use coarse_stiffness, only: stiffness_t
    use contact_dense, only: factorize_full, solve_factorized
@@ -18,7 +19,7 @@ module coarse_full_step
    implicit none(type, external)
    private
 
-   public :: find_full_step, full_slopes, kinds_t
+   public :: find_full_step, full_slopes, kinds_t, reduced_t
 
    !> Numbers of unknowns that may be linked, which are those of their equations too.
    type :: kinds_t
@@ -34,44 +35,65 @@ module coarse_full_step
 
    !> Equations that remain after elimination of the links.
    type :: reduced_t
+      private
+      logical :: is_known = .false.  !< factors of an earlier iteration
+      integer(ik) :: of = 0  !< factorization of the rock that they belong to
+      real(rk) :: step(2) = 0.0_rk  !< start and length of the time step that they belong to [s]
+      real(rk), allocatable :: weight(:, :)  !< of the forces in their equations
+      real(rk) :: condition = 0.0_rk  !< of their matrix [-]
       type(links_t) :: links
       integer(ik) :: n_faces = 0  !< so many links, the first, are not exact
       integer(ik), allocatable :: equations(:), unknowns(:)  !< their numbers among all
       real(rk), allocatable :: rest(:)  !< their residuals [Pa]
       real(rk), allocatable :: factors(:, :), scale(:)  !< as of factorize_full
       integer(ik), allocatable :: pivots(:)
+   contains
+      procedure :: keep_for
    end type reduced_t
 
    !> Largest share of a face's pressure due to its own volume, for which it is linked [-].
    real(rk), parameter :: little = 1.0e-4_rk
 
    integer(ik), parameter :: rounds_max = 6  !< of improvement
+   integer(ik), parameter :: most_directions = 10  !< with earlier factors; more cost as much as new ones
+   !> Residuals that remain with earlier factors, over those before the step, and bounds of them over
+   !! the stress scale [-].
+   real(rk), parameter :: reduction = 1.0e-8_rk, most = 1.0e-11_rk, least = 1.0e-13_rk
    real(rk), parameter :: well = 16.0_rk*epsilon(1.0_rk)  !< fulfilled: residual over unknowns [-]
 
 contains
 
-   !> Solve for the step. The condition is that of the remaining equations. Faces are linked if
-   !! there are many unknowns and the step can be improved until it satisfies all equations.
+   !> Solve for the step, with earlier factors if possible. The condition is that of the remaining
+   !! equations. Faces are linked if there are many unknowns and the step can be improved until it
+   !! satisfies all equations.
    subroutine find_full_step(stiffness, slopes, kinds, residual, stress_scale, with_condition, &
-                             step, quality)
+                             reduced, step, quality)
       type(stiffness_t), intent(in) :: stiffness
       type(slopes_t), intent(inout) :: slopes  !< numbered by row afterwards
       type(kinds_t), intent(in) :: kinds
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
       real(rk), intent(in) :: stress_scale  !< [Pa]
       logical, intent(in) :: with_condition
+      type(reduced_t), intent(inout) :: reduced  !< of an earlier iteration; those used afterwards
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
       type(step_quality_t), intent(out) :: quality
-      type(reduced_t) :: reduced
       real(rk) :: worst
       logical :: is_good, with_faces
 
+      if (is_like(reduced, slopes)) then
+         call reduce_residual(stiffness, slopes, residual, stress_scale, reduced, step, quality, &
+                              is_good)
+         if (is_good) return
+      end if
       call slopes%by_row()
       with_faces = slopes%n >= kinds%many
       do
          call reduce(stiffness, slopes, kinds, with_faces, residual, with_condition, reduced, &
                      quality)
          if (quality%is_singular) return
+         reduced%is_known = .true.
+         reduced%condition = quality%condition
+         reduced%weight = slopes%weight
          call solve_reduced(reduced, step)
          if (reduced%n_faces == 0) return
          call improve(stiffness, slopes, residual, reduced, step, worst, is_good)
@@ -80,6 +102,32 @@ contains
          with_faces = .false.
       end do
    end subroutine find_full_step
+
+   !> Forget the factors unless they belong to this factorization of the rock and this time step: a
+   !! step is to depend on nothing but the state at its start.
+   pure subroutine keep_for(self, of, time, dt)
+      class(reduced_t), intent(inout) :: self
+      integer(ik), intent(in) :: of
+      real(rk), intent(in) :: time, dt  !< start and length of the step [s]
+
+      self%is_known = self%is_known .and. self%of == of .and. &
+                      .not. any(abs(self%step - [time, dt]) > 0.0_rk)
+      self%of = of
+      self%step = [time, dt]
+   end subroutine keep_for
+
+   !> Whether factors are known of equations in which few points are in another state.
+   pure logical function is_like(self, slopes)
+      type(reduced_t), intent(in) :: self
+      type(slopes_t), intent(in) :: slopes
+      real(rk), parameter :: share = 0.5_rk  ! of a weight: no change of contact is less
+      integer(ik), parameter :: most_changes = 12
+
+      is_like = self%is_known
+      if (is_like) is_like = size(self%weight, 2) == slopes%n
+      if (is_like) is_like = count(abs(slopes%weight - self%weight) &
+                                  > share*max(abs(slopes%weight), abs(self%weight))) <= most_changes
+   end function is_like
 
    !> Factorize the equations that remain after elimination of the links.
    subroutine reduce(stiffness, slopes, kinds, with_faces, residual, with_condition, reduced, &
@@ -90,16 +138,18 @@ contains
       logical, intent(in) :: with_faces  !< whose links are not exact
       real(rk), intent(in) :: residual(:)  !< (n) [Pa]
       logical, intent(in) :: with_condition
-      type(reduced_t), intent(out) :: reduced
+      type(reduced_t), intent(inout) :: reduced
       type(step_quality_t), intent(out) :: quality
       integer(ik) :: n
 
+      reduced%is_known = .false.
       associate (links => reduced%links)
          call find_links(stiffness, slopes, kinds, with_faces, links, reduced%n_faces)
          call links%take_residual(residual)
          reduced%equations = links%kept_equations()
          reduced%unknowns = links%kept_unknowns()
          n = size(reduced%unknowns, kind=ik)
+         if (allocated(reduced%factors)) deallocate (reduced%factors, reduced%scale, reduced%pivots)
          allocate (reduced%factors(n, n), reduced%scale(n), reduced%pivots(n))
          reduced%rest = residual(reduced%equations)
       end associate
@@ -164,33 +214,92 @@ contains
 
       worst_before = huge(1.0_rk)
       do k = 1, rounds_max
-         left = residual + matrix_product(step)
+         left = residual + product_of(stiffness, slopes, step)
          worst = maxval(abs(left(reduced%links%unknown(:reduced%n_faces))))
          is_good = worst <= well*maxval(abs(step))
          if (is_good .or. .not. worst < 0.5_rk*worst_before) exit
          worst_before = worst
-         call reduced%links%take_residual(left)
-         change = 0.0_rk
-         call reduced%links%complete(change)
-         step = step + change
-         left = left + matrix_product(change)
-         reduced%rest = left(reduced%equations)
-         reduced%links%rest(:reduced%links%n) = 0.0_rk
-         call solve_reduced(reduced, change)
+         call precondition(stiffness, slopes, left, reduced, change)
          step = step + change
       end do
-
-   contains
-
-      !> What all equations make of a step.
-      function matrix_product(x) result(answer)
-         real(rk), intent(in) :: x(:)  !< [Pa]
-         real(rk) :: answer(size(x))  !< [Pa]
-
-         call slopes%apply(x, stiffness%product(x(slopes%x_of_q)*slopes%q_per_x), answer)
-      end function matrix_product
-
    end subroutine improve
+
+   !> Conjugate residuals (Eisenstat, Elman and Schultz 1983; equivalent to GMRES) with earlier
+   !! factors.
+   subroutine reduce_residual(stiffness, slopes, residual, stress_scale, reduced, step, quality, &
+                              is_done)
+      type(stiffness_t), intent(in) :: stiffness
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: residual(:)  !< (n) before the step [Pa]
+      real(rk), intent(in) :: stress_scale  !< [Pa]
+      type(reduced_t), intent(inout) :: reduced
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      type(step_quality_t), intent(inout) :: quality
+      logical, intent(out) :: is_done
+      real(rk), dimension(size(step), most_directions) :: direction, product
+      real(rk) :: enough, left(size(step)), share
+      integer(ik) :: j, k, pass
+
+      enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
+      step = 0.0_rk
+      left = residual
+      do k = 1, most_directions
+         associate (p => direction(:, k), q => product(:, k))
+            call precondition(stiffness, slopes, left, reduced, p)
+            q = product_of(stiffness, slopes, p)
+            do pass = 1, 2  ! twice because of rounding
+               do j = 1, k - 1
+                  share = dot_product(product(:, j), q)
+                  q = q - share*product(:, j)
+                  p = p - share*direction(:, j)
+               end do
+            end do
+            share = norm2(q)
+            is_done = .false.
+            if (.not. share > 0.0_rk) return
+            p = p/share
+            q = q/share
+            share = dot_product(q, left)
+            step = step - share*p
+            left = left - share*q
+         end associate
+         is_done = maxval(abs(left)) <= enough
+         if (is_done) exit
+      end do
+      quality%condition = reduced%condition
+      quality%rest = maxval(abs(left))/stress_scale
+   end subroutine reduce_residual
+
+   !> The step that the factors give for a residual: exact if they are those of the present
+   !! equations, and all links are exact.
+   subroutine precondition(stiffness, slopes, residual, reduced, step)
+      type(stiffness_t), intent(in) :: stiffness
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: residual(:)  !< (n) [Pa]
+      type(reduced_t), intent(inout) :: reduced
+      real(rk), intent(out) :: step(:)  !< (n) [Pa]
+      real(rk) :: by_links(size(step)), left(size(step))
+
+      call reduced%links%take_residual(residual)
+      by_links = 0.0_rk
+      call reduced%links%complete(by_links)
+      left = residual + product_of(stiffness, slopes, by_links)
+      reduced%rest = left(reduced%equations)
+      reduced%links%rest(:reduced%links%n) = 0.0_rk
+      step = 0.0_rk
+      call solve_reduced(reduced, step)
+      step = step + by_links
+   end subroutine precondition
+
+   !> What all equations make of a step.
+   function product_of(stiffness, slopes, x) result(answer)
+      type(stiffness_t), intent(in) :: stiffness
+      type(slopes_t), intent(in) :: slopes
+      real(rk), intent(in) :: x(:)  !< (n) [Pa]
+      real(rk) :: answer(size(x))  !< [Pa]
+
+      call slopes%apply(x, stiffness%product(x(slopes%x_of_q)*slopes%q_per_x), answer)
+   end function product_of
 
    !> Find the links: faces first, then, exactly, pressures of the fluid, then jumps.
    subroutine find_links(stiffness, slopes, kinds, with_faces, links, n_faces)

@@ -11,7 +11,7 @@ module coarse_newton
    use coarse_fracture_flow, only: fill_balance, fill_branch, fill_equilibrium, fill_exchange, &
                                    fill_flow, fill_joint
    use coarse_fractures, only: cell_fluid_t, flow_paths_t, fracture_system_t, prepare
-   use coarse_full_step, only: find_full_step, kinds_t
+   use coarse_full_step, only: find_full_step, kinds_t, reduced_t
    use coarse_joints, only: flows_in_loops, unknown_flow
    use coarse_pivoting, only: pivot_fractures
    use coarse_sparse_step, only: sparse_step_t
@@ -29,6 +29,7 @@ module coarse_newton
    type, extends(flow_paths_t) :: fracture_problem_t
       type(condensed_t) :: condensed
       type(sparse_step_t) :: factors  !< of the linear step unless the condensed matrix is full
+      type(reduced_t) :: reduced  !< the same if it is
       type(fracture_cells_t) :: cells  !< set by the caller for each mesh
    end type fracture_problem_t
 
@@ -36,6 +37,7 @@ module coarse_newton
    type, extends(fracture_system_t) :: equations_t
       type(sparse_step_t), pointer :: factors => null()  !< needed unless the matrix is full
       type(kinds_t) :: kinds  !< unknowns by their meaning; see find_kinds
+      type(reduced_t), pointer :: reduced => null()  !< needed if the matrix is full
    contains
       procedure :: evaluate
       procedure :: find_step
@@ -70,6 +72,8 @@ contains
 
       call prepare(problem%condensed, problem%cells, paths, dt, g, state, eq)
       eq%factors => problem%factors
+      call problem%reduced%keep_for(problem%condensed%factorizations, state%time, dt)
+      eq%reduced => problem%reduced
       how = iteration_settings_t(tolerance=paths%settings%tolerance, &
                                  iterations_max=paths%settings%iterations_max, &
                                  with_condition=.true., allows_rounding=.true.)
@@ -387,7 +391,7 @@ contains
       if (.not. allocated(self%kinds%is_flow)) call find_kinds(self)
       if (self%condensed%is_full) then
          call find_full_step(self%condensed%stiffness, self%slopes, self%kinds, self%residual, &
-                             self%stress_scale, with_condition, step, quality)
+                             self%stress_scale, with_condition, self%reduced, step, quality)
       else
          call self%factors%find_step(self%condensed, self%slopes, self%kinds%is_flow, &
                                      self%residual, self%stress_scale, step, quality)
