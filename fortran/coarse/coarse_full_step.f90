@@ -55,8 +55,8 @@ module coarse_full_step
    real(rk), parameter :: little = 1.0e-4_rk
 
    integer(ik), parameter :: rounds_max = 6  !< of improvement
-   integer(ik), parameter :: most_directions = 10  !< with earlier factors; more cost as much as new ones
-   !> Residuals that remain with earlier factors, over those before the step, and bounds of them over
+   integer(ik), parameter :: most_directions = 10  !< with earlier factors; then new ones cost less
+   !> Residuals that remain with earlier factors, over those before the step, and their bounds over
    !! the stress scale [-].
    real(rk), parameter :: reduction = 1.0e-8_rk, most = 1.0e-11_rk, least = 1.0e-13_rk
    real(rk), parameter :: well = 16.0_rk*epsilon(1.0_rk)  !< fulfilled: residual over unknowns [-]

@@ -20,7 +20,8 @@
 !! K of two meshes differs within its error. Where this error is many times the tolerance, no
 !! position satisfies the tolerance reliably: proposals are rejected, or a bisection goes on to its
 !! resolution. After two rejected proposals, or four evaluations, K_eq of a tip between its bounds
-!! may be below K_IC by a given share of the error (`slack`), and above it by the same, up to three times the tolerance.
+!! may be below K_IC by a given share of the error (`slack`), and above it by the same, up to twice
+!! the tolerance.
 module growth_advances
    use base_kinds, only: rk
    use base_plane, only: norm2
@@ -38,8 +39,8 @@ module growth_advances
    !! tip between its bounds is expected [-].
    real(rk), parameter :: flat = 0.05_rk
 
-   !> Largest excess of a tip between its bounds where a search that has stalled ends, over the
-   !! tolerance [-].
+   !> Largest excess of a tip between its bounds where a search that has stalled ends, and largest
+   !! lack of one that stays at its upper bound, over the tolerance [-].
    real(rk), parameter :: most_over = 2.0_rk
 
    !> State of the iteration.
@@ -150,11 +151,13 @@ contains
       integer :: i
 
       ! A tip that would retreat by less than the sliver stays at its upper bound.
-      lack = [(max(tolerance, merge(-self%matrix(i, i)*self%sliver(i), 0.0_rk, &
-                                    self%place(i) >= self%upper(i))), i=1, size(lack))]
+      lack = [(max(tolerance, min(-self%matrix(i, i)*self%sliver(i), most_over*tolerance)), &
+               i=1, size(lack))]
+      where (self%place < self%upper) lack = tolerance
       if (.not. allocated(self%slack)) return
-      if (self%is_monotone .or. self%rejected_in_all >= stalled .or. self%evaluations > long) &
+      if (self%is_monotone .or. self%rejected_in_all >= stalled .or. self%evaluations > long) then
          lack = max(lack, self%slack)
+      end if
    end function allowed
 
    !> Whether a tip satisfies its complementarity condition within the tolerance.
@@ -176,8 +179,8 @@ contains
    end function in_equilibrium
 
    !> Accept the evaluated position if its residual is below that of one of the last two accepted
-   !! positions. Tips that advance and still exceed their toughness, by hardly more than before, need
-   !! not count: their equilibrium lies ahead. Otherwise shrink the trust region of the others.
+   !! positions. Tips that advance and still exceed their toughness, by hardly more than before,
+   !! need not count: their equilibrium lies ahead. Else shrink the trust region of the others.
    pure subroutine judge(self, excess, tolerance)
       class(advances_t), intent(inout) :: self
       real(rk), intent(in) :: excess(:)  !< (tips) [-]
@@ -193,8 +196,9 @@ contains
          residual = residuals(self, self%place, excess, tolerance)
          at_best = residuals(self, self%best, self%excess, tolerance)
          before = at_best
-         if (allocated(self%best_before)) &
+         if (allocated(self%best_before)) then
             before = residuals(self, self%best_before, self%excess_before, tolerance)
+         end if
          is_on_way = self%place > self%best .and. min(excess, self%excess) > 0.0_rk .and. &
                      excess < self%excess + level*tolerance
          is_better = norm2(residual) < max(norm2(at_best), norm2(before))
