@@ -5,7 +5,7 @@ program test_coarse_equations
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
    use coarse_fractures, only: flow_paths_t, prepare
-   use coarse_full_step, only: full_slopes
+   use coarse_full_step, only: full_slopes, reduced_t
    use coarse_layout, only: fracture_layout_t
    use coarse_model, only: coarse_model_t, new_state
    use coarse_newton, only: equations_t
@@ -297,8 +297,10 @@ contains
       real(rk), intent(in) :: jacobian(:, :)  !< an equation per column
       real(rk), intent(in) :: row_scale(:)
       type(step_quality_t) :: quality
+      type(reduced_t), target :: reduced
       real(rk) :: step(size(row_scale))
 
+      eq%reduced => reduced
       call eq%find_step(.true., step, quality)
       call checks%is_true(.not. quality%is_singular, "there is a step")
       call checks%is_close(maxval(abs(matmul(step, jacobian) + eq%residual)/row_scale) &
