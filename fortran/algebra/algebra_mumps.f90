@@ -82,7 +82,7 @@ module algebra_mumps
    !> One matrix with its factors. Not to be copied: the factors belong to the original.
    type :: mumps_t
       type(dmumps_struc) :: id
-      integer(ik) :: ordering = mumps_minimum_degree  !< or _fill, or mumps_pord, of the next analysis
+      integer(ik) :: ordering = mumps_minimum_degree  !< of the next analysis
       logical :: active = .false.
       integer(ik) :: share = 0  !< its number among those that ranks share; 0: it is not shared
       integer(ik) :: n_schur = 0

@@ -91,6 +91,7 @@ contains
          state%next = max(substep*min(most, 0.9_rk*sqrt(ratio)), &
                           merge(state%next, 0.0_rk, left <= 0.0_rk .and. ratio > 1.0_rk))
          share = share_in_range(heat, state, half(2)%temperature, correction)
+         state%damped = state%damped + (1.0_rk - share)*substep**2
          after = half(2)%temperature - share*correction
          half(2)%along = half(2)%along + share*(half(2)%along - half(1)%along)
          ! Linear, so that of its time integral is the integral of what leaves the body.

@@ -402,16 +402,17 @@ contains
    end function heat_row
 
    !> Add the temperatures to the fields of a state.
-   pure subroutine add_heat_fields(problem, state, fields)
+   pure subroutine add_heat_fields(problem, state, time, fields)
       type(coarse_problem_t), intent(in) :: problem
       type(heat_state_t), intent(in) :: state
+      real(rk), intent(in) :: time  !< [s]
       type(snapshot_t), intent(inout) :: fields
       real(rk), allocatable :: behind(:), error(:)
 
       if (.not. (allocated(problem%heat) .and. allocated(state%temperature))) return
       associate (heat => problem%heat, datum => problem%heat%heat%temperature)
          behind = behind_wells(problem)
-         error = temperature_errors(heat, state, behind)
+         error = temperature_errors(heat, state, time, behind)
          call add_errors_at_wells(heat, state, behind, error)
          associate (first => heat%first_cell, last => heat%first_joint - 1)
             fields%fracture%temperature = datum + state%temperature(first:last)
@@ -424,15 +425,16 @@ contains
    end subroutine add_heat_fields
 
    !> Add the temperatures to the rows of the wells.
-   pure subroutine add_well_temperatures(problem, state, rows)
+   pure subroutine add_well_temperatures(problem, state, time, rows)
       type(coarse_problem_t), intent(in) :: problem
       type(heat_state_t), intent(in) :: state
+      real(rk), intent(in) :: time  !< [s]
       type(well_row_t), intent(inout) :: rows(:)
 
       if (.not. allocated(problem%heat)) return
       rows%temperature = problem%heat%heat%temperature + state%well_temperature
       rows%error%temperature = well_errors(problem%heat, state, &
-                                           temperature_errors(problem%heat, state, &
+                                           temperature_errors(problem%heat, state, time, &
                                                               behind_wells(problem)))
    end subroutine add_well_temperatures
 

@@ -78,9 +78,9 @@ contains
    !! Displacements: those of a strain nucleus, u = m/(2 pi r), m = alpha V/(S' (lambda + 2 G)) for
    !! the volume V, change by d m/(2 pi r^2), and as much by its image in a side, r at most the
    !! distance of that. Pressures: those of a source that supplies V in the time t,
-   !! p = Q mu/(4 pi K) E1(r^2/(4 c t)), change by d Q mu/(2 pi K r) exp(-r^2/(4 c t)), and so by its
-   !! image, which is farther from the probe than the well and the side. r is the distance of the
-   !! nearer of both places.
+   !! p = Q mu/(4 pi K) E1(r^2/(4 c t)), change by d Q mu/(2 pi K r) exp(-r^2/(4 c t)), and so by
+   !! its image, which is farther from the probe than the well and the side. r is the distance of
+   !! the nearer of both places.
    subroutine add_well_places(scene, problem, injected, time, row)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem

@@ -547,7 +547,7 @@ contains
          fields%windows = self%windows%meshes(self%tip)
          if (size(fields%windows%tip) == 0) deallocate (fields%windows)
       end if
-      call add_heat_fields(self%problem, self%now%heat, fields)
+      call add_heat_fields(self%problem, self%now%heat, self%time(), fields)
    end subroutine snapshot
 
    !> Time of the present state [s].

@@ -132,7 +132,8 @@ contains
       real(rk), intent(in) :: from(2)  !< [m]
       real(rk) :: displacement(2)
 
-      displacement = solid%biot*volume/(solid%uniaxial_storage()*(solid%lame + 2.0_rk*solid%shear)) &
+      displacement = solid%biot*volume/(solid%uniaxial_storage() &
+                                        *(solid%lame + 2.0_rk*solid%shear)) &
                      *from/(2.0_rk*pi*dot_product(from, from))
    end function displacement
 
