@@ -16,8 +16,8 @@ module algebra_mumps
    implicit none(type, external)
    private
 
-   public :: are_shared, begin_ranks, mumps_definite, mumps_indefinite, mumps_pord, mumps_t
-   public :: mumps_unsymmetric
+   public :: are_shared, begin_ranks, mumps_definite, mumps_indefinite, mumps_minimum_fill
+   public :: mumps_pord, mumps_t, mumps_unsymmetric
 
    interface
       !> To be called once, before anything is solved. Only the first rank comes back; the others
@@ -64,6 +64,7 @@ module algebra_mumps
    integer(ik), parameter :: mumps_indefinite = 2  !< general symmetric (SYM=2)
 
    integer(ik), parameter :: mumps_minimum_degree = 0  !< approximate minimum degree
+   integer(ik), parameter :: mumps_minimum_fill = 2  !< approximate minimum fill
    integer(ik), parameter :: mumps_pord = 4  !< a mixture of both kinds of bisection; repeatable
 
    ! JOB
@@ -81,7 +82,7 @@ module algebra_mumps
    !> One matrix with its factors. Not to be copied: the factors belong to the original.
    type :: mumps_t
       type(dmumps_struc) :: id
-      integer(ik) :: ordering = mumps_minimum_degree  !< or mumps_pord, of the next analysis
+      integer(ik) :: ordering = mumps_minimum_degree  !< of the next analysis
       logical :: active = .false.
       integer(ik) :: share = 0  !< its number among those that ranks share; 0: it is not shared
       integer(ik) :: n_schur = 0

@@ -41,6 +41,7 @@ module coarse_matrix
       procedure :: is_difference
       procedure :: entry_at
       procedure :: elastic_forces
+      procedure :: pressure_forces
    end type matrix_t
 
 contains
@@ -111,6 +112,25 @@ contains
          entry = entry + 1
       end do
    end function entry_at
+
+   !> What the elastic part makes of pressures, the displacements being zero.
+   pure function pressure_forces(self, pressure) result(force)
+      class(matrix_t), intent(in) :: self
+      real(rk), intent(in) :: pressure(:)  !< (n_blocks) [Pa]
+      real(rk), allocatable :: force(:, :)  !< (3, n_blocks) [N/m], [N/m], [m2]
+      integer(ik) :: entry, i, j
+
+      allocate (force(3, self%n_blocks), source=0.0_rk)
+      do i = 1, self%n_blocks
+         do entry = self%columns%first(i), self%columns%last(i)
+            j = self%columns%item(entry)
+            associate (block => self%elastic(:, :, entry))
+               force(:, i) = force(:, i) + block(:, 3)*pressure(j)
+               if (j /= i) force(:, j) = force(:, j) + block(3, :)*pressure(i)
+            end associate
+         end do
+      end do
+   end function pressure_forces
 
    !> What the elastic part makes of unknowns: the left-hand side but for the flow.
    pure function elastic_forces(self, unknowns) result(force)

@@ -164,7 +164,7 @@ contains
       allocate (acting, mold=load)
       acting = 0.0_rk
       acting = self%rock%with_heat(acting)
-      load = load - self%matrix%elastic_forces(acting)
+      load = load - self%matrix%pressure_forces(acting(3, :))
       do c = 1, mesh%n_cells
          solid = self%rock%solid_at(c)
          load(3, c) = load(3, c) - cell_area(mesh, c)*(solid%storage*acting(3, c) &

@@ -3,7 +3,10 @@
 !! a cell and its neighbours. Where fronts are thinner than a cell it is of the size of their
 !! difference, linear temperatures have none. It is that of the temperatures or of their rise since
 !! the start, whichever is less: initial gradients are exact. In rock it is several times as much
-!! in the tail of a front, whose few parts have come through many cells (test_heat_errors).
+!! in the tail of a front, whose few parts have come through many cells (test_heat_errors). Where
+!! fluid flows through rock, the fluxes of heat_links diffuse more than the rock conducts: a bend
+!! has then lost G t/C of itself, with the sum G of what they conduct too much and the capacity C.
+!! In time a front diffuses too, as far as the corrections of substeps do not count.
 !!
 !! In fractures that of the rock next to them counts too, beyond what layers resolve: a share where
 !! the fracture cools the rock, and more than the difference of its cells where it follows the rock.
@@ -13,6 +16,7 @@
 module heat_errors
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, norm2
+   use heat_links, only: coefficients
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    implicit none(type, external)
@@ -31,13 +35,15 @@ module heat_errors
 contains
 
    !> Errors of cells, or with layers of what lies beyond them, of fracture cells and joints.
-   pure function temperature_errors(heat, state, behind) result(error)
+   pure function temperature_errors(heat, state, time, behind) result(error)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
+      real(rk), intent(in) :: time  !< since the start [s]
       !> (fracture cells) share of the cell behind a well at a point of it; -1: no well
       real(rk), intent(in) :: behind(:)
       real(rk) :: error(heat%n)  !< (unknowns) 0 in nodes of layers [K]
       real(rk) :: bend(heat%n), rise(heat%n), step(heat%n)
+      real(rk) :: excess(heat%n)  ! conductance beyond that of the rock [W/(m K)]
       integer(ik) :: near(3, heat%n), number(heat%n)
       integer(ik) :: i, k, u
 
@@ -45,6 +51,7 @@ contains
       near = 0
       number = 0
       step = 0.0_rk
+      excess = 0.0_rk
       do k = 1, size(heat%links, kind=ik)
          associate (link => heat%links(k), a => heat%links(k)%ends(1), b => heat%links(k)%ends(2))
             if (a == 0 .or. .not. (link%is_limited .or. max(a, b) <= heat%mesh%n_cells)) cycle
@@ -53,6 +60,9 @@ contains
             if (number(b) <= 3) near(number(b), b) = a
             step([a, b]) = max(step([a, b]), min(abs(rise(a) - rise(b)), abs( &
                                                  state%temperature(a) - state%temperature(b))))
+            if (max(a, b) > heat%mesh%n_cells) cycle
+            excess([a, b]) = excess([a, b]) + 0.5_rk*sum(coefficients(link%conductance, link%flow, &
+                                                                      link%conducts))
          end associate
       end do
       do u = 1, heat%n
@@ -65,7 +75,8 @@ contains
          end associate
          if (u <= heat%mesh%n_cells .and. step(u) > 0.0_rk) then
             error(u) = min(step(u), error(u) &
-                           *(1.0_rk + in_tails*step(u)/(abs(rise(u)) + step(u))))
+                           *(1.0_rk + in_tails*step(u)/(abs(rise(u)) + step(u)) &
+                             + excess(u)*time/state%capacity(u)))
          end if
       end do
       do i = 1, heat%mesh%fracture%n_cells
@@ -80,6 +91,8 @@ contains
          end associate
       end do
       error = error + of_tolerance*heat%heat%tolerance*abs(rise)
+      ! Twice the corrections, of about bend dt^2/2, that do not count (heat_steps).
+      if (allocated(state%bend)) error = error + state%damped*abs(state%bend)
 
    contains
 

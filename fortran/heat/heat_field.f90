@@ -69,7 +69,10 @@ contains
          do c = 1, mesh%n_cells
             associate (nodes => mesh%cell_nodes(:, c))
                plain = sum(field%nodal(nodes))/3.0_rk
-               beyond = sum(moments(heat, field, mesh%xy(:, nodes), c)) - plain
+               beyond = 0.0_rk
+               if (field%around%length(c) > 0) then
+                  beyond = sum(moments(heat, field, mesh%xy(:, nodes), c)) - plain
+               end if
                if (abs(means(c)) < thin*largest .and. abs(beyond) > 0.0_rk) then
                   field%found(c) = max(0.0_rk, min(1.0_rk, (means(c) - plain)/beyond))
                end if

@@ -22,6 +22,8 @@ module heat_state
       real(rk), allocatable :: well_temperature(:)
       real(rk) :: last = 0.0_rk  !< length of the last substep [s]
       real(rk) :: next = 0.0_rk  !< length of the next one [s]
+      !> Squares of all substeps, each as far as its correction does not count [s2]
+      real(rk) :: damped = 0.0_rk
       ! Since the start [J/m]:
       real(rk) :: stored = 0.0_rk  !< increase in the body
       real(rk) :: by_wells = 0.0_rk  !< into the body
@@ -64,6 +66,7 @@ contains
       if (allocated(self%bend)) call archive%agree("heat", [.true., allocated(self%rate)])
       call archive%item("last", self%last)
       call archive%item("next", self%next)
+      call archive%item("damped", self%damped)
       call archive%item("stored", self%stored)
       call archive%item("by_wells", self%by_wells)
       call archive%item("by_sides", self%by_sides)

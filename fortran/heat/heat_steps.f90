@@ -31,7 +31,7 @@
 !! the start. Of the half-space cooled at its face a fifth of it is more than remains with c: 1e-4
 !! of the heat at the default tolerance (test_heat_steps).
 module heat_steps
-   use algebra_mumps, only: mumps_unsymmetric
+   use algebra_mumps, only: mumps_minimum_fill, mumps_unsymmetric
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use coarse_diffusion, only: boundary_outflow
@@ -91,6 +91,7 @@ contains
          state%next = max(substep*min(most, 0.9_rk*sqrt(ratio)), &
                           merge(state%next, 0.0_rk, left <= 0.0_rk .and. ratio > 1.0_rk))
          share = share_in_range(heat, state, half(2)%temperature, correction)
+         state%damped = state%damped + (1.0_rk - share)*substep**2
          after = half(2)%temperature - share*correction
          half(2)%along = half(2)%along + share*(half(2)%along - half(1)%along)
          ! Linear, so that of its time integral is the integral of what leaves the body.
@@ -276,16 +277,21 @@ contains
       type(half_t), intent(inout) :: half(2)
       real(rk), intent(out) :: diagonal(:)  !< (unknowns) of the matrix [J/(m K)]
       type(error_t), allocatable, intent(out) :: error
-      integer(ik), allocatable :: col(:), row(:)
       real(rk), allocatable :: values(:)
       real(rk) :: ab(2), gain(heat%n)  ! (unknowns) of capacity in a half [J/(m K)]
       integer(ik) :: i, k
 
-      row = [(i, i=1, heat%n), heat%row, (max(heat%links(k)%ends([1, 1, 2, 2]), 1_ik), &
-                                          k=1, size(heat%links, kind=ik))]
-      col = [(i, i=1, heat%n), heat%col, (max(heat%links(k)%ends([1, 2, 2, 1]), 1_ik), &
-                                          k=1, size(heat%links, kind=ik))]
-      allocate (values(size(row)), source=0.0_rk)
+      if (.not. heat%matrix%active) then
+         heat%matrix%ordering = mumps_minimum_fill  ! measured: a tenth faster
+         call heat%matrix%analyse(heat%n, [(i, i=1, heat%n), heat%row, &
+                                           (max(heat%links(k)%ends([1, 1, 2, 2]), 1_ik), &
+                                            k=1, size(heat%links, kind=ik))], &
+                                  [(i, i=1, heat%n), heat%col, &
+                                   (max(heat%links(k)%ends([1, 2, 2, 1]), 1_ik), &
+                                    k=1, size(heat%links, kind=ik))], mumps_unsymmetric, error)
+         if (allocated(error)) return
+      end if
+      allocate (values(heat%matrix%id%nnz), source=0.0_rk)
       gain = half(2)%dt*gains(heat)
       associate (dt => half(2)%dt, links => values(heat%n + size(heat%row) + 1:))
          values(heat%n + 1:heat%n + size(heat%row)) = -dt*heat%conduction
@@ -308,14 +314,12 @@ contains
       half(2)%capacity = max(half(1)%capacity + gain, 0.0_rk)
       values(:heat%n) = values(:heat%n) + half(2)%capacity
       diagonal = 0.0_rk
-      do k = 1, size(values, kind=ik)
-         if (row(k) == col(k)) diagonal(row(k)) = diagonal(row(k)) + values(k)
-      end do
-      values = values/diagonal(row)
-      if (.not. heat%matrix%active) then
-         call heat%matrix%analyse(heat%n, row, col, mumps_unsymmetric, error)
-         if (allocated(error)) return
-      end if
+      associate (row => heat%matrix%id%irn, col => heat%matrix%id%jcn)
+         do k = 1, size(values, kind=ik)
+            if (row(k) == col(k)) diagonal(row(k)) = diagonal(row(k)) + values(k)
+         end do
+         values = values/diagonal(row)
+      end associate
       call heat%matrix%factorize(values, error)
    end subroutine factorize
 

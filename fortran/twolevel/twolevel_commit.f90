@@ -171,7 +171,7 @@ subroutine note_well_rows(self)
    call self%blurred%add_to_wells(self%scene, self%problem, self%before%time, self%now%coarse, &
                                   rows, self%value_errors%row)
    self%value_errors%of_wells = rows%error%pressure
-   call add_well_temperatures(self%problem, self%now%heat, rows)
+   call add_well_temperatures(self%problem, self%now%heat, self%now%coarse%time, rows)
    self%chronicle%wells = [self%chronicle%wells, rows]
    if (.not. self%scene%has_entries()) return
    entries = entry_rows(self%problem, self%now%coarse)

@@ -108,7 +108,7 @@ contains
       logical :: is_known
 
       if (.not. acts(scene, problem)) return
-      is_known = all(abs(problem%heat_span - [state%time, dt]) <= 0.0_rk)
+      is_known = all(abs(problem%heat_span - [state%time, state%time + dt]) <= 0.0_rk)
       if (.not. is_known) call extrapolate(problem%heat, dt, now, rise)
       if (.not. allocated(rise)) then
          if (.not. is_known) then
@@ -135,7 +135,7 @@ contains
 
    !> The rise after a step by the rates, if these hardly change: by their change in the last two
    !! substeps, if this moves a small share of the heat (measured: a quarter of it is wrong at
-   !! most), or where a substep may be as long as the step.
+   !! most); where it is not known, if a substep may be as long as the step.
    pure subroutine extrapolate(heat, dt, now, rise)
       type(heat_model_t), intent(in) :: heat
       real(rk), intent(in) :: dt  !< [s]
@@ -144,15 +144,18 @@ contains
       real(rk), allocatable :: change(:)
 
       if (.not. allocated(now%rate)) return
+      rise = now%temperature + dt*now%rate - heat%initial
       if (allocated(now%bend)) then
          change = dt*(dt + now%last)*now%bend
          if (0.25_rk*sum(now%capacity*abs(change)) <= slack(heat) &
              *sum(now%capacity*abs(now%temperature - heat%initial))) then
-            rise = now%temperature + dt*now%rate + change - heat%initial
-            return
+            rise = rise + change
+         else
+            deallocate (rise)
          end if
+      else if (now%next < dt) then
+         deallocate (rise)
       end if
-      if (now%next >= dt) rise = now%temperature + dt*now%rate - heat%initial
    end subroutine extrapolate
 
    !> Compare the temperatures that acted in a try of a step with those that its flows give. Where
@@ -245,7 +248,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
       logical :: is_same
 
-      associate (heat => problem%heat, span => [since, after%time - since])
+      associate (heat => problem%heat, span => [since, after%time])
          call set_flows(heat, problem%mesh, problem%model, after, &
                         well_flows(scene, problem, since, after))
          associate (flows => [heat%links%flow, heat%externals%flow])
@@ -254,7 +257,7 @@ contains
             if (is_same) is_same = size(problem%heat_flows) == size(flows)
             if (is_same) is_same = all(abs(problem%heat_flows - flows) <= 0.0_rk)
             if (.not. is_same) then
-               call advance_heat(heat, span(2), now, error)
+               call advance_heat(heat, after%time - since, now, error)
                if (allocated(error)) return
                problem%heat_span = span
                problem%heat_flows = flows
@@ -399,16 +402,17 @@ contains
    end function heat_row
 
    !> Add the temperatures to the fields of a state.
-   pure subroutine add_heat_fields(problem, state, fields)
+   pure subroutine add_heat_fields(problem, state, time, fields)
       type(coarse_problem_t), intent(in) :: problem
       type(heat_state_t), intent(in) :: state
+      real(rk), intent(in) :: time  !< [s]
       type(snapshot_t), intent(inout) :: fields
       real(rk), allocatable :: behind(:), error(:)
 
       if (.not. (allocated(problem%heat) .and. allocated(state%temperature))) return
       associate (heat => problem%heat, datum => problem%heat%heat%temperature)
          behind = behind_wells(problem)
-         error = temperature_errors(heat, state, behind)
+         error = temperature_errors(heat, state, time, behind)
          call add_errors_at_wells(heat, state, behind, error)
          associate (first => heat%first_cell, last => heat%first_joint - 1)
             fields%fracture%temperature = datum + state%temperature(first:last)
@@ -421,15 +425,16 @@ contains
    end subroutine add_heat_fields
 
    !> Add the temperatures to the rows of the wells.
-   pure subroutine add_well_temperatures(problem, state, rows)
+   pure subroutine add_well_temperatures(problem, state, time, rows)
       type(coarse_problem_t), intent(in) :: problem
       type(heat_state_t), intent(in) :: state
+      real(rk), intent(in) :: time  !< [s]
       type(well_row_t), intent(inout) :: rows(:)
 
       if (.not. allocated(problem%heat)) return
       rows%temperature = problem%heat%heat%temperature + state%well_temperature
       rows%error%temperature = well_errors(problem%heat, state, &
-                                           temperature_errors(problem%heat, state, &
+                                           temperature_errors(problem%heat, state, time, &
                                                               behind_wells(problem)))
    end subroutine add_well_temperatures
 

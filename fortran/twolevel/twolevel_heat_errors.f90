@@ -105,6 +105,7 @@ contains
          end if
       end if
       if (.not. allocated(self%state)) self%state = before
+      self%state%guess = state%guess  ! changes as in the step itself
       means = problem%model%rock%temperature
       problem%model%rock%temperature = blurred(problem%mesh, means)
       call find_pressed_out(problem, means, self%at_faces, self%at_sides)

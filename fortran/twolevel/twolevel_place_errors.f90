@@ -74,31 +74,43 @@ contains
       end do
    end subroutine note_probes
 
-   !> Add the error of displacements by wells in the rock, whose fluid lies at the centre of their
-   !! cell instead: that of a strain nucleus, u = m/(2 pi r), m = alpha V/(S' (lambda + 2 G)) for
-   !! the volume V, which is displaced by d: d m/(2 pi r^2), and as much by its image in a side,
-   !! r at most the distance of that.
-   subroutine add_well_places(scene, problem, injected, row)
+   !> Add the errors by wells in the rock, whose fluid lies at the centre of their cell, off by d.
+   !! Displacements: those of a strain nucleus, u = m/(2 pi r), m = alpha V/(S' (lambda + 2 G)) for
+   !! the volume V, change by d m/(2 pi r^2), and as much by its image in a side, r at most the
+   !! distance of that. Pressures: those of a source that supplies V in the time t,
+   !! p = Q mu/(4 pi K) E1(r^2/(4 c t)), change by d Q mu/(2 pi K r) exp(-r^2/(4 c t)), and so by
+   !! its image, which is farther from the probe than the well and the side. r is the distance of
+   !! the nearer of both places.
+   subroutine add_well_places(scene, problem, injected, time, row)
       type(scene_t), intent(in) :: scene
       type(coarse_problem_t), intent(in) :: problem
       real(rk), intent(in) :: injected(:)  !< (wells) so far [m2]
+      real(rk), intent(in) :: time  !< since the start [s]
       type(probe_row_t), intent(inout) :: row
-      real(rk) :: off, r, strength
+      real(rk) :: apart, off, side, size_of_cell, source, strength
       integer :: i, w
 
+      if (.not. time > 0.0_rk) return
       do w = 1, size(scene%injections)
          if (problem%rock_cell(w) == 0) cycle
          associate (well => [scene%injections(w)%x, scene%injections(w)%y], mesh => problem%mesh, &
-                    cell => problem%rock_cell(w), solid => problem%model%rock%solid_at( &
-                    problem%rock_cell(w)))
+                    cell => problem%rock_cell(w), rock => problem%model%rock, solid => &
+                    problem%model%rock%solid_at(problem%rock_cell(w)))
             off = norm2(well - cell_centre(mesh, cell))
+            size_of_cell = sqrt(cell_area(mesh, cell))
             strength = solid%biot*abs(injected(w))/(solid%uniaxial_storage() &
                                                     *(solid%lame + 2.0_rk*solid%shear))
+            source = abs(injected(w))/(2.0_rk*pi*time*rock%mobility_at(cell))
+            side = max(size_of_cell, min(minval(well - minval(mesh%xy, dim=2)), &
+                                         minval(maxval(mesh%xy, dim=2) - well)))
             do i = 1, size(scene%probes)
-               r = min(norm2([scene%probes(i)%x, scene%probes(i)%y] - well), &
-                       minval(well - minval(mesh%xy, dim=2)), minval(maxval(mesh%xy, dim=2) - well))
+               apart = max(size_of_cell, &
+                           norm2([scene%probes(i)%x, scene%probes(i)%y] - well) - off)
                row%displacement_error(i) = row%displacement_error(i) &
-                                           + off*strength/(pi*max(r**2, cell_area(mesh, cell)))
+                                           + off*strength/(pi*min(apart, side)**2)
+               row%pressure_error(i) = row%pressure_error(i) + off*source &
+                                       *(1.0_rk/apart + 1.0_rk/max(apart, side)) &
+                                       *exp(-apart**2/(4.0_rk*rock%diffusivity_at(cell)*time))
             end do
          end associate
       end do

@@ -52,7 +52,7 @@ module twolevel_problem
       integer(ik), allocatable :: rock_cell(:)
       type(heat_model_t), allocatable :: heat  !< unallocated: the scene has none
       type(heat_field_t) :: heat_field  !< rise of the temperatures that acts in the present step
-      ! Heat after the last step that was tried, start and length of this step [s], and its flows;
+      ! Heat after the last step that was tried, start and end of this step [s], and its flows;
       ! unallocated: those on another mesh.
       type(heat_state_t) :: heat_after
       real(rk) :: heat_span(2) = -1.0_rk

@@ -254,6 +254,7 @@ contains
          call place_tips(self%front_state_t, self%now%segment, self%problem)
       end if
       call act(self%scene, self%problem, self%now%heat)
+      self%problem%heat_span = -1.0_rk  ! temperatures of a rejected try
    end subroutine put_back
 
    !> Copy of all quantities that a step changes.
@@ -521,7 +522,8 @@ contains
       call note_probes(self%value_errors, self%time(), self%now%trend%pressure_rise(), row)
       call self%blurred%add_to_probes(self%scene, self%problem, row)
       if (allocated(self%well_results%injected)) then
-         call add_well_places(self%scene, self%problem, self%well_results%injected, row)
+         call add_well_places(self%scene, self%problem, self%well_results%injected, self%time(), &
+                              row)
       end if
    end subroutine probes
 
@@ -545,7 +547,7 @@ contains
          fields%windows = self%windows%meshes(self%tip)
          if (size(fields%windows%tip) == 0) deallocate (fields%windows)
       end if
-      call add_heat_fields(self%problem, self%now%heat, fields)
+      call add_heat_fields(self%problem, self%now%heat, self%time(), fields)
    end subroutine snapshot
 
    !> Time of the present state [s].

@@ -305,6 +305,10 @@ contains
             error%produced = lost
          end if
          if (problem%mesh%fracture%n_cells == 0) error%leakoff = 0.0_rk
+         ! What leaves the rock follows what leaks off, of which it is a share at most.
+         error%rock_outflow = error%rock_outflow + error%leakoff &
+                              *min(1.0_rk, abs(row%rock_outflow) &
+                                   /max(abs(row%leakoff), tiny(1.0_rk)))
          error%rock_fluid = error%leakoff + error%rock_outflow &
                             + merge(error%injected, 0.0_rk, any(scene%injections%fracture == 0))
       end associate

@@ -75,7 +75,7 @@ contains
       call heat%begin(nowhere, nowhere, 1.0_rk, 0, now)
       now%temperature = 30.0_rk*heat%place(1, :) - 10.0_rk*heat%place(2, :)
       associate (in_time => 2.5_rk*heat%heat%tolerance*abs(now%temperature))
-         error = temperature_errors(heat, now, nowhere)
+         error = temperature_errors(heat, now, 0.0_rk, nowhere)
          call checks%is_close(maxval(abs(error - in_time)), 0.0_rk, 1.0e-10_rk, "linear")
       end associate
    end subroutine linear
@@ -100,7 +100,7 @@ contains
          call checks%no_error(error, "cooled face")
          time = 0.25e6_rk*widths(k)**2
          associate (n => mesh%n_cells)
-            stated = temperature_errors(heat, now, nowhere)
+            stated = temperature_errors(heat, now, 0.0_rk, nowhere)
             off = abs(now%temperature(:n) + cold*erfc(heat%place(1, :n)/widths(k)))
             seen = seen + int(count(off > 1.0e-5_rk*cold), ik)
             held = held + int(count(off > 1.0e-5_rk*cold .and. off <= stated(:n)), ik)
