@@ -19,6 +19,7 @@ module heat_field
       type(lists_t) :: near  !< layers at each node
       type(lists_t) :: around  !< those at the nodes of each cell, and
       type(profile_t), allocatable :: profile(:)  !< (items) their profiles in it [K]
+      real(rk), allocatable :: tilt(:)  !< (items) their slopes along the faces [K/m]
       real(rk), allocatable :: least(:)  !< (cells) what matters in the mean of each [K]
       !> (cells) what the mean temperature leaves of the profiles, whose integral is not found where
       !! a front is very thin [-]
@@ -61,7 +62,7 @@ contains
          ! Without layers there is no list of their faces.
          field%near = inverted(mesh%face_nodes(:, [(mesh%layer_face(l), l=1, layers%n)]), &
                                mesh%n_nodes)
-         call set_profiles(heat, field)
+         call set_profiles(heat, temperature, field)
          largest = maxval(abs(temperature))
          field%least = 0.02_rk*max(abs(means), 1.0e-3_rk*largest)
          allocate (field%found(mesh%n_cells), source=1.0_rk)
@@ -83,16 +84,21 @@ contains
       end associate
    end function new_field
 
-   !> Set the profiles around each cell.
-   pure subroutine set_profiles(heat, field)
+   !> Set the profiles around each cell. Along its face a profile has the slope of the nodal values,
+   !! at most that between the layers next to it.
+   subroutine set_profiles(heat, temperature, field)
       class(heat_model_t), intent(in) :: heat
+      real(rk), intent(in) :: temperature(:)  !< (unknowns) [K]
       type(heat_field_t), intent(inout) :: field
+      real(rk) :: slope(heat%layers%n)  ! from the first end of each face to the second [K/m]
       integer(ik), allocatable :: among(:)
       integer(ik) :: c, i, k, n
 
       associate (mesh => heat%mesh, near => field%near, around => field%around)
          n = sum([((near%length(mesh%cell_nodes(k, c)), k=1, 3), c=1, mesh%n_cells)])
-         allocate (around%first(mesh%n_cells + 1), around%item(n), field%profile(n))
+         allocate (around%first(mesh%n_cells + 1), around%item(n), field%profile(n), &
+                   field%tilt(n))
+         slope = heat%slopes%ends(heat%layers, heat%first_node, temperature)/heat%slopes%reach
          n = 0
          do c = 1, mesh%n_cells
             around%first(c:c + 1) = n + 1
@@ -103,10 +109,20 @@ contains
                   if (any(among(:i - 1) == among(i))) cycle
                   n = n + 1
                   around%item(n) = among(i)
-                  associate (profile => field%profile(n))
+                  associate (profile => field%profile(n), corners => mesh%xy(:, nodes), &
+                             ends => mesh%xy(:, mesh%face_nodes(:, &
+                                                                mesh%layer_face(among(i)))))
                      call profile%place(heat%layers, among(i), mesh, mesh%fracture%tip_node)
+                     field%tilt(n) = less(dot_product(field%nodal(nodes), &
+                                                      barycentric(corners, corners(:, 1) &
+                                                                  + profile%ahead) &
+                                                      - [1.0_rk, 0.0_rk, 0.0_rk]), &
+                                          sign(slope(among(i)), slope(among(i)) &
+                                               *dot_product(profile%ahead, &
+                                                            ends(:, 2) - ends(:, 1))))
                      call profile%set_values(heat%layers, among(i), field%unknowns, field%inner, &
-                                             mesh%xy(:, nodes), field%nodal(nodes))
+                                             corners, field%nodal(nodes) - field%tilt(n) &
+                                             *[(from_middle(profile, corners(:, k)), k=1, 3)])
                   end associate
                end do
             end associate
@@ -114,6 +130,22 @@ contains
          end do
       end associate
    end subroutine set_profiles
+
+   !> The smaller one of two slopes; none where they differ in sign.
+   pure real(rk) function less(a, b)
+      real(rk), intent(in) :: a, b
+
+      less = 0.0_rk
+      if (a*b > 0.0_rk) less = sign(min(abs(a), abs(b)), a)
+   end function less
+
+   !> How far ahead of the middle of its face a point is [m].
+   pure real(rk) function from_middle(profile, xy)
+      type(profile_t), intent(in) :: profile
+      real(rk), intent(in) :: xy(2)  !< [m]
+
+      from_middle = dot_product(xy - profile%start, profile%ahead) + 0.5_rk*profile%length
+   end function from_middle
 
    !> Temperatures at nodes: the mean of what the multi-point fluxes extrapolate from the cells, or
    !! with layers from the rests of them.
@@ -221,8 +253,8 @@ contains
             best = i
          end do
          beyond = 0.0_rk
-         if (best > 0) beyond = field%profile(best)%pressure_at(point, nearest) &
-         & - dot_product(plain, at)
+         if (best > 0) beyond = field%profile(best)%pressure_at(point, nearest) + field%tilt(best) &
+                               & *from_middle(field%profile(best), point) - dot_product(plain, at)
       end function beyond
 
    end function moments

@@ -2,8 +2,9 @@
 !! temperature outside the range of those before.
 !!
 !! The rise above the initial temperature is transferred. A cell takes capacity and heat of the old
-!! cells that it overlaps, by areas, as if each had the temperature of its rest (without layers)
-!! throughout. A face that is kept, or consists of parts of old ones, keeps the temperatures at the
+!! cells that it overlaps, by areas, as if each had the temperature of its rest (without layers),
+!! which the slope between its neighbours continues to the place of the new cell, within their
+!! range. A face that is kept, or consists of parts of old ones, keeps the temperatures at the
 !! same distances from it. What the layers of the old faces contain beyond the rest of their cell
 !! belongs to the cells behind the new faces: their temperatures are moved towards the highest or
 !! lowest before, by one share for all parts of a cell, until their heat is that. What remains is
@@ -11,7 +12,7 @@
 module heat_transfer
    use base_kinds, only: ik, rk
    use base_plane, only: norm2
-   use base_tolerances, only: same_place
+   use base_tolerances, only: round_off, same_place
    use coarse_layer_profiles, only: kept_faces_t
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
@@ -154,7 +155,8 @@ contains
                associate (other => map%overlap_cell(k))
                   share = whole(other)*map%overlap_area(k)/covered(other)
                   capacity(c) = capacity(c) + share
-                  after(:, c) = after(:, c) + share*(before(:, other) - before(:, from))
+                  after(:, c) = after(:, c) + share*(before(:, other) - before(:, from) &
+                                                     + beyond(old, before, other, new%place(:, c)))
                end associate
             end do
             after(:, c) = before(:, from) + after(:, c)/capacity(c)
@@ -167,11 +169,50 @@ contains
          c = new%layers%cell(l)
          associate (nodes => [(k, k=new%first_node(l), new%last_node(l))])
             capacity(nodes) = capacity(c)*of_rock(nodes)
-            after(:, nodes) = spread(after(:, c), 2, size(nodes))
+            do k = 1, size(nodes, kind=ik)
+               after(:, nodes(k)) = after(:, c) + beyond(new, after, c, new%place(:, nodes(k)))
+            end do
          end associate
       end do
       capacity(:new%mesh%n_cells) = capacity(:new%mesh%n_cells)*of_rock(:new%mesh%n_cells)
    end subroutine transfer_cells
+
+   !> What the linear field through a cell and its neighbours has at a place beyond the cell's
+   !! value, as far as this stays within their range.
+   pure function beyond(heat, values, cell, place) result(rise_there)
+      class(heat_model_t), intent(in) :: heat
+      real(rk), intent(in) :: values(:, :)  !< (2, unknowns)
+      integer(ik), intent(in) :: cell
+      real(rk), intent(in) :: place(2)  !< [m]
+      real(rk) :: rise_there(2)
+      real(rk) :: apart(2), more(2, 3), normal(2, 2), right(2, 2)
+      integer(ik) :: k, next
+
+      normal = 0.0_rk
+      right = 0.0_rk
+      more = 0.0_rk
+      do k = 1, 3
+         associate (face => heat%mesh%cell_faces(k, cell))
+            next = sum(heat%mesh%face_cells(:, face)) - cell
+            if (next == 0) cycle
+            apart = heat%place(:, next) - heat%place(:, cell)
+            more(:, k) = values(:, next) - values(:, cell)
+            associate (weight => 1.0_rk/dot_product(apart, apart))
+               normal = normal + weight*spread(apart, 2, 2)*spread(apart, 1, 2)
+               right = right + weight*spread(more(:, k), 2, 2)*spread(apart, 1, 2)
+            end associate
+         end associate
+      end do
+      rise_there = 0.0_rk
+      associate (determinant => normal(1, 1)*normal(2, 2) - normal(1, 2)**2)
+         if (.not. determinant > round_off*(normal(1, 1) + normal(2, 2))**2) return
+         apart = place - heat%place(:, cell)
+         apart = [normal(2, 2)*apart(1) - normal(1, 2)*apart(2), &
+                  normal(1, 1)*apart(2) - normal(1, 2)*apart(1)]/determinant
+      end associate
+      rise_there = max(min(0.0_rk, minval(more, dim=2)), &
+                       min(max(0.0_rk, maxval(more, dim=2)), matmul(right, apart)))
+   end function beyond
 
    !> Temperatures of layers, and of cells such that these have the heat of the layers before.
    pure subroutine transfer_layers(old, new, map, pieces, before, capacity_before, after, capacity)
@@ -181,16 +222,18 @@ contains
       real(rk), intent(in) :: before(:, :), capacity_before(:), capacity(:)
       real(rk), intent(inout) :: after(:, :)
       real(rk), dimension(new%mesh%n_cells) :: bound, high, low, missing, space
+      real(rk) :: rest(2, size(after, 2))  ! without profiles
       integer(ik) :: c, k, l, p
 
+      rest = after
       missing = 0.0_rk
       low = after(rise, :new%mesh%n_cells)
       high = low
       do c = 1, new%mesh%n_cells
          if (map%cell_old(c) > 0) cycle
          associate (cells => map%overlap_cell(map%overlap_first(c):map%overlap_first(c + 1) - 1))
-            low(c) = minval(before(rise, cells))
-            high(c) = maxval(before(rise, cells))
+            low(c) = min(low(c), minval(before(rise, cells)))
+            high(c) = max(high(c), maxval(before(rise, cells)))
          end associate
       end do
       do p = 1, size(pieces, kind=ik)
@@ -198,7 +241,7 @@ contains
             c = new%mesh%face_cells(1, piece%face)
             l = 0
             if (new%mesh%n_layers > 0) l = new%mesh%face_layer(piece%face)
-            if (l > 0) call take_profile(old, new, piece, l, before, after)
+            if (l > 0) call take_profile(old, new, piece, l, before, rest, after)
             do k = old%first_node(piece%layer), old%last_node(piece%layer)
                low(c) = min(low(c), before(rise, k))
                high(c) = max(high(c), before(rise, k))
@@ -234,19 +277,18 @@ contains
       end associate
    end subroutine transfer_layers
 
-   !> Add the share of a piece in the temperatures of a layer, whose nodes have that of their cell:
+   !> Add the share of a piece in the temperatures of a layer, whose nodes have those of `rest`:
    !! the mean over the thickness of each volume, within the layer before.
-   pure subroutine take_profile(old, new, piece, layer, before, after)
+   pure subroutine take_profile(old, new, piece, layer, before, rest, after)
       class(heat_model_t), intent(in) :: old, new
       type(piece_t), intent(in) :: piece
       integer(ik), intent(in) :: layer  !< of the new face
-      real(rk), intent(in) :: before(:, :)
+      real(rk), intent(in) :: before(:, :), rest(:, :)
       real(rk), intent(inout) :: after(:, :)
       real(rk) :: here(2), there(2)  ! distances of the ends of a volume from the face [m]
       integer(ik) :: i, k
 
       associate (to => new%layers%chain(layer), from => old%layers%chain(piece%layer), &
-                 base => after(:, new%layers%cell(layer)), &
                  new_length => face_length(new%mesh, piece%face), &
                  old_length => face_length(old%mesh, old%mesh%layer_face(piece%layer)))
          here = 0.0_rk
@@ -259,7 +301,7 @@ contains
                           node => new%first_node(layer) - 1 + i)
                   if (.not. common > 0.0_rk) cycle
                   after(:, node) = after(:, node) + piece%of_new*common/(here(2) - here(1)) &
-                                   *(before(:, old%first_node(piece%layer) - 1 + k) - base)
+                                   *(before(:, old%first_node(piece%layer) - 1 + k) - rest(:, node))
                end associate
             end do
          end do
@@ -284,8 +326,8 @@ contains
       end do
       do i = 1, new%mesh%fracture%n_cells
          c = new%first_cell - 1 + i
-         associate (cells => new%mesh%face_cells(1, new%mesh%fracture%cell_faces(:, i)))
-            after(:, c) = 0.5_rk*(after(:, cells(1)) + after(:, cells(2)))
+         associate (sides => new%mesh%fracture%cell_faces(:, i))
+            after(:, c) = 0.5_rk*(at_face(new, after, sides(1)) + at_face(new, after, sides(2)))
          end associate
          capacity(c) = new%fluid_capacity*filled(i)
          if (faces%before%length(i) == 0) cycle
@@ -306,6 +348,22 @@ contains
          call transfer_joint(old, new, j, before, capacity_before, after, capacity)
       end do
    end subroutine transfer_fractures
+
+   !> Temperature of the rock on a face of a fracture.
+   pure function at_face(heat, values, face) result(there)
+      class(heat_model_t), intent(in) :: heat
+      real(rk), intent(in) :: values(:, :)  !< (2, unknowns)
+      integer(ik), intent(in) :: face
+      real(rk) :: there(2)
+
+      if (heat%mesh%n_layers > 0) then
+         if (heat%mesh%face_layer(face) > 0) then
+            there = values(:, heat%first_node(heat%mesh%face_layer(face)))
+            return
+         end if
+      end if
+      there = values(:, heat%mesh%face_cells(1, face))
+   end function at_face
 
    !> A joint: as before, or with next to nothing of the cells that meet there.
    pure subroutine transfer_joint(old, new, joint, before, capacity_before, after, capacity)

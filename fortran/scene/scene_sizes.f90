@@ -3,6 +3,7 @@
 module scene_sizes
    use base_kinds, only: ik, rk
    use base_number, only: brief_text
+   use base_tolerances, only: same_place
    use scene_types, only: scene_t
    implicit none(type, external)
    private
@@ -15,7 +16,8 @@ module scene_sizes
    real(rk), parameter :: fewest_cells = 10.0_rk, most_cells = 80.0_rk
    real(rk), parameter :: usual_tolerance = 0.01_rk
 
-   !> Edge of a window over the length of its fracture, and the least that changes K little.
+   !> Edge of a window over the length of its fracture, and the least that changes K little; over
+   !! twice the length, that with its mirror image, where the fracture ends on a side of the body.
    real(rk), parameter :: usual_window = 5.0_rk, least_window = 2.0_rk
 
    !> Larger windows, over the body's shorter edge, are the body (twolevel_refinement).
@@ -124,7 +126,8 @@ contains
       real(rk) :: length(size(scene%fractures)), window(size(scene%fractures))
       integer :: i
 
-      length = [(scene%fractures(i)%length(), i=1, size(scene%fractures))]
+      length = [(scene%fractures(i)%length()*merge(2, 1, ends_on_side(scene, i)), &
+                 i=1, size(scene%fractures))]
       window = scene%fractures%window
       where (.not. window > 0.0_rk) window = decimal(min(usual_window*length, largest_window*edge))
       associate (body => scene%domain)
@@ -139,6 +142,22 @@ contains
       scene%fractures%window = window
       call share_value(scene%fractures%window, scene%discretization%window)
    end subroutine choose_windows
+
+   !> Whether an end of a fracture lies on a side of the rectangle.
+   pure logical function ends_on_side(scene, i)
+      type(scene_t), intent(in) :: scene
+      integer, intent(in) :: i  !< fracture
+      integer :: ends(2)
+
+      associate (body => scene%domain, x => scene%fractures(i)%x, y => scene%fractures(i)%y)
+         ends = [min(1, size(x), size(y)), min(size(x), size(y))]
+         ends_on_side = .false.
+         if (ends(1) == 0) return
+         ends_on_side = any(abs([x(ends) - body%x_min, x(ends) - body%x_max, &
+                                 y(ends) - body%y_min, y(ends) - body%y_max]) &
+                            <= same_place*max(body%x_max - body%x_min, body%y_max - body%y_min))
+      end associate
+   end function ends_on_side
 
    !> A number to nine digits: the rounding of coordinates is to change no mesh.
    elemental real(rk) function decimal(x)

@@ -226,7 +226,7 @@ contains
       self%sides = window_sides(scene, self%is_body, self%lower, self%upper)
       spec = window_spec(self%lower, self%upper, self%element_size, scene)
       if (self%is_body) call shape_body(scene, spec)
-      if (is_beside_body .and. .not. self%is_body) call grow_away(spec)
+      call grow_away(spec, self%sides%have_fronts(), is_beside_body .and. .not. self%is_body)
       call focus(scene, network, tips, self%serves, tips(self%serves)%has_focus .or. &
                  .not. self%is_body, spec, error)
       if (allocated(error)) return

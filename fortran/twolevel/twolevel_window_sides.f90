@@ -25,6 +25,7 @@ module twolevel_window_sides
       procedure :: take_given
       procedure :: add_loads
       procedure :: add_springs
+      procedure :: have_fronts
    end type window_sides_t
 
 contains
@@ -51,6 +52,14 @@ contains
          end associate
       end if
    end function window_sides
+
+   !> Whether a front of temperature may come in from a side of the body.
+   pure logical function have_fronts(self)
+      class(window_sides_t), intent(in) :: self
+
+      have_fronts = any(self%on_body .and. (self%of%temperature_given .or. &
+                                            abs(self%of%heat_flux) > 0.0_rk))
+   end function have_fronts
 
    !> Update the conditions from the scene.
    pure subroutine change(self, scene)

@@ -24,8 +24,9 @@ module twolevel_window_spec
    !> Growth of element size along fractures with the distance from the tips served, up to the size
    !! of coarse fracture cells, below which the pressure of the fluid is not resolved; and, where
    !! the errors are compared with the whole body (twolevel_coarse_errors), growth around the
-   !! rosettes beyond three radii, the range of the interaction integrals [-].
-   real(rk), parameter :: along = 0.4_rk, around = 0.5_rk
+   !! rosettes beyond three radii, the range of the interaction integrals; and with fronts of
+   !! temperature, which are not smooth where the intensities are [-].
+   real(rk), parameter :: along = 0.4_rk, around = 0.5_rk, in_fronts = 0.15_rk
 
 contains
 
@@ -51,10 +52,13 @@ contains
    end function window_spec
 
    !> Let elements grow around the rosettes.
-   pure subroutine grow_away(spec)
+   pure subroutine grow_away(spec, has_fronts, is_compared)
       type(mesh_spec_t), intent(inout) :: spec
+      logical, intent(in) :: has_fronts  !< temperatures may come in from sides
+      logical, intent(in) :: is_compared  !< with the body
 
-      spec%ring_slope = around
+      if (is_compared) spec%ring_slope = around
+      if (has_fronts) spec%ring_slope = in_fronts
    end subroutine grow_away
 
    !> Set elements and rosettes as the tips served require, and the outlines of regions of other

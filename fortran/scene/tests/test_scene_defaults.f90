@@ -109,6 +109,11 @@ contains
       call checks%is_close(scene%increment_of(2), 1.25_rk, 1.0e-14_rk, "increments of the other")
       call checks%is_close(scene%window_of(1), 0.5_rk, 1.0e-12_rk, "window of one")
       call checks%is_close(scene%window_of(2), 120.0_rk, 1.0e-13_rk, "0.3 of the body")
+      scene = growing([4.0_rk])
+      scene%domain%x_min = scene%fractures(1)%x(1)
+      call resolve_defaults(scene)
+      call checks%is_close(scene%discretization%window, 40.0_rk, 1.0e-13_rk, &
+                           "10 lengths of a fracture that ends on a side")
       scene = growing([20.0_rk])
       scene%time%tolerance = 0.02_rk
       call resolve_defaults(scene)

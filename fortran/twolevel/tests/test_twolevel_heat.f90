@@ -9,6 +9,7 @@ program test_twolevel_heat
    use coarse_model, only: coarse_model_t
    use contact_law, only: contact_law_t
    use growth_network, only: extend
+   use heat_field, only: heat_field_t, moments, new_field
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
    use heat_transfer, only: transfer_heat
@@ -48,7 +49,8 @@ contains
       type(heat_state_t) :: start, state
       type(error_t), allocatable :: error
       real(rk), allocatable :: off(:)
-      integer(ik) :: k
+      type(heat_field_t) :: within
+      integer(ik) :: c, k
 
       scene = porous_body()
       scene%material%heat_capacity = 2.2e6_rk
@@ -100,10 +102,23 @@ contains
          off = abs(state%temperature - field(new%place(1, :), new%place(2, :)))
          associate (n => new%mesh%n_cells)
             call checks%is_close(maxval(off(:n), map%cell_old > 0), 0.0_rk, 1.0e-9_rk, "old cells")
-            ! The slope is 18 K/m, new cells lie within two cells from those before.
-            call checks%is_close(maxval(off(:n)), 0.0_rk, 18.0_rk*2.0_rk*cell, "smooth")
+            ! The slope is 18 K/m. Constant cells would leave errors of a cell; what closes the
+            ! balance is left.
+            call checks%is_close(maxval(off(:n)), 0.0_rk, 18.0_rk*0.25_rk*cell, "smooth")
             call checks%is_close(sum(off(:n), map%cell_old == 0)/count(map%cell_old == 0), 0.0_rk, &
-                                 18.0_rk*0.25_rk*cell, "smooth, mean")
+                                 18.0_rk*0.02_rk*cell, "smooth, mean")
+            off = field(new%place(1, :), new%place(2, :))
+            within = new_field(new, off, off(:n))
+            do c = 1, n
+               associate (corners => new%mesh%xy(:, new%mesh%cell_nodes(:, c)))
+                  off(c) = 0.0_rk
+                  if (minval(corners(1, :)) < 3.0_rk*cell) cycle  ! at the cooled side
+                  off(c) = sum(moments(new, within, corners, c)) &
+                           - sum(field(corners(1, :), corners(2, :)))/3.0_rk
+               end associate
+            end do
+            ! Not exact: slopes along faces are limited at ends. Without them .53 and .45 K
+            call checks%is_close(maxval(abs(off(:n))), 0.0_rk, 0.3_rk, "field within cells")
          end associate
 
          scene%heat%temperature_per_y = 10.0_rk
