@@ -412,7 +412,7 @@ module scene_parameter_table
          meaning="Layers of fluid pressure thinner than a cell, next to fractures and drained "// &
                  "sides: resolved where the first step may contain one, or not"), &
       parameter_t("fine", "window", unit="m", range=positive, derived=.true., choices="body", &
-         absent="5 fracture lengths, 10 at a side, or 'body'", &
+         absent="5 lengths, 10 at a side, or 'body'", &
          meaning="Edge l of the square window around a tip, more than 2 size_ratio dH; or the "// &
                  "whole body as one window for all tips"), &
       parameter_t("fine", "size_ratio", default="0.5", range=share, &

@@ -41,7 +41,7 @@ module scene_plausible
                          of_overpressure = 27, of_viscous = 28, of_surplus = 29, &
                          of_friction_there = 30, of_wide = 31, of_sealed = 32, &
                          of_would_grow = 33, of_thickness = 34, of_no_growth = 35, of_moved = 36, &
-                         of_next = 37, of_front = 38
+                         of_next = 37, of_front = 38, of_tolerance = 39
 
    ! The table keeps its own layout.
    !&<
@@ -141,7 +141,9 @@ module scene_plausible
          "of another fracture within 5 % of that of the nearest, likewise", &
          "two fractures are about equally near, and the nearest is fed; give its name"), &
       doubt_t("temperature", "face_depth", "m", "below size_boundary, without &adaptive", &
-         "elements at the face are wider than the front, which the stated errors do not contain")]
+         "elements at the face are wider than the front, which the stated errors do not contain"), &
+      doubt_t("time", "tolerance", "-", "above 0.01, with growth and &fluid", &
+         "tips may jump within a step without being seen to, and stated errors do not contain it")]
    !&>
 
    !> Distance below which an end reaches a target (twolevel_segments) [increments].
@@ -237,15 +239,19 @@ contains
       end do
    end subroutine doubt_fractures
 
-   !> Check the growth regime: viscosity-dominated growth has not been verified.
+   !> Check the growth regime, viscosity-dominated growth has not been verified, and the tolerance
+   !! in time, with which jumps are seen.
    pure subroutine doubt_growth(scene, list)
       type(scene_t), intent(in) :: scene
       type(text_t), allocatable, intent(inout) :: list(:)
-      real(rk), parameter :: nearly = 0.99_rk
+      real(rk), parameter :: nearly = 0.99_rk, most_tolerance = 0.01_rk*(1.0_rk + round_off)
       real(rk) :: leakoff, value
       integer :: well
 
       call find_regime(scene, value, leakoff, well)
+      if (scene%growth%enabled .and. scene%has_fluid()) then
+         call add(list, scene%time%tolerance > most_tolerance, of_tolerance, scene%time%tolerance)
+      end if
       if (well > 0) call add(list, value < nearly*least_verified, of_viscous, value, &
                              " '"//trim(scene%injections(well)%name)//"'")
       if (.not. scene%growth%enabled .and. scene%has_wells()) call doubt_no_growth(scene, list)

@@ -357,6 +357,11 @@ contains
       allocate (s%temperature)
       s%temperature%face_depth = 1.0e-3_rk
       call expect(s, "&temperature: face_depth is 0.001 m: elements at the face", "a thin front")
+      s = sound()
+      s%time%tolerance = 0.01_rk
+      call expect(s, "", "a usual tolerance")
+      s%time%tolerance = 0.03_rk
+      call expect(s, "&time: tolerance is 0.03: tips may jump", "a large tolerance")
    end subroutine test_column
 
 end program test_scene_plausible
