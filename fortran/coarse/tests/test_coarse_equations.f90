@@ -25,6 +25,7 @@ program test_coarse_equations
    real(rk), parameter :: dt = 10.0_rk  !< [s]
    real(rk), parameter :: vapour_pressure = 5.0e6_rk  !< below it are some of some_unknowns [Pa]
    integer(ik), parameter :: both(2) = [1_ik, 2_ik]  !< sides
+   type(reduced_t), target :: reduced  !< factors of the steps
    type(checks_t) :: checks
    type(flow_paths_t), target :: paths  !< of the equations that are set up last
    type(mesh_t) :: mesh
@@ -297,7 +298,6 @@ contains
       real(rk), intent(in) :: jacobian(:, :)  !< an equation per column
       real(rk), intent(in) :: row_scale(:)
       type(step_quality_t) :: quality
-      type(reduced_t), target :: reduced
       real(rk) :: step(size(row_scale))
 
       eq%reduced => reduced
