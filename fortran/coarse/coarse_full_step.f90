@@ -236,10 +236,11 @@ contains
       real(rk), intent(out) :: step(:)  !< (n) [Pa]
       type(step_quality_t), intent(inout) :: quality
       logical, intent(out) :: is_done
-      real(rk), dimension(size(step), most_directions) :: direction, product
+      real(rk), allocatable :: direction(:, :), product(:, :)  ! too large for a stack
       real(rk) :: enough, left(size(step)), share
       integer(ik) :: j, k, pass
 
+      allocate (direction(size(step), most_directions), product(size(step), most_directions))
       enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
       step = 0.0_rk
       left = residual
