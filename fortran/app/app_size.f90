@@ -34,7 +34,8 @@ module app_size
 
    real(rk), parameter :: byte_per_cell = 8.0e3_rk  !< measured: 10e3 to 14e3 at 3e4 cells
    !> The sparse factors of the fractures' equations; measured: 15e3 to 20e3 at 5e4 to 1e5 cells.
-   real(rk), parameter :: byte_per_cell_of_contact = 1.0e4_rk
+   !! With growth the largest full matrix that is chosen instead (coarse_condensed).
+   real(rk), parameter :: byte_per_cell_of_contact = 1.0e4_rk, byte_with_growth = 2.6e4_rk
    real(rk), parameter :: byte_per_value = 20.0_rk  !< bytes per value of a table
    real(rk), parameter :: values_per_step = 15.0_rk  !< values per row of history.csv
    real(rk), parameter :: values_per_probe = 6.0_rk
@@ -83,8 +84,9 @@ contains
       estimate%bytes_of_cells = byte_per_cell*estimate%cells
       estimate%bytes_of_contact = 8.0_rk*(6.0_rk*touching_cells)**2
       if (scene%has_fluid() .and. scene%discretization%condensation /= "full") then
-         estimate%bytes_of_contact = min(estimate%bytes_of_contact, &
-                                         byte_per_cell_of_contact*estimate%cells)
+         estimate%bytes_of_contact = min(estimate%bytes_of_contact, estimate%cells &
+                                         *merge(byte_with_growth, byte_per_cell_of_contact, &
+                                                scene%growth%enabled))
       end if
       values = (values_per_step + values_per_probe*real(size(scene%probes), rk))*estimate%steps
       values = values + values_per_fracture_cell*estimate%fracture_cells*written

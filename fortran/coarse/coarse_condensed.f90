@@ -66,20 +66,23 @@ contains
 
    !> Begin with another mesh. By default S is formed where this costs less: forming it grows with
    !! the cube of the fracture cells, and is done once per step size; the sparse matrix, whose cost
-   !! grows with the cells to the power 1.2, is factorized in each iteration on contact.
-   subroutine forget(self, mesh, condensation)
+   !! grows with the cells to the power 1.2, is factorized in each iteration on contact, and growth
+   !! takes several trials of each step.
+   subroutine forget(self, mesh, condensation, grows)
       class(condensed_t), intent(inout) :: self
       type(mesh_t), intent(in) :: mesh
       character(len=*), intent(in) :: condensation  !< "auto", "full" or "sparse"
-      ! Where both cost the same, with three iterations per step and with one: beyond 800 fracture
-      ! cells S takes more than 180 MB.
+      logical, intent(in) :: grows
+      ! Where both cost the same, with three iterations or more per step and with one: beyond 800
+      ! fracture cells S takes more than 180 MB.
       real(rk), parameter :: cells_per_square = 90.0_rk, of_many = 30.0_rk
       integer(ik), parameter :: few = 800
 
       call self%factors%release()
       if (allocated(self%held)) deallocate (self%held)
       associate (n => mesh%fracture%n_cells)
-         self%is_full = real(n, rk)**2 <= merge(cells_per_square, of_many, n <= few)*mesh%n_cells
+         self%is_full = real(n, rk)**2 <= merge(cells_per_square, of_many, n <= few .or. grows) &
+                        *mesh%n_cells
          if (condensation /= "auto") self%is_full = condensation == "full"
          self%is_full = self%is_full .or. n == 0
       end associate

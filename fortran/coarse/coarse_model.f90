@@ -146,7 +146,7 @@ contains
          end if
       end if
       self%ends = free_ends(mesh%fracture)
-      call self%condensed%forget(mesh, scene%discretization%condensation)
+      call self%condensed%forget(mesh, scene%discretization%condensation, scene%growth%enabled)
       call self%factors%release()
       call timers%stop(phase_discretize)
    end subroutine set_mesh

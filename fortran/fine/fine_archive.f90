@@ -103,9 +103,11 @@ contains
       integer(lk) :: n
 
       call archive%enter(name)
-      call archive%list("condition", conditions%condition, "fine_faces")
-      call archive%list("dilation", conditions%dilation, "fine_faces")
-      call archive%extent("law", conditions%law, n, "fine_faces")
+      call archive%list("condition", conditions%condition, "fine_faces ?")
+      call archive%list("dilation", conditions%dilation, "fine_faces ?")
+      call archive%extent("law", conditions%law, n, "fine_faces ?")
+      call archive%agree(name, [n >= 0_lk, allocated(conditions%condition), &
+                                allocated(conditions%dilation)])
       if (archive%is_loading) then
          if (allocated(conditions%law)) deallocate (conditions%law)
          if (n >= 0_lk) allocate (conditions%law(n))

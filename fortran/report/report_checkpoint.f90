@@ -21,7 +21,7 @@ module report_checkpoint
    public :: about_t, read_checkpoint, write_checkpoint
 
    character(len=*), parameter :: magic = "wingcrack state"//achar(10)
-   integer(ik), parameter :: format_version = 14
+   integer(ik), parameter :: format_version = 15
    integer(lk), parameter :: head_size = 32_lk
 
    character(len=*), parameter :: newest = "checkpoint.bin", complete = "checkpoint_new.bin"

@@ -78,7 +78,8 @@ contains
       end associate
    end subroutine visit_made
 
-   !> The model of a mesh, with its matrix, and the last solution.
+   !> The model of a mesh, with its matrix, and the last solution. A window that has been meshed in
+   !! the last try of a step, and not evaluated since its tips are not near growth, has neither.
    subroutine visit_model(self, archive, scene, tips, error)
       type(window_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
@@ -106,8 +107,11 @@ contains
       if (allocated(archive%fault)) return
       if (all(size(self%serves) /= [0, size(self%at)])) call archive%set_fault("serves")
       call visit_loads(archive, "loads", self%loads)
-      call archive%list("displacement", self%displacement, "2, fine_nodes")
+      call archive%list("displacement", self%displacement, "2, fine_nodes ?")
       call visit_conditions(archive, "conditions", self%model%conditions)
+      if (is_ready .and. .not. allocated(self%model%conditions%law)) then
+         call archive%set_fault("conditions")
+      end if
       if (allocated(archive%fault)) return
       if (archive%is_loading .and. is_ready) then
          call self%model%prepare(self%model%conditions, error, &

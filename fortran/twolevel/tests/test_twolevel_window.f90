@@ -1,6 +1,7 @@
 !> Windows: position in the coarse mesh, uniform stress without intensities, conditions on the
 !! faces, and the contact history from step to step and from mesh to mesh.
 program test_twolevel_window
+   use base_archive, only: archive_t
    use base_errors, only: error_t
    use base_kinds, only: ik, rk
    use base_timers, only: timers_t
@@ -17,7 +18,9 @@ program test_twolevel_window
    use twolevel_coarse_errors, only: estimate_coarse_errors
    use twolevel_state, only: two_levels_t
    use twolevel_window, only: window_t
+   use twolevel_window_slot, only: renew, slot_t
    use twolevel_window_tip, only: window_tip_t
+   use twolevel_windows_state, only: window_history_t
    implicit none(type, external)
 
    real(rk), parameter :: degree = 0.017453292519943295_rk  !< [rad]
@@ -29,6 +32,7 @@ program test_twolevel_window
 
    call test_undrained_constants(.false.)
    call test_undrained_constants(.true.)
+   call test_archive()
    call test_edge_beside_crossing(-1.0e-4_rk, .true.)
    call test_edge_beside_crossing(1.0e-4_rk, .true.)
    call test_edge_beside_crossing(0.1_rk, .false.)
@@ -106,6 +110,37 @@ contains
                            "undrained")
       call checks%is_true(window%undrained, "undrained on record")
    end subroutine test_undrained_constants
+
+   !> A window that has been meshed, but not solved, is stored and loaded.
+   subroutine test_archive()
+      type(scene_t) :: scene
+      type(two_levels_t) :: simulation
+      type(window_t) :: loaded
+      type(slot_t) :: slot
+      type(window_history_t) :: history
+      type(archive_t) :: archive
+      type(error_t), allocatable :: error
+
+      scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
+      call add_fracture(scene, "f", [0.8_rk, 1.2_rk], [0.9_rk, 1.1_rk], 0.5_rk, 0.0_rk)
+      call simulation%begin(scene, timers, error)
+      allocate (slot%window)
+      slot%window%serves = [1_ik]
+      associate (problem => simulation%problem, tips => simulation%now%windows%tip)
+         call renew(slot, scene, simulation%network, simulation%tip, .false., tips, history, error)
+         call checks%no_error(error, "archive: window")
+         call archive%begin_storing()
+         call slot%window%visit(archive, scene, problem%mesher, problem%mesh, problem%values, &
+                                tips, error)
+         call archive%begin_loading()
+         call loaded%visit(archive, scene, problem%mesher, problem%mesh, problem%values, tips, &
+                           error)
+      end associate
+      call checks%no_error(error, "archive")
+      call checks%is_true(.not. allocated(archive%fault), "archive: every entry is at its place")
+      call checks%is_true(loaded%model%mesh%n_nodes == slot%window%model%mesh%n_nodes, &
+                          "archive: the same mesh")
+   end subroutine test_archive
 
    !> An edge that would pass close to the point where two fractures cross at a small angle, where
    !! no element fits between them, moves outwards; one that passes farther away stays.
