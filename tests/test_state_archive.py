@@ -171,7 +171,12 @@ MADE_AGAIN = {
     "tape_t": _each("own own_mark taken_mark", _EMPTY) | {"is_recording": _RULE},
     "pace_t": _each("recorded recorded_end since recorded_since is_bound has_joined misfit", _EMPTY)
     | _each("why_not tries last_dt last_misfit", _EMPTY),
-    "journal_t": {"progress": _FILES, "shown": _FILES, "checkpoints": _FILES},
+    "journal_t": {
+        "progress": _FILES,
+        "has_state": _FILES,
+        "shown": _FILES,
+        "checkpoints": _FILES,
+    },
 }
 
 _TYPE = re.compile(r"^ +type(?:, [\w() ,]+)? :: (\w+)\n(.*?)^ +end type", re.MULTILINE | re.DOTALL)

@@ -35,6 +35,7 @@ module app_run
    type :: journal_t
       type(run_output_t) :: files
       type(progress_t) :: progress
+      logical :: has_state = .false.  !< `shown` is that of a state of this process
       logical :: owes_rows = .false.  !< fractures.csv lacks the last accepted state
       logical :: owes_vtu = .false.  !< VTU files of the last accepted state are not written
       integer(ik) :: n_growth = 0  !< number of states of growth with VTU files
@@ -386,6 +387,7 @@ contains
                                      well_pressure=row%well_pressure, &
                                      keq_over_kic=simulation%keq_over_kic(), &
                                      is_load=.not. simulation%scene%has_fluid())
+      self%has_state = .true.
       call self%progress%show(self%shown, log_line)
       if (allocated(log_line)) call self%files%log(log_line)
    end subroutine write_state
@@ -395,7 +397,7 @@ contains
       class(journal_t), intent(inout) :: self
       character(len=:), allocatable :: log_line
 
-      if (.not. self%owes_rows .and. self%shown%step == 0) return  ! no state so far
+      if (.not. self%has_state) return
       self%shown%solutions = self%shown%solutions + 1
       call self%progress%show(self%shown, log_line)
       if (allocated(log_line)) call self%files%log(log_line)

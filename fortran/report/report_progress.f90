@@ -28,6 +28,7 @@ module report_progress
       real(rk) :: keq_over_kic = 0.0_rk  !< largest of the present tips; 0: omitted [-]
       logical :: is_load = .false.  !< `time` is a load factor
       integer(ik) :: solutions = 0  !< number of tries for the next state so far
+      logical :: is_slow = .false.  !< the next state takes long
    end type progress_values_t
 
    !> The progress line and its last update.
@@ -39,6 +40,7 @@ module report_progress
       integer(lk) :: first = 0_lk  !< clock at the beginning [ticks]
       integer(lk) :: last = 0_lk  !< clock at the last update [ticks]
       integer(lk) :: last_logged = 0_lk  !< clock at the last line of the log [ticks]
+      integer(lk) :: last_state = 0_lk  !< clock when the present state was accepted [ticks]
       real(rk) :: ticks_per_second = 1.0_rk
    contains
       procedure :: begin
@@ -67,6 +69,7 @@ contains
       call system_clock(self%first, rate)
       self%ticks_per_second = real(rate, rk)
       self%last_logged = self%first
+      self%last_state = self%first
       self%is_quiet = quiet
       self%is_terminal = c_isatty(standard_error) == 1_c_int
    end subroutine begin
@@ -78,12 +81,16 @@ contains
       character(len=:), allocatable, intent(out) :: log_line  !< line for the log, if one is due
       integer(lk) :: now
       real(rk) :: elapsed  ! since the beginning [s]
+      type(progress_values_t) :: shown
 
       call system_clock(now)
       elapsed = real(now - self%first, rk)/self%ticks_per_second
+      if (values%solutions == 0) self%last_state = now
+      shown = values
+      shown%is_slow = real(now - self%last_state, rk)/self%ticks_per_second >= log_pause
       if (real(now - self%last_logged, rk)/self%ticks_per_second >= log_pause) then
          self%last_logged = now
-         log_line = progress_line(values, elapsed, huge(1))
+         log_line = progress_line(shown, elapsed, huge(1))
          if (.not. (self%is_quiet .or. self%is_terminal)) then
             write (error_unit, "(a)") log_line
             flush (error_unit)
@@ -94,7 +101,7 @@ contains
       self%last = now
       self%has_line = .true.
       write (error_unit, "(a)", advance="no") &
-         achar(13)//padded(progress_line(values, elapsed, line_width))
+         achar(13)//padded(progress_line(shown, elapsed, line_width))
       flush (error_unit)
    end subroutine show
 
@@ -126,7 +133,9 @@ contains
          call add("t "//brief_text(values%time, 5)//" s")
       end if
       call add("step "//integer_text(values%step))
-      if (values%solutions > many) call add("next: "//integer_text(values%solutions)//" solutions")
+      if (values%is_slow .or. values%solutions > many) then
+         call add("next: "//integer_text(values%solutions)//" solutions")
+      end if
       if (share >= first_guess .and. share < 1.0_rk) then
          call add(duration_text(elapsed*(1.0_rk - share)/share)//" left")
       end if

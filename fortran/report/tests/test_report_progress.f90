@@ -18,6 +18,14 @@ program test_report_progress
    line = progress_line(values, 10.0_rk, 79)
    call checks%is_true(line == "24%  t 1234.6 s  step 12  31 s left  well 12.35 MPa  "// &
                        "K/K_IC 0.988  L 1.235 m", "what fits a terminal: "//line)
+   values%solutions = 7
+   call checks%is_true(index(progress_line(values, 10.0_rk, 1000), "next") == 0, &
+                       "solutions are not shown where the next state does not take long")
+   values%is_slow = .true.
+  call checks%is_true(index(progress_line(values, 10.0_rk, 79), "step 12  next: 7 solutions") > 0, &
+                       "solutions of a step that takes long")
+   values%solutions = 0
+   values%is_slow = .false.
    values%well_pressure = [40.0e6_rk, 22.0e6_rk]
    line = progress_line(values, 10.0_rk, 65)
    call checks%is_true(line == "24%  t 1234.6 s  step 12  31 s left  well 40, 22 MPa  "// &
