@@ -6,6 +6,7 @@ import math
 from statistics import NormalDist
 from typing import Any
 
+import numpy as np
 import pytest
 
 from wingcrack.errors import CaseError
@@ -55,6 +56,23 @@ def test_bounds_cut_the_law_off_and_heap_nothing_up() -> None:
     parts = sorted(int((law.cdf(value) - below) / (above - below) * COUNT) for value in values)
     assert parts == list(range(COUNT))
     assert -1.0 < min(values) < max(values) < 0.5
+
+
+def test_draws_are_those_of_scipy() -> None:
+    from scipy import stats
+
+    shares = stats.qmc.LatinHypercube(1, rng=np.random.default_rng(7)).random(COUNT)[:, 0]
+    laws = {
+        "uniform": stats.uniform(-2.0, 5.0),
+        "log_uniform": stats.loguniform(1e-20, 1e-16),
+        "normal": stats.norm(0.5, 0.05),
+        "lognormal": stats.lognorm(math.log(1.5), scale=2.0),
+    }
+    for kind, law in laws.items():
+        assert draws(LAWS[kind][0]) == list(law.ppf(shares))
+        assert draws(LAWS[kind][0] | {"min": law.ppf(0.2), "max": law.ppf(0.7)}) == pytest.approx(
+            law.ppf(0.2 + 0.5 * shares), rel=1e-13
+        )
 
 
 def test_whole_numbers_come_equally_often() -> None:

@@ -62,12 +62,15 @@ def read_draws(data: Any, place: str, most: int, count: int | None = None) -> Ta
 
 def _shares(count: int, dimension: int, seed: int, method: str) -> Array:
     """(count, dimension) numbers between 0 and 1."""
+    generator = np.random.default_rng(seed)
     if method == "random":
-        return np.random.default_rng(seed).random((count, dimension))
-    from scipy.stats import qmc  # takes a second, which a study without draws does not need
-
-    sampler = qmc.LatinHypercube(dimension, rng=np.random.default_rng(seed))
-    return np.asarray(sampler.random(count))
+        return generator.random((count, dimension))
+    (generator,) = generator.spawn(1)  # as scipy.stats.qmc does, which takes a second to import
+    within = generator.random((count, dimension))
+    strata = np.tile(np.arange(1, count + 1), (dimension, 1))
+    for of_parameter in strata:
+        generator.shuffle(of_parameter)
+    return (strata.T - within) / count
 
 
 def _values(data: Any, shares: Array, place: str) -> list[Any]:
@@ -121,17 +124,30 @@ def _within(
     kind: str, first: float, second: float, bounds: tuple[float, float], shares: Array, place: str
 ) -> list[Any]:
     """Quantiles of the distribution cut off at the bounds (no heap of values at them)."""
-    from scipy import stats
+    from scipy.special import ndtr, ndtri  # scipy.stats takes a second to import
 
-    law = {
-        "uniform": lambda: stats.uniform(first, second - first),
-        "log_uniform": lambda: stats.loguniform(first, second),
-        "normal": lambda: stats.norm(first, second),
-        "lognormal": lambda: stats.lognorm(math.log(second), scale=first),
-    }[kind]()
-    below, above = float(law.cdf(bounds[0])), float(law.cdf(bounds[1]))
+    ends = np.array(bounds)
+    if kind in ("log_uniform", "lognormal"):
+        with np.errstate(divide="ignore"):
+            ends = np.log(np.maximum(ends, 0.0))
+    if kind == "log_uniform":
+        first, second = math.log(first), math.log(second)
+    if kind in ("uniform", "log_uniform"):
+        below, above = np.clip((ends - first) / (second - first), 0.0, 1.0)
+    elif kind == "normal":
+        below, above = ndtr((ends - first) / second)
+    else:
+        below, above = ndtr((ends - math.log(first)) / math.log(second))
     if not above - below > 1.0e-9:
         raise CaseError(f"{place}: the distribution has nothing between 'min' and 'max'")
     inside = np.clip(shares, 1.0e-12, 1.0 - 1.0e-12)  # the ends of a normal law are infinite
-    values = np.clip(law.ppf(below + inside * (above - below)), *bounds)
-    return [float(value) for value in values]
+    shares = below + inside * (above - below)
+    if kind in ("uniform", "log_uniform"):
+        values = first + shares * (second - first)
+    elif kind == "normal":
+        values = first + second * ndtri(shares)
+    else:
+        values = first * np.exp(math.log(second) * ndtri(shares))
+    if kind == "log_uniform":
+        values = np.exp(values)
+    return [float(value) for value in np.clip(values, *bounds)]
