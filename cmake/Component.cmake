@@ -54,7 +54,9 @@ endfunction()
 
 include(CheckLinkerFlag)
 # A test's own code is run once: it is not worth optimizing, which takes four times as long and
-# changes nothing in what is tested. gold links in a third of the time, where it is there.
+# changes nothing in what is tested. gold links in a third of the time, where it is there. Simulations
+# in procedures that a test calls once are `save`: at the end of a procedure gfortran writes out the
+# deallocation of each component, which takes half a second per simulation to compile.
 check_linker_flag(CXX -fuse-ld=gold WINGCRACK_HAS_GOLD)
 function(soon_built name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O0>)

@@ -109,19 +109,27 @@ contains
       type(fine_loads_t), intent(in) :: loads
       real(rk), intent(inout) :: force(:, :)  !< (2, n_nodes) [N/m]
       real(rk) :: share(2, 6)
-      integer(ik) :: cell, k
+      integer(ik) :: cell, k, node
+      logical :: is_everywhere, is_loaded
 
+      is_everywhere = allocated(loads%heat_pressure) .or. any(abs(loads%body_force) > 0.0_rk)
       do cell = 1, fine%n_cells
-         associate (nodes => fine%cell_nodes(:, cell))
-            if (.not. (allocated(loads%heat_pressure) &
-                       .or. any(abs(loads%pore_pressure(nodes(1:3))) > 0.0_rk) &
-                       .or. any(abs(loads%initial_stress(:, nodes(1:3))) > 0.0_rk) &
-                       .or. any(abs(loads%body_force) > 0.0_rk))) cycle
-            share = volume_forces(fine, cell, rocks%elasticity(rocks%index_of(cell))%biot, loads)
-            do k = 1, 6
-               force(:, nodes(k)) = force(:, nodes(k)) + share(:, k)
-            end do
-         end associate
+         is_loaded = is_everywhere
+         do k = 1, 3
+            node = fine%cell_nodes(k, cell)
+            if (is_loaded) exit
+            is_loaded = abs(loads%pore_pressure(node)) > 0.0_rk &
+                        .or. abs(loads%initial_stress(1, node)) > 0.0_rk &
+                        .or. abs(loads%initial_stress(2, node)) > 0.0_rk &
+                        .or. abs(loads%initial_stress(3, node)) > 0.0_rk
+         end do
+         if (.not. is_loaded) cycle
+         share = volume_forces(fine, cell, rocks%elasticity(rocks%index_of(cell))%biot, loads)
+         do k = 1, 6
+            node = fine%cell_nodes(k, cell)
+            force(1, node) = force(1, node) + share(1, k)
+            force(2, node) = force(2, node) + share(2, k)
+         end do
       end do
    end subroutine add_volume_forces
 
@@ -135,18 +143,19 @@ contains
       type(fine_loads_t), intent(in) :: loads
       real(rk) :: force(2, 6)  !< [N/m]
       real(rk) :: corner(3, 3), xy(2, 3)
-      integer(ik) :: k
+      integer(ik) :: k, node
 
-      corner = loads%initial_stress(:, fine%cell_nodes(1:3, cell))
       do k = 1, 3
-         corner(1:2, k) = corner(1:2, k) - biot*loads%pore_pressure(fine%cell_nodes(k, cell))
+         node = fine%cell_nodes(k, cell)
+         xy(:, k) = fine%xy(:, node)
+         corner(:, k) = loads%initial_stress(:, node)
+         corner(1:2, k) = corner(1:2, k) - biot*loads%pore_pressure(node)
          if (allocated(loads%heat_pressure)) corner(1:2, k) = corner(1:2, k) &
          & - biot*loads%heat_pressure(k, cell)
       end do
       if (fine%tip_corner(cell) > 0) then
          force = forces_at_tip(fine, cell, corner, loads%body_force)
       else
-         xy = fine%xy(:, fine%cell_nodes(1:3, cell))
          force = forces_of_ordinary(xy, corner, loads%body_force)
       end if
    end function volume_forces
@@ -160,21 +169,22 @@ contains
       real(rk), intent(in) :: body_force(2)  !< [N/m3]
       real(rk) :: force(2, 6)  !< [N/m]
       real(rk) :: slope(2, 3)  ! 2 A grad L
-      real(rk) :: all(3)
+      real(rk) :: all(3), of_body(2)
       integer(ik) :: a, b, c
 
       do a = 1, 3
          b = mod(a, 3_ik) + 1
          c = mod(b, 3_ik) + 1
-         slope(:, a) = [xy(2, b) - xy(2, c), xy(1, c) - xy(1, b)]
+         slope(1, a) = xy(2, b) - xy(2, c)
+         slope(2, a) = xy(1, c) - xy(1, b)
       end do
-      all = sum(stress, dim=2)
+      all = stress(:, 1) + stress(:, 2) + stress(:, 3)
+      of_body = triangle_area(xy)/3.0_rk*body_force
       do a = 1, 3
          b = mod(a, 3_ik) + 1
          force(:, a) = -traction(stress(:, a), slope(:, a))/6.0_rk
          force(:, 3 + a) = -(traction(all + stress(:, a), slope(:, b)) &
-                             + traction(all + stress(:, b), slope(:, a)))/6.0_rk &
-                           + triangle_area(xy)/3.0_rk*body_force
+                             + traction(all + stress(:, b), slope(:, a)))/6.0_rk + of_body
       end do
    end function forces_of_ordinary
 
@@ -184,8 +194,8 @@ contains
       real(rk), intent(in) :: vector(2)
       real(rk) :: traction(2)
 
-      traction = [stress(1)*vector(1) + stress(3)*vector(2), &
-                  stress(3)*vector(1) + stress(2)*vector(2)]
+      traction(1) = stress(1)*vector(1) + stress(3)*vector(2)
+      traction(2) = stress(3)*vector(1) + stress(2)*vector(2)
    end function traction
 
    !> The same of an element at a tip, by a rule that is exact there.

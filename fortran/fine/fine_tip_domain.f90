@@ -32,10 +32,12 @@ contains
       real(rk) :: distance
       integer(ik) :: node
 
+      q = 0.0_rk
       do node = 1, fine%n_nodes
+         if (maxval(abs(fine%xy(:, node) - frame%origin)) > radius) cycle  ! most of a mesh
          distance = norm2(fine%xy(:, node) - frame%origin)/radius
+         if (distance > 1.0_rk - same_place) cycle
          q(node) = max(0.0_rk, min(1.0_rk, (1.0_rk - distance)/(1.0_rk - plateau)))
-         if (distance > 1.0_rk - same_place) q(node) = 0.0_rk
       end do
    end function domain_weight
 
@@ -58,11 +60,18 @@ contains
       type(tip_frame_t), intent(in) :: frame
       integer(ik), intent(in) :: vertex
       real(rk) :: stress(2, 2)
+      real(rk) :: on_axis(2, 2)
+      integer(ik) :: i, j
 
-      associate (given => loads%initial_stress(:, vertex))
-         stress = reshape([given(1), given(3), given(3), given(2)], [2, 2])
+      associate (given => loads%initial_stress(:, vertex), axes => frame%axes)
+         on_axis(1, :) = given(1)*axes(:, 1) + given(3)*axes(:, 2)
+         on_axis(2, :) = given(3)*axes(:, 1) + given(2)*axes(:, 2)
+         do j = 1, 2
+            do i = 1, 2
+               stress(i, j) = axes(i, 1)*on_axis(1, j) + axes(i, 2)*on_axis(2, j)
+            end do
+         end do
       end associate
-      stress = matmul(frame%axes, matmul(stress, transpose(frame%axes)))
    end function in_situ_stress
 
    !> How far a domain may reach [m].

@@ -38,15 +38,19 @@ contains
       real(rk), intent(in) :: plateau  !< share of the radius within which q = 1 [-]
       real(rk) :: g
       real(rk) :: q(model%mesh%n_nodes), reference_stress(2, 2)
-      integer(ik) :: cell
+      logical :: is_within
+      integer(ik) :: cell, k
 
       q = domain_weight(model%mesh, frame, radius, plateau)
       reference_stress = in_situ_stress(loads, frame, frame%node)
       g = 0.0_rk
       do cell = 1, model%mesh%n_cells
-         if (any(q(model%mesh%cell_nodes(:, cell)) > 0.0_rk)) then
-            g = g + cell_share(model, loads, displacement, frame, reference_stress, cell, q)
-         end if
+         is_within = .false.
+         do k = 1, 6
+            is_within = is_within .or. q(model%mesh%cell_nodes(k, cell)) > 0.0_rk
+         end do
+         if (.not. is_within) cycle
+         g = g + cell_share(model, loads, displacement, frame, reference_stress, cell, q)
       end do
       do cell = 1, model%mesh%fracture%n_cells
          if (any(q(model%mesh%face_nodes(:, 1, cell)) > 0.0_rk)) then
@@ -67,28 +71,36 @@ contains
       real(rk) :: points(3, tip_rule_size), weights(tip_rule_size)
       real(rk) :: values(6), gradients(2, 6), area_coordinates(3), determinant
       real(rk) :: gradient(2, 2), elastic(2, 2), initial(2, 2), slope(2, 2), q_slope(2), p(2)
-      real(rk) :: body(2), density, corner(2, 2, 3), moved(2, 6), q_nodes(6), xy(2, 3)
-      integer(ik) :: k, nodes(6), n_points, point
+      real(rk) :: body(2), density, corner(2, 2, 3), moved(2, 6), q_nodes(6), place(2, 3), along(2)
+      integer(ik) :: i, k, n_points, node, point
 
-      nodes = model%mesh%cell_nodes(:, cell)
       call element_rule(model%mesh, frame, cell, n_points, points, weights)
       ! All in the tip's axes.
-      do k = 1, 3
-         corner(:, :, k) = initial_stress(loads, frame, nodes(k), k, cell) - reference_stress
-      end do
-      q_nodes = q(nodes)
-      xy = model%mesh%xy(:, nodes(:3))
-      slope = slope_along(matmul(frame%axes, xy), corner)
-      moved = displacement(:, nodes)
-      moved = matmul(frame%axes, moved)
+      associate (axes => frame%axes)
+         do k = 1, 6
+            node = model%mesh%cell_nodes(k, cell)
+            q_nodes(k) = q(node)
+            moved(:, k) = axes(:, 1)*displacement(1, node) + axes(:, 2)*displacement(2, node)
+            if (k > 3) cycle
+            place(:, k) = axes(:, 1)*model%mesh%xy(1, node) + axes(:, 2)*model%mesh%xy(2, node)
+            corner(:, :, k) = initial_stress(loads, frame, node, k, cell) - reference_stress
+         end do
+      end associate
+      slope = slope_along(place, corner)
       body = matmul(frame%axes, loads%body_force)
       cell_share = 0.0_rk
       do point = 1, n_points
          call model%mesh%evaluate(cell, points(:, point), values, gradients, area_coordinates, &
                                   determinant)
-         gradients = matmul(frame%axes, gradients)
-         gradient = matmul(moved, transpose(gradients))
-         q_slope = matmul(gradients, q_nodes)
+         gradient = 0.0_rk
+         q_slope = 0.0_rk
+         do k = 1, 6
+            along = frame%axes(:, 1)*gradients(1, k) + frame%axes(:, 2)*gradients(2, k)
+            q_slope = q_slope + along*q_nodes(k)
+            do i = 1, 2
+               gradient(:, i) = gradient(:, i) + moved(:, k)*along(i)
+            end do
+         end do
          elastic = frame%rock%total_stress(gradient, 0.0_rk)
          initial = area_coordinates(1)*corner(:, :, 1) + area_coordinates(2)*corner(:, :, 2) &
                    + area_coordinates(3)*corner(:, :, 3)

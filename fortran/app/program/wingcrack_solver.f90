@@ -21,8 +21,8 @@ program wingcrack_solver
    integer, parameter :: exit_failed = 1, exit_usage = 2, exit_environment = 3
    character(len=*), parameter :: usage = "usage: wingcrack-solver run SCENE.nml [--out DIR] "// &
                                   "[--quiet] | run [SCENE.nml] --restart DIR [--end T] "// &
-                        "[--out DIR] [--quiet] | check SCENE.nml [--stress] | name SCENE.nml | "// &
-                                  "ranks SCENE.nml | "// &
+                                  "[--out DIR] [--quiet] | check SCENE.nml .. [--stress] | "// &
+                                  "name SCENE.nml | ranks SCENE.nml | "// &
                                   "--describe json | --version"
    !> Kept to the program's end: gfortran 12 loses memory when it deallocates by the dynamic type.
    class(simulation_t), allocatable :: simulation
@@ -118,19 +118,27 @@ contains
                                       interrupt_status())
    end subroutine run
 
+   !> Describe scenes that can be run; the first fault ends the program.
    subroutine check()
       type(scene_t) :: scene
       real(rk) :: n_cells(2)
+      logical :: tells_stress
+      integer :: i, last
 
-      if (command_argument_count() > 2 .and. argument(3) /= "--stress") then
-         call leave("unknown argument "//argument(3)//"; "//usage, exit_usage)
-      end if
-      call read_judged(argument(2), scene, n_cells)
-      if (argument(3) == "--stress") then
-         write (output_unit, "(a)") stress_description(scene, n_cells)
-      else
-         call describe_scene(scene, n_cells, output_unit)
-      end if
+      last = command_argument_count()
+      tells_stress = last > 2 .and. argument(last) == "--stress"
+      if (tells_stress) last = last - 1
+      do i = 2, max(last, 2)
+         if (i > 2 .and. index(argument(i), "--") == 1) then
+            call leave("unknown argument "//argument(i)//"; "//usage, exit_usage)
+         end if
+         call read_judged(argument(i), scene, n_cells)
+         if (tells_stress) then
+            write (output_unit, "(a)") stress_description(scene, n_cells)
+         else
+            call describe_scene(scene, n_cells, output_unit)
+         end if
+      end do
    end subroutine check
 
    !> Read and check a scene; a fault ends the program.

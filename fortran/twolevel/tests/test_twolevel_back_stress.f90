@@ -78,7 +78,7 @@ contains
    subroutine test_layer()
       real(rk), parameter :: dp = 1.0e6_rk  ! [Pa]
       real(rk), parameter :: old = huge(1.0_rk)  ! [s]
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(scene_t) :: scene
       type(layer_t) :: data
       type(error_t), allocatable :: error

@@ -163,7 +163,7 @@ contains
    !> The first step after the undrained response is rejected and tried again: K of this response is
    !! not kept, though the windows are those of the first try.
    subroutine test_rejected()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
 
       call start(simulation, 5, 1.0e7_rk, .false.)
       call step(simulation, 1.0e-3_rk)
@@ -176,7 +176,7 @@ contains
 
    !> Eight tips or fewer are all evaluated.
    subroutine test_few()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
 
       call start(simulation, 4, 1.0e7_rk, .false.)
       call step(simulation, 1.0e-3_rk)
@@ -186,7 +186,7 @@ contains
 
    !> Tips within half of their toughness are all evaluated.
    subroutine test_near_toughness()
-      type(two_levels_t), allocatable :: simulation
+      type(two_levels_t), allocatable, save :: simulation
       real(rk) :: toughness
       logical, allocatable :: is_near(:)
 
@@ -212,7 +212,7 @@ contains
    !> In the body as one window the elements are small around tips near their toughness only; K of
    !! the others is within the stated errors of what it is with small elements.
    subroutine test_focus()
-      type(two_levels_t), allocatable :: far, near
+      type(two_levels_t), allocatable, save :: far, near
       integer :: i
 
       allocate (far, near)
@@ -232,7 +232,7 @@ contains
    !> The body as window leaves out fractures that stick far from slip, until they are needed: K of
    !! the others differs by no more than from another mesh.
    subroutine test_still()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(tip_t), allocatable :: without(:)
       integer(ik) :: fewer
       integer :: i
@@ -258,7 +258,7 @@ contains
    !! another length alone does not change it. The mean opening of a cell of length d at a tip
    !! is (2/3) (8 K/E') sqrt(d/(2 pi)).
    subroutine test_cell_length()
-      type(two_levels_t), allocatable :: simulation
+      type(two_levels_t), allocatable, save :: simulation
       real(rk), parameter :: sizes(2) = [0.05_rk, 0.025_rk]
       real(rk) :: modulus, of_jump
       integer :: i, k
@@ -281,7 +281,7 @@ contains
 
    !> A tip whose faces have stuck and move now is evaluated, not kept at K = 0.
    subroutine test_reopening()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       real(rk), allocatable :: jump(:, :, :)
       real(rk) :: known
 

@@ -48,7 +48,7 @@ contains
 
    !> A sticking fracture in uniform stress: both levels are exact, so the correction is zero.
    subroutine test_uniform_stress()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       integer :: i
 
@@ -69,7 +69,7 @@ contains
    !> The forces on the cells of a state in equilibrium are those of the boundary; where the faces
    !! slip, the estimate is no more than a few per cent, and is included in the tips' errors.
    subroutine test_balance()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       real(rk), allocatable :: force(:, :)
       integer :: i
@@ -103,7 +103,7 @@ contains
    !> A jump that is linear along the fracture equals the coarse jump at its third points, in all
    !! cells that lie completely in the window.
    subroutine test_linear_jump()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       real(rk), allocatable :: found(:, :, :)
       real(rk) :: s, worst
       integer(ik) :: cell, end, n
@@ -133,7 +133,7 @@ contains
    !! last cells, where the quarter-point element is exact, is 2/3 d^(3/2), and its first moment 2/5
    !! d^(5/2).
    subroutine test_root_jump()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       real(rk), allocatable :: found(:, :, :)
       real(rk) :: first_moment, length, mean
       integer(ik) :: last
@@ -188,7 +188,7 @@ contains
 
    !> A quadratic displacement, prescribed by its values and gradients at the coarse nodes.
    subroutine test_curved_edge()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       real(rk), allocatable :: edge(:, :), gradient(:, :, :), values(:, :)
       real(rk) :: worst
       integer(ik) :: v
@@ -225,7 +225,7 @@ contains
    !! much for twice the gradient.
    subroutine test_pressure_in_cells()
       real(rk), parameter :: uniform = 3.0e6_rk, gradient = 2.0e7_rk  ! [Pa], [Pa/m]
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       real(rk) :: once(2, 2), twice(2, 2), none(2, 2), k(2)
 
       call start(0.1_rk, simulation)
@@ -243,7 +243,7 @@ contains
    !! jump of pressure there.
    subroutine test_layer_at_tip()
       real(rk), parameter :: rock = 3.0e6_rk, beyond = 7.0e6_rk  ! [Pa]
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(layer_t) :: layer
       real(rk) :: bulk, bulk_undrained, shear, storage, undrained
       type(coarse_values_t) :: own

@@ -48,7 +48,7 @@ contains
 
    !> One of two tips has grown by 0.1 m: both rows are of the state before growth.
    subroutine test_rows_of_tips()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
 
       call start(simulation)
       call simulation%tip(1)%move([0.7_rk, 1.0_rk], 0.25_rk)
@@ -73,7 +73,7 @@ contains
 
    !> One tip joins the boundary; the other stops before it, which is reported once.
    subroutine test_growth()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
 
       call start(simulation)
       call simulation%tip%begin_increment()
@@ -111,7 +111,7 @@ contains
 
    !> The first slip and the first opening of a fracture are events, later ones are none.
    subroutine test_contact()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(fracture_mesh_t) :: fracture
       logical, parameter :: always(1) = .true.
 
@@ -134,7 +134,7 @@ contains
 
    !> The scene ends once a tip has grown by the prescribed gain.
    subroutine test_gain()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
 
       call start(simulation)
       simulation%rules%stop_gain = 0.1_rk

@@ -150,7 +150,7 @@ contains
    !! where the criterion leads straight on, within two degrees.
    subroutine test_correction()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(timers_t) :: timers
       type(step_report_t) :: report
       type(error_t), allocatable :: error

@@ -145,7 +145,7 @@ contains
    !! remeshed around a tip, and no intensity in any window compared with 75 MPa.
    subroutine check_rest()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       integer :: round
 
@@ -179,7 +179,7 @@ contains
    !! crack, small compared with the body, has a difference of 20 %.
    subroutine check_gradient()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       real(rk), parameter :: a = 0.2_rk, net = 8.0e6_rk, slope = 16.0e6_rk
       real(rk) :: k(2), modulus, unit

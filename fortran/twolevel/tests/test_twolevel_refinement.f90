@@ -143,7 +143,7 @@ contains
    end subroutine test_small_window
 
    subroutine test_good_window()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       logical :: any_improved
       integer(ik) :: n_unknowns
 
@@ -163,7 +163,7 @@ contains
    !! smaller ones are possible: then the errors of growth are stated. A pressure dp changes K_II of
    !! this crack by friction dp sqrt(pi a).
    subroutine test_poor_elements()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(growth_error_t) :: growth
       logical :: any_improved, is_noted(2)
       real(rk) :: off  !< [Pa m^1/2]
@@ -200,7 +200,7 @@ contains
    !> A refinement that has not reduced the error is not repeated: neither smaller elements nor a
    !! larger window, until the error has become twice as large.
    subroutine test_no_effect()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       logical :: any_improved
       integer :: i
 
@@ -240,7 +240,7 @@ contains
    !> A window that would have to be nearly as large as the body is replaced by the body, which both
    !! tips share; then no error enters over an edge.
    subroutine test_body()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       logical :: any_improved
 
       call start(0.4_rk, 0.5_rk, simulation, usual_toughness)
@@ -262,7 +262,7 @@ contains
    !! body: the body is the only window then, has fewer, and gives the same K. Small windows stay.
    subroutine test_many_windows()
       real(rk), parameter :: half = 0.05_rk*sqrt(0.5_rk), apart = 0.35_rk
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(scene_t) :: scene
       type(step_report_t) :: report
       type(error_t), allocatable :: error

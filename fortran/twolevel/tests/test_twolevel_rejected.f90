@@ -28,7 +28,7 @@ contains
 
    !> A copy is equal; a change of a part is found, and reported by its name.
    subroutine test_parts()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       type(checkpoint_t) :: copy, state
       type(part_t), allocatable :: list(:)

@@ -108,7 +108,7 @@ contains
    !> End to end: one tip joins the other, which is deactivated.
    subroutine test_tips_of_two()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       integer :: states
 
       scene = injected_body()
@@ -123,7 +123,7 @@ contains
    !> A side of the body.
    subroutine test_side()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       integer :: states
 
       scene = injected_body()

@@ -38,7 +38,7 @@ contains
    subroutine test_rock_well()
       real(rk), parameter :: limit = 8.0e6_rk
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk), allocatable :: flow(:)
@@ -82,7 +82,7 @@ contains
    !> Three wells: at a point, over a whole fracture, and a second one at a point, at various times.
    subroutine test_wells()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       integer(ik) :: i, n
       real(rk) :: middle(2)
@@ -159,7 +159,7 @@ contains
    !> A step that does not converge changes nothing.
    subroutine test_refused_step()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(step_report_t) :: report
       type(error_t), allocatable :: error
       real(rk), allocatable :: pressure(:)
@@ -274,7 +274,7 @@ contains
    !> Tips in equilibrium: no accepted state above the toughness, tips that advance are at the
    !! toughness, both ends grow equally, and all fluid is accounted for.
    subroutine test_equilibrium()
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       real(rk) :: gain(2), ratio(2)
       integer :: grown, step

@@ -156,7 +156,7 @@ contains
    !> Before a well starts nothing is injected; the pressure rises later only.
    subroutine test_before_the_well()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(history_row_t) :: row
       type(error_t), allocatable :: error
 

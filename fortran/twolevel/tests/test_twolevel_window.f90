@@ -213,7 +213,7 @@ contains
    !! positions; a face is mapped to the coarse cell that contains it.
    subroutine test_projection()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       integer :: w
 
       scene = squeezed_body(20.0e6_rk, 10.0e6_rk)
@@ -278,7 +278,7 @@ contains
    subroutine test_uniform_stress()
       character(len=8), parameter :: conditions(3) = ["contact ", "jump    ", "traction"]
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       integer :: k, undrained, w
 
@@ -342,7 +342,7 @@ contains
    !! pressure of its fluid, and, in the comparisons, its jump or its traction at the nearer end.
    subroutine test_conditions()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       integer(ik) :: i
 
@@ -413,7 +413,7 @@ contains
    !! faces, held by friction, do not move. A new mesh takes over the contact.
    subroutine test_history()
       type(scene_t) :: scene
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       type(error_t), allocatable :: error
       type(intensity_t) :: before(2)
 
@@ -439,7 +439,7 @@ contains
    !! window as large as the body, and there is no error by the coarse level.
    subroutine test_body()
       type(scene_t) :: scene
-      type(two_levels_t) :: sticking, together, apart
+      type(two_levels_t), save :: sticking, together, apart
       type(error_t), allocatable :: error
       integer :: w
 

@@ -45,7 +45,7 @@ contains
    subroutine test_following()
       real(rk), parameter :: piece = 0.05_rk*length
       real(rk), parameter :: gains(4) = [-0.4_rk, 0.3_rk, 0.7_rk, 2.5_rk]*piece
-      type(two_levels_t) :: simulation
+      type(two_levels_t), save :: simulation
       real(rk) :: followed, place(2)
       integer(ik) :: k
 

@@ -24,11 +24,16 @@ scene=$2
 rate=$(value rate)
 title=$(value title)
 if [[ $1 == check ]]; then
-    if grep -q 'rote' "$scene"; then
-        echo 'wingcrack: scene.nml, line 7: rote is unknown; did you mean rate?' >&2
-        exit 2
-    fi
-    if [[ $title == refuse ]]; then echo "wingcrack: rate $rate is too much" >&2; exit 2; fi
+    for scene in "${@:2}"; do
+        if grep -q 'rote' "$scene"; then
+            echo 'wingcrack: scene.nml, line 7: rote is unknown; did you mean rate?' >&2
+            exit 2
+        fi
+        if [[ $(value title) == refuse ]]; then
+            echo "wingcrack: rate $(value rate) is too much" >&2
+            exit 2
+        fi
+    done
     exit 0
 fi
 echo "$rate $title" >>@CALLS@

@@ -30,9 +30,9 @@ def _field(axes: Axes) -> PolyCollection | TriMesh:
 def test_default_panels_and_labels(wet_run: Path) -> None:
     figure = pressure_maps(read_run(wet_run))
     panels = _maps(figure)
-    assert len(panels) == 12  # six times, each the whole body and near the fracture
+    assert len(panels) == 6  # three times, each the whole body and near the fracture
     assert [axes.get_title(loc="left")[:3] for axes in panels[:3]] == ["(a)", "(b)", "(c)"]
-    assert panels[0].get_title(loc="left") == "(a)  $t$ = 5 h"
+    assert panels[0].get_title(loc="left") == "(a)  $t$ = 25 h"  # when growth begins
     assert panels[0].get_ylabel() == "$y$ [m]"
     assert panels[3].get_xlabel() == "$x$ [m]"
     assert panels[0].get_xlim() == (0.0, 2.0)

@@ -172,6 +172,10 @@ def test_two_calls_do_not_share_a_folder(study: SmallStudy) -> None:
             HEAD + '[over]\n"scene.title" = ["plain", "refuse"]\n',
             "run 2 (scene.title = refuse): rate 1e-09 is too much",
         ),
+        (  # of several scenes that one process checks
+            HEAD + '[over]\n"scene.title" = ["plain", "slow", "hang", "fail", "refuse", "quiet"]\n',
+            "run 5 (scene.title = refuse): rate 1e-09 is too much",
+        ),
         (SOUND.replace("injection.rate", "fracture.f2.x"), "there is no item 'f2'"),
         (SOUND.replace('"scene.nml"', '"none.nml"'), "there is no scene file"),
         ("", "'title' is missing"),

@@ -47,6 +47,7 @@ from wingcrack.figures.units import MEGAPASCAL, Unit, stress_unit
 
 PANELS_PER_ROW = 3
 DEFAULT_COUNT = 6
+PRESSURE_COUNT = 3  # each state perhaps twice, the body and near the fractures
 _DEPTH = (
     0.1  # range of most of the first state over the largest change from which on changes are drawn
 )
@@ -66,9 +67,10 @@ def pressure_maps(run: Run, wanted_s: Sequence[float] = ()) -> Figure:
 
     `wanted_s`: times [s]; the nearest written ones are drawn. Default: see `select_states`.
     """
-    frames = read_frames(run, min(DEFAULT_COUNT, 3 * style.across(2)), wanted_s, _check_pressure)
+    frames = read_frames(run, PRESSURE_COUNT, wanted_s, _check_pressure, since_growth=True)
     body = extent([frame.matrix for frame in frames])
-    first = frames[0] if wanted_s == () else read_frame(run, 0)
+    is_first = frames[0].moment == run.matrix[0].time_s
+    first = frames[0] if is_first else read_frame(run, 0)
     changes = [changes_since(first, frame, "pressure") for frame in frames]
     fractures = [frame.fractures for frame in frames]
     close = [zoom_window(body, fractures), changed_window(body, frames, changes)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 import os
 import resource
@@ -35,6 +36,7 @@ SOLVER = Path("fortran") / "app" / "wingcrack-solver"
 RUNS = "runs"  # the folder of all runs' folders
 
 _SILENCE_S = 10.0
+_TOGETHER = 25  # scenes that one process checks
 
 
 def tasks_of(study: Study, build: Path, out: Path) -> dict[int, Task]:
@@ -82,36 +84,52 @@ def check_scenes(runs: Sequence[StudyRun], tasks: Mapping[int, Task], parallel: 
 
     Raises `CaseError`: with the solver's reason for the first scene that it refuses.
     """
+    if not runs:
+        return
+    size = min(_TOGETHER, -(-len(runs) // parallel))
+    # what is wrong with the study is mostly wrong with all: ask about one first
+    ends = [0, 1, *range(1 + size, len(runs), size), len(runs)]
+    parts = [runs[begin:end] for begin, end in itertools.pairwise(ends) if runs[begin:end]]
     with tempfile.TemporaryDirectory(prefix="wingcrack-study-") as name:
-        place = Path(name)
 
-        def check(run: StudyRun) -> str:
-            return _check(tasks[run.number], place / str(run.number))
+        def check(part: Sequence[StudyRun]) -> None:
+            _check(part, tasks, Path(name))
 
-        if runs:  # what is wrong with the study is mostly wrong with all: ask about one first
-            _refuse(runs[0], check(runs[0]))
+        check(parts[0])
         with ThreadPoolExecutor(parallel) as threads:
-            told_s = time.monotonic()
-            reasons = threads.map(check, runs[1:])
-            for count, (run, reason) in enumerate(zip(runs[1:], reasons, strict=True), start=2):
-                _refuse(run, reason)
+            told_s, count = time.monotonic(), 1
+            for part, _ in zip(parts[1:], threads.map(check, parts[1:]), strict=True):
+                count += len(part)
                 if time.monotonic() - told_s > _SILENCE_S:
                     told_s = time.monotonic()
                     print(f"{count} of {len(runs)} scenes are checked", flush=True)
 
 
-def _refuse(run: StudyRun, reason: str) -> None:
-    if reason:
-        raise CaseError(f"run {run.number} ({run.label}): {reason}")
+def _check(runs: Sequence[StudyRun], tasks: Mapping[int, Task], place: Path) -> None:
+    """Refuse the first scene that the solver refuses, with its reason.
+
+    One process checks them all; where it refuses one, they are checked one by one.
+    """
+    for run in runs:
+        folder = place / str(run.number)
+        folder.mkdir(exist_ok=True)
+        (folder / "scene.nml").write_text(tasks[run.number].text or "", encoding="utf-8")
+        copy_tables(tasks[run.number], folder)
+    program = str(tasks[runs[0].number].program)
+    if len(runs) > 1:
+        files = [f"{run.number}/scene.nml" for run in runs]
+        if _said([program, "check", *files], place) is None:
+            return
+    for run in runs:
+        reason = _said([program, "check", "scene.nml"], place / str(run.number))
+        if reason is not None:
+            raise CaseError(f"run {run.number} ({run.label}): {reason}")
 
 
-def _check(task: Task, folder: Path) -> str:
-    """Why the solver refuses a scene; empty if it does not."""
-    folder.mkdir()
-    (folder / "scene.nml").write_text(task.text or "", encoding="utf-8")
-    copy_tables(task, folder)
+def _said(command: list[str], folder: Path) -> str | None:
+    """Why the solver refuses what it is to check; None if it does not."""
     done = subprocess.run(
-        [str(task.program), "check", "scene.nml"],
+        command,
         cwd=folder,
         env=os.environ | ONE_THREAD,
         capture_output=True,
@@ -120,7 +138,7 @@ def _check(task: Task, folder: Path) -> str:
         check=False,
     )
     if done.returncode == 0:
-        return ""
+        return None
     lines = done.stderr.strip().splitlines() or [f"check ends with status {done.returncode}"]
     return lines[-1].removeprefix("wingcrack: ")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
     that are taken away first.
     """
     try:
-        scene = SceneFile.read(path)
+        scene = deepcopy(_read(path, _changed(path)))
         for address in unset:
             _remove(scene, address)
         for address, value in (DEFAULTS | dict(changes)).items():
@@ -36,6 +37,16 @@ def scene_text(path: Path, changes: Mapping[str, Any], unset: Sequence[str]) -> 
     except SceneError as reason:
         raise CaseError(f"{path.name}: {reason}") from None
     return scene.text(stays=True)  # a run has copies of its tables
+
+
+@lru_cache(maxsize=1)
+def _read(path: Path, _changed_ns: int) -> SceneFile:
+    """All runs of a study have the same scene file."""
+    return SceneFile.read(path)
+
+
+def _changed(path: Path) -> int:
+    return path.stat().st_mtime_ns if path.exists() else 0
 
 
 @lru_cache(maxsize=1)
