@@ -28,7 +28,7 @@ contains
       real(rk), dimension(heat%first_cell:heat%n) :: decay, drop, flow, mixed
       real(rk) :: into(heat%first_cell:heat%n), last(heat%first_cell:heat%n)
       integer(ik), allocatable :: along(:)  ! links between fracture cells and joints
-      integer(ik) :: k, next, own
+      integer(ik) :: k, next, own, sweep
 
       error = 0.0_rk
       if (.not. allocated(heat%externals)) return
@@ -57,7 +57,7 @@ contains
       end associate
       drop = drop*wrong_shares(heat, state, wrong)
       error = drop
-      do
+      do sweep = 1, heat%n - heat%first_cell + 1  ! as many as the longest path has cells
          last = error
          into = 0.0_rk
          do k = 1, size(along, kind=ik)
