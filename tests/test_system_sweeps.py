@@ -88,7 +88,7 @@ def test_a_neck_before_an_outlet_is_warned_of(tmp_path: Path) -> None:
     """Fluid opens a fracture and leaves it through a closed cell: 33 MPa, with finer cells 104."""
     scene = tmp_path / "neck.nml"
     scene.write_text(
-        re.sub(r"&time end = [0-9.]+", "&time end = 15.0", heat_sweeps.scene_text(723))
+        re.sub(r"&time end = [0-9.]+", "&time end = 60.0", heat_sweeps.scene_text(723))
     )
     command = [str(SOLVER), "run", str(scene), "--out", str(tmp_path / "out"), "--quiet"]
     subprocess.run(command, check=True, capture_output=True)
