@@ -5,7 +5,7 @@
 !! at a fracture cell, or of what they lack to its temperature, whichever is less. What the fluid
 !! loses in the cell is wrong by this share. Farther on the error decays as the rise of the
 !! temperature does: d' = -(h/f) d + share (h/f) T, with the flow f and the exchange h with rock at
-!! rest.
+!! rest. What flows less than the rock conducts carries nothing: f/(f + lambda) of both counts.
 module heat_carried_errors
    use base_kinds, only: ik, rk
    use heat_links, only: find_direction
@@ -28,7 +28,8 @@ contains
       real(rk), dimension(heat%first_cell:heat%n) :: decay, drop, flow, mixed
       real(rk) :: into(heat%first_cell:heat%n), last(heat%first_cell:heat%n)
       integer(ik), allocatable :: along(:)  ! links between fracture cells and joints
-      integer(ik) :: k, next, own, sweep
+      real(rk) :: conducted  ! [W/(m K)]
+      integer(ik) :: k, next, own, sweep, u
 
       error = 0.0_rk
       if (.not. allocated(heat%externals)) return
@@ -55,6 +56,13 @@ contains
          where (flow > 0.0_rk) drop = abs(mixed/flow - now)
          decay = abs(now - before)/max(abs(now - before) + drop, tiny(1.0_rk))
       end associate
+      do u = heat%first_cell, heat%first_joint - 1
+         associate (f => heat%mesh%fracture%cell_faces(1, u - heat%first_cell + 1))
+            conducted = heat%rock%mobility_at(heat%mesh%face_cells(1, f))
+         end associate
+         drop(u) = drop(u)*flow(u)/(flow(u) + conducted)
+         decay(u) = decay(u)*flow(u)/(flow(u) + conducted)
+      end do
       drop = drop*wrong_shares(heat, state, wrong)
       error = drop
       do sweep = 1, heat%n - heat%first_cell + 1  ! as many as the longest path has cells

@@ -169,8 +169,8 @@ contains
    end subroutine probes_of_levels
 
    !> Errors of displacements that cells share, as what is not resolved in one moves the others: in
-   !! the mean square over the body both are of one order. Twice the root of that of the local
-   !! errors is stated [m].
+   !! the mean square over the body both are of one order: the root of that of the local errors is
+   !! stated [m].
    function shared_displacement_error(problem, state) result(error)
       type(coarse_problem_t), intent(in) :: problem
       type(state_t), intent(in) :: state
@@ -189,7 +189,7 @@ contains
                                               - state%unknowns(:2, c)))**2
          end do
       end associate
-      error = 2.0_rk*sqrt(square/whole)
+      error = sqrt(square/whole)
    end function shared_displacement_error
 
    !> Errors of the values in one cell: the difference of its displacement and pressure from the
