@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,7 @@ import heat_sweeps
 import mutated_scenes
 import pytest
 import well_sweeps
-from system_scene import TOP, bare
+from system_scene import SOLVER, TOP, bare
 
 from wingcrack_verify import recompute
 
@@ -81,6 +82,18 @@ def test_heat_of_every_kind_is_right(tmp_path: Path) -> None:
     """Stiff scenes, of which 3, 20 and 46 showed rounding as an error of their balance."""
     seeds = [3, 4, 11, 20, 25, 42, 46]
     assert heat_sweeps.sweep(tmp_path, seeds) == {"right": len(seeds)}
+
+
+def test_a_neck_before_an_outlet_is_warned_of(tmp_path: Path) -> None:
+    """Fluid opens a fracture and leaves it through a closed cell: 33 MPa, with finer cells 104."""
+    scene = tmp_path / "neck.nml"
+    scene.write_text(
+        re.sub(r"&time end = [0-9.]+", "&time end = 60.0", heat_sweeps.scene_text(723))
+    )
+    command = [str(SOLVER), "run", str(scene), "--out", str(tmp_path / "out"), "--quiet"]
+    subprocess.run(command, check=True, capture_output=True)
+    warnings = json.loads((tmp_path / "out" / "run.json").read_text())["warnings"]
+    assert any("error of a well's pressure over its rise" in warning for warning in warnings)
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,7 @@
 module heat_errors
    use base_kinds, only: ik, rk
    use base_plane, only: barycentric, norm2
+   use heat_carried_errors, only: carried_errors
    use heat_links, only: coefficients
    use heat_model, only: heat_model_t
    use heat_state, only: heat_state_t
@@ -30,21 +31,23 @@ module heat_errors
    real(rk), parameter :: following = 1.6_rk  !< error of one that follows it, over differences [-]
    real(rk), parameter :: in_tails = 6.0_rk  !< more, where neighbours differ by all of the rise [-]
    real(rk), parameter :: of_tolerance = 2.5_rk  !< error in time over tolerance and rise [-]
-   real(rk), parameter :: at_wells = 4.0_rk  !< times the error in the cell of a well [-]
+   real(rk), parameter :: at_wells = 4.0_rk  !< times what is not carried, in the cell of a well
 
 contains
 
    !> Errors of cells, or with layers of what lies beyond them, of fracture cells and joints.
-   pure function temperature_errors(heat, state, time, behind) result(error)
+   pure subroutine temperature_errors(heat, state, time, behind, error, carried)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
       real(rk), intent(in) :: time  !< since the start [s]
       !> (fracture cells) share of the cell behind a well at a point of it; -1: no well
       real(rk), intent(in) :: behind(:)
-      real(rk) :: error(heat%n)  !< (unknowns) 0 in nodes of layers [K]
+      real(rk), intent(out) :: error(:)  !< (unknowns) 0 in nodes of layers [K]
+      real(rk), intent(out) :: carried(:)  !< (unknowns) of it, by fluid along fractures [K]
       real(rk) :: bend(heat%n), rise(heat%n), step(heat%n)
       real(rk) :: excess(heat%n)  ! conductance beyond that of the rock [W/(m K)]
       integer(ik) :: near(3, heat%n), number(heat%n)
+      real(rk) :: wrong(heat%mesh%n_cells)  ! [K]
       integer(ik) :: i, k, u
 
       rise = state%temperature - heat%initial
@@ -73,6 +76,7 @@ contains
          associate (around => [u, near(:min(number(u), 3_ik), u)])
             if (any(bend(around) >= 0.0_rk)) error(u) = maxval(bend(around))
          end associate
+         if (u <= heat%mesh%n_cells) wrong(u) = within(u)
          if (u <= heat%mesh%n_cells .and. step(u) > 0.0_rk) then
             error(u) = min(step(u), error(u) &
                            *(1.0_rk + in_tails*step(u)/(abs(rise(u)) + step(u)) &
@@ -90,11 +94,37 @@ contains
             end if
          end associate
       end do
+      carried = 0.0_rk
+      carried(heat%first_cell:) = carried_errors(heat, state, wrong)
       error = error + of_tolerance*heat%heat%tolerance*abs(rise)
       ! Twice the corrections, of about bend dt^2/2, that do not count (heat_steps).
       if (allocated(state%bend)) error = error + state%damped*abs(state%bend)
+      error = error + carried
 
    contains
+
+      !> By how much the mean of a cell is beyond the value at its place, of temperatures with the
+      !! curvature of the bend along their gradient; at sides that of a cell between mirrored ones.
+      pure real(rk) function within(c)
+         integer(ik), intent(in) :: c
+         real(rk), parameter :: mirrored = 0.25_rk
+         real(rk) :: along(3), gradient(2), spread_of_cell, weight(3)
+
+         within = mirrored*half*step(c)
+         if (bend(c) < 0.0_rk) return
+         associate (at => heat%place(:, near(:, c)), value => state%temperature(near(:, c)), &
+                    corners => heat%mesh%xy(:, heat%mesh%cell_nodes(:, c)))
+            gradient = matmul(reshape([at(2, 3) - at(2, 1), at(1, 1) - at(1, 3), &
+                                       at(2, 1) - at(2, 2), at(1, 2) - at(1, 1)], [2, 2]), &
+                              value(2:) - value(1))
+            weight = barycentric(at, heat%place(:, c))
+            along = matmul(gradient, at - spread(heat%place(:, c), 2, 3))
+            weight = weight*along**2
+            along = matmul(gradient, corners)
+            spread_of_cell = (sum(along**2) - sum(along*cshift(along, 1)))/18.0_rk
+         end associate
+         if (sum(weight) > spread_of_cell) within = bend(c)*spread_of_cell/sum(weight)
+      end function within
 
       !> Distance of a value from the linear interpolation between those of its neighbours; -1: they
       !! do not surround it.
@@ -118,13 +148,13 @@ contains
          bend_of = abs(value(u) - dot_product(weight, value(max(near(:, u), 1_ik))))
       end function bend_of
 
-   end function temperature_errors
+   end subroutine temperature_errors
 
    !> Add the errors of fracture cells with wells at a point.
-   pure subroutine add_errors_at_wells(heat, state, behind, error)
+   pure subroutine add_errors_at_wells(heat, state, behind, carried, error)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
-      real(rk), intent(in) :: behind(:)  !< as in temperature_errors
+      real(rk), intent(in) :: behind(:), carried(:)  !< as in temperature_errors
       real(rk), intent(inout) :: error(:)  !< (unknowns) [K]
       integer(ik) :: i, k
 
@@ -132,7 +162,8 @@ contains
          if (behind(i) < 0.0_rk) cycle
          associate (c => heat%first_cell - 1 + i, t => state%temperature, &
                     cells => heat%mesh%face_cells(1, heat%mesh%fracture%cell_faces(:, i)))
-            error(c) = max(at_wells*error(c), behind(i)*maxval(abs(t(cells) - t(c))))
+            error(c) = max(at_wells*error(c) - (at_wells - 1.0_rk)*carried(c), &
+                           behind(i)*maxval(abs(t(cells) - t(c))))
             if (.not. allocated(heat%externals)) cycle
             do k = 1, size(heat%externals, kind=ik)
                associate (external => heat%externals(k))
@@ -145,19 +176,19 @@ contains
    end subroutine add_errors_at_wells
 
    !> Errors of the temperatures of what wells take out: the largest of where they take it.
-   pure function well_errors(heat, state, error) result(of_wells)
+   pure function well_errors(heat, state, error, carried) result(of_wells)
       class(heat_model_t), intent(in) :: heat
       type(heat_state_t), intent(in) :: state
-      real(rk), intent(in) :: error(:)  !< (unknowns) [K]
+      real(rk), intent(in) :: error(:), carried(:)  !< as in temperature_errors [K]
       real(rk) :: of_wells(size(state%well_temperature))  !< [K]
       integer(ik) :: k
 
       of_wells = 0.0_rk
       if (.not. allocated(heat%externals)) return
       do k = 1, size(heat%externals, kind=ik)
-         associate (external => heat%externals(k), w => heat%externals(k)%well)
-            if (w == 0 .or. external%flow > 0.0_rk) cycle
-            of_wells(w) = max(of_wells(w), at_wells*error(external%unknown))
+         associate (w => heat%externals(k)%well, u => heat%externals(k)%unknown)
+            if (w == 0 .or. heat%externals(k)%flow > 0.0_rk) cycle
+            of_wells(w) = max(of_wells(w), at_wells*error(u) - (at_wells - 1.0_rk)*carried(u))
          end associate
       end do
    end function well_errors

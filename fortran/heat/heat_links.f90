@@ -15,7 +15,7 @@ module heat_links
    implicit none(type, external)
    private
 
-   public :: coefficients, external_t, limited, limited_terms, link_t
+   public :: coefficients, external_t, find_direction, limited, limited_terms, link_t
 
    !> Two unknowns between which heat passes.
    type :: link_t

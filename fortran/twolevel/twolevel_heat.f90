@@ -407,13 +407,15 @@ contains
       type(heat_state_t), intent(in) :: state
       real(rk), intent(in) :: time  !< [s]
       type(snapshot_t), intent(inout) :: fields
-      real(rk), allocatable :: behind(:), error(:)
+      real(rk), allocatable :: behind(:)
+      real(rk), dimension(:), allocatable :: carried, error
 
       if (.not. (allocated(problem%heat) .and. allocated(state%temperature))) return
       associate (heat => problem%heat, datum => problem%heat%heat%temperature)
          behind = behind_wells(problem)
-         error = temperature_errors(heat, state, time, behind)
-         call add_errors_at_wells(heat, state, behind, error)
+         allocate (carried(heat%n), error(heat%n))
+         call temperature_errors(heat, state, time, behind, error, carried)
+         call add_errors_at_wells(heat, state, behind, carried, error)
          associate (first => heat%first_cell, last => heat%first_joint - 1)
             fields%fracture%temperature = datum + state%temperature(first:last)
             fields%fracture%error%temperature = error(first:last)
@@ -430,12 +432,13 @@ contains
       type(heat_state_t), intent(in) :: state
       real(rk), intent(in) :: time  !< [s]
       type(well_row_t), intent(inout) :: rows(:)
+      real(rk), dimension(:), allocatable :: carried, error
 
       if (.not. allocated(problem%heat)) return
+      allocate (carried(problem%heat%n), error(problem%heat%n))
+      call temperature_errors(problem%heat, state, time, behind_wells(problem), error, carried)
       rows%temperature = problem%heat%heat%temperature + state%well_temperature
-      rows%error%temperature = well_errors(problem%heat, state, &
-                                           temperature_errors(problem%heat, state, time, &
-                                                              behind_wells(problem)))
+      rows%error%temperature = well_errors(problem%heat, state, error, carried)
    end subroutine add_well_temperatures
 
    !> The share of each fracture cell that lies behind a well at a point of it, at a dead end;

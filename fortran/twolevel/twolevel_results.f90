@@ -10,6 +10,7 @@ module twolevel_results
    use contact_law, only: state_open, state_slip, state_stick
    use growth_front, only: front_state_t
    use growth_network, only: fracture_length, total_length
+   use mesh_geometry, only: cell_area
    use mesh_types, only: fracture_mesh_t, point_boundary, point_interior, point_tip
    use mesh_builder, only: locate
    use report_rows, only: history_row_t, matrix_fields_t, probe_row_t
@@ -24,7 +25,7 @@ module twolevel_results
    private
 
    public :: cell_state, cell_states, history_of_levels, probes_of_levels, slip_potency
-   public :: snapshot_of_levels
+   public :: shared_displacement_error, snapshot_of_levels
 
 contains
 
@@ -167,6 +168,30 @@ contains
       end associate
    end subroutine probes_of_levels
 
+   !> Errors of displacements that cells share, as what is not resolved in one moves the others: in
+   !! the mean square over the body both are of one order: the root of that of the local errors is
+   !! stated [m].
+   function shared_displacement_error(problem, state) result(error)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: area, error, square, whole
+      real(rk) :: nodal(3, problem%mesh%n_nodes)
+      integer(ik) :: c
+
+      square = 0.0_rk
+      whole = 0.0_rk
+      associate (mesh => problem%mesh, model => problem%model)
+         call nodal_fields(mesh, model%rock, model%regions, state%unknowns, state%tractions, nodal)
+         do c = 1, mesh%n_cells
+            area = cell_area(mesh, c)
+            whole = whole + area
+            square = square + area*maxval(abs(sum(nodal(:2, mesh%cell_nodes(:, c)), dim=2)/3.0_rk &
+                                              - state%unknowns(:2, c)))**2
+         end do
+      end associate
+      error = sqrt(square/whole)
+   end function shared_displacement_error
+
    !> Errors of the values in one cell: the difference of its displacement and pressure from the
    !! mean of those at its nodes, and half the largest difference of its stress from those of its
    !! neighbours.
@@ -268,6 +293,8 @@ contains
                                    fields%displacement_error(c), fields%pressure_error(c), &
                                    fields%stress_error(c))
          end do
+         fields%displacement_error = fields%displacement_error &
+                                     + shared_displacement_error(problem, state)
          if (.not. has_regions) return
          fields%permeability = rock%permeability
          if (size(rock%shear) == 1) return

@@ -23,7 +23,8 @@ module twolevel_state
    use twolevel_place_errors, only: add_well_places, note_probes
    use twolevel_places, only: end_at_tips, place_tips
    use twolevel_problem, only: coarse_problem_t, discard
-   use twolevel_results, only: history_of_levels, probes_of_levels, snapshot_of_levels
+   use twolevel_results, only: history_of_levels, probes_of_levels, shared_displacement_error, &
+                               snapshot_of_levels
    use twolevel_setup, only: pressure_scale
    use twolevel_tips, only: find_tip_intensities
    use twolevel_schedule, only: follow_sides, last_switch
@@ -519,6 +520,8 @@ contains
 
       call probes_of_levels(self%scene%probes, self%problem, self%now%coarse, row, error)
       if (allocated(error)) return
+      row%displacement_error = row%displacement_error &
+                               + shared_displacement_error(self%problem, self%now%coarse)
       call note_probes(self%value_errors, self%time(), self%now%trend%pressure_rise(), row)
       call self%blurred%add_to_probes(self%scene, self%problem, row)
       if (allocated(self%well_results%injected)) then

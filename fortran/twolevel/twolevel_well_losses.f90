@@ -3,12 +3,13 @@
 module twolevel_well_losses
    use base_kinds, only: ik, pi, rk
    use coarse_state, only: state_t
+   use contact_law, only: state_open
    use twolevel_problem, only: coarse_problem_t
    implicit none(type, external)
    private
 
-   public :: by_wells_in_cells, entry_flows, lost_to_sides, unresolved_at, unresolved_in_cells, &
-             uptake
+   public :: by_wells_in_cells, entry_flows, lost_to_sides, unresolved_at, &
+             unresolved_in_cells, uptake
 
 contains
 
@@ -41,6 +42,31 @@ contains
                 *problem%thickness(state)
       end associate
    end function half_cells
+
+   !> Error of the pressure of fluid that holds fractures open and leaves them through closed ones:
+   !! where they close is known to a cell, by whose whole loss the pressure may be wrong. Of flows
+   !! that are a share of what the wells supply, that share [Pa].
+   pure real(rk) function at_necks(problem, state) result(pressure)
+      type(coarse_problem_t), intent(in) :: problem
+      type(state_t), intent(in) :: state
+      real(rk) :: loss(size(state%pressure)), supplied
+      logical :: is_open(size(state%pressure))
+      integer(ik) :: k, last
+
+      pressure = 0.0_rk
+      is_open = all(state%contact == state_open, dim=1)
+      if (.not. any(is_open)) return
+      loss = half_cells(problem, state)
+      supplied = sum(max(0.0_rk, entry_flows(problem, state)))
+      do k = 1, size(state%flow, kind=ik)
+         associate (cells => problem%model%connections(:, k), flow => abs(state%flow(k)))
+            last = cells(merge(2, 1, state%flow(k) > 0.0_rk))
+            if (is_open(last) .or. .not. is_open(sum(cells) - last)) cycle
+            pressure = max(pressure, &
+                           2.0_rk*loss(last)*flow**2/max(supplied, flow, tiny(1.0_rk)))
+         end associate
+      end do
+   end function at_necks
 
    !> What leaks off and is stored in each fracture cell [m2/s].
    pure function uptake(problem, state) result(taken)
@@ -80,7 +106,7 @@ contains
       real(rk) :: flow(size(problem%entries))
       integer(ik) :: e
 
-      pressure = 0.0_rk
+      pressure = merge(at_necks(problem, state), 0.0_rk, all(state%contact == state_open, dim=1))
       if (.not. any(problem%path > 0.0_rk)) return
       most = by_uptake(problem, state)
       flow = entry_flows(problem, state)
@@ -169,10 +195,14 @@ contains
       integer(ik) :: e
 
       pressure = 0.0_rk
-      if (problem%entries(entry)%fracture == 0 .or. .not. problem%entries(entry)%at_point) return
+      if (problem%entries(entry)%fracture == 0) return
+      if (any(problem%share(:, entry) > 0.0_rk .and. all(state%contact == state_open, dim=1))) then
+         pressure = at_necks(problem, state)
+      end if
+      if (.not. problem%entries(entry)%at_point) return
       loss = half_cells(problem, state)
       most = by_uptake(problem, state)
-      pressure = sum(problem%share(:, entry)*most)
+      pressure = pressure + sum(problem%share(:, entry)*most)
       associate (j => outlet_of(problem, entry), &
                  cell => maxloc(problem%share(:, entry), dim=1, kind=ik))
          if (j > 0) pressure = pressure + abs(problem%steady(cell, entry) &
