@@ -59,6 +59,8 @@ module coarse_full_step
    !> Residuals that remain with earlier factors, over those before the step, and their bounds over
    !! the stress scale [-].
    real(rk), parameter :: reduction = 1.0e-8_rk, most = 1.0e-11_rk, least = 1.0e-13_rk
+   !> Largest forward error by these residuals: with worse conditions factors are not used again [-].
+   real(rk), parameter :: forward = 1.0e-5_rk
    real(rk), parameter :: well = 16.0_rk*epsilon(1.0_rk)  !< fulfilled: residual over unknowns [-]
 
 contains
@@ -123,7 +125,7 @@ contains
       real(rk), parameter :: share = 0.5_rk  ! of a weight: no change of contact is less
       integer(ik), parameter :: most_changes = 12
 
-      is_like = self%is_known
+      is_like = self%is_known .and. self%condition*least <= forward
       if (is_like) is_like = size(self%weight, 2) == slopes%n
       if (is_like) is_like = count(abs(slopes%weight - self%weight) &
                                   > share*max(abs(slopes%weight), abs(self%weight))) <= most_changes
@@ -241,7 +243,8 @@ contains
       integer(ik) :: j, k, pass
 
       allocate (direction(size(step), most_directions), product(size(step), most_directions))
-      enough = max(min(reduction*maxval(abs(residual)), most*stress_scale), least*stress_scale)
+      enough = max(min(reduction*maxval(abs(residual)), most*stress_scale, &
+                       forward/max(reduced%condition, 1.0_rk)*stress_scale), least*stress_scale)
       step = 0.0_rk
       left = residual
       do k = 1, most_directions
@@ -267,6 +270,9 @@ contains
          is_done = maxval(abs(left)) <= enough
          if (is_done) exit
       end do
+      if (.not. is_done) return
+      left = residual + product_of(stiffness, slopes, step)  ! as rounding leaves it
+      is_done = maxval(abs(left)) <= max(2.0_rk*enough, well*maxval(abs(step)))
       quality%condition = reduced%condition
       quality%rest = maxval(abs(left))/stress_scale
    end subroutine reduce_residual

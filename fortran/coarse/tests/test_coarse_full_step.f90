@@ -17,23 +17,25 @@ program test_coarse_full_step
    call compare("small", 0.1_rk)
    call compare("large", 1.0e5_rk)
    call compare("small but for the other face's", 1.0_rk, by_other=4.0e4_rk)
+   call compare("hardly any storage", 1.0e-10_rk, storage=1.0e-10_rk)
    call checks%finish()
 
 contains
 
    !> Face pressures p, pressures of fluid f, flow w between: r S p - p + f and the balances
    !! f_1 + w - (S p)_1, f_2 - w - (S p)_2, and f_2 - f_1 + 1e-12 w, each with some residual.
-   subroutine compare(name, volume, by_other)
+   subroutine compare(name, volume, by_other, storage)
       character(len=*), intent(in) :: name
       real(rk), intent(in) :: volume  !< of a face by its own pressure, S(1, 1)
       real(rk), intent(in), optional :: by_other  !< S(1, 2) over that
+      real(rk), intent(in), optional :: storage  !< factor of the fluid's pressure in its balance
       real(rk), parameter :: resistance = 5.0e-5_rk
       type(slopes_t) :: slopes
       type(kinds_t) :: kinds
       type(step_quality_t) :: quality
       type(reduced_t) :: reduced
       real(rk), allocatable :: jacobian(:, :)
-      real(rk) :: residual(n), step(n)
+      real(rk) :: residual(n), step(n), stored
       real(rk), allocatable :: matrix(:, :)
       type(stiffness_t) :: stiffness
       integer(ik) :: i, k
@@ -52,7 +54,9 @@ contains
          call slopes%add(i, i, -1.0_rk)
          call slopes%add(i, i + 2_ik, 1.0_rk)
          call slopes%add_force(i + 2_ik, i, -1.0_rk)
-         call slopes%add(i + 2_ik, i + 2_ik, 1.0_rk)
+         stored = 1.0_rk
+         if (present(storage)) stored = storage
+         call slopes%add(i + 2_ik, i + 2_ik, stored)
          call slopes%add(i + 2_ik, 5_ik, real(3 - 2*i, rk))
          call slopes%add(5_ik, i + 2_ik, real(2*i - 3, rk))
       end do
@@ -64,7 +68,7 @@ contains
       kinds%end_of_flow = [4_ik]
       kinds%is_flow = [.false., .false., .false., .false., .true.]
       kinds%many = 0
-      residual = [1.0_rk, -2.0_rk, 1.0_rk, 1.0_rk, 0.5_rk]
+      residual = stored*[1.0_rk, -2.0_rk, 1.0_rk, 1.0_rk, 0.5_rk]
       call find_full_step(stiffness, slopes, kinds, residual, 1.0_rk, .true., reduced, step, &
                           quality)
       call checks%is_true(.not. quality%is_singular, name//": there is a step")
@@ -86,6 +90,8 @@ contains
                               + 1.0e-14_rk*maxval(abs(jacobian))*maxval(abs(step)), &
                               name//": with earlier factors")
          call checks%is_true(quality%rest <= 1.0e-11_rk, name//": and what remains is stated")
+         call checks%is_true(quality%condition*quality%rest <= 2.0e-5_rk, &
+                             name//": and moves the solution by little")
       end do
    end subroutine compare
 
