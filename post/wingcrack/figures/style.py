@@ -49,7 +49,6 @@ STEADY = 1.0e-6  # share of the values below which their differences say nothing
 
 FIELD_COLOURS = "cividis"
 JUMP_COLOURS = "magma_r"  # of slip and aperture: what is zero is pale
-_WITHOUT_FACTOR = (1.0e-3, 1.0e5)  # largest values of axes whose labels certainly have no factor
 _METADATA: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}}
 _PNG_LEVEL = 1  # of compression: a fifth more bytes, a tenth less time
 
@@ -251,22 +250,6 @@ def outside_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None
     figure.legend(handles=list(handles), loc="outside lower center", ncols=_side_by_side(columns))
 
 
-def _has_low_titles(axes: Axes) -> bool:
-    """Whether no factor as 1e6 stands above the axes, for which titles would be raised.
-
-    Matplotlib measures all labels to find that out: a tenth of the time.
-    """
-    figure, place = axes.get_figure(root=True), axes.get_subplotspec()
-    if figure is None or axes.get_title(loc="left") == "":
-        return False
-    low, high = _WITHOUT_FACTOR
-    return all(
-        other.get_yscale() == "log" or low <= np.abs(other.get_ylim()).max() < high
-        for other in figure.axes
-        if other is axes or (place is not None and other.get_subplotspec() == place)
-    )
-
-
 @styled
 def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     """Write a figure in each format and return the files.
@@ -278,8 +261,6 @@ def save(figure: Figure, stem: Path, formats: Sequence[str]) -> list[Path]:
     for axes in figure.axes:
         for spine in axes.spines.values():
             spine.set_in_layout(False)  # it lies on the edge of its axes, and takes time to measure
-        if _has_low_titles(axes):
-            axes.set_title(axes.get_title(loc="left"), loc="left", y=1.0)
     written = []
     for form in formats:
         aside = stem.with_name(f".{stem.name}.{os.getpid()}.{form}")
