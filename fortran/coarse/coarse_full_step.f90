@@ -59,7 +59,8 @@ module coarse_full_step
    !> Residuals that remain with earlier factors, over those before the step, and their bounds over
    !! the stress scale [-].
    real(rk), parameter :: reduction = 1.0e-8_rk, most = 1.0e-11_rk, least = 1.0e-13_rk
-   !> Largest forward error by these residuals: with worse conditions factors are not used again [-].
+   !> Largest forward error by these residuals; with larger conditions factors are not used again
+   !! [-].
    real(rk), parameter :: forward = 1.0e-5_rk
    real(rk), parameter :: well = 16.0_rk*epsilon(1.0_rk)  !< fulfilled: residual over unknowns [-]
 
