@@ -79,7 +79,7 @@ contains
    end subroutine visit_made
 
    !> The model of a mesh, with its matrix, and the last solution. A window that has been meshed in
-   !! the last try of a step, and not evaluated since its tips are not near growth, has neither.
+   !! a try and not evaluated since has no solution, and perhaps no matrix.
    subroutine visit_model(self, archive, scene, tips, error)
       type(window_t), intent(inout) :: self
       type(archive_t), intent(inout) :: archive
